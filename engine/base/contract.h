@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace poesy::detail {
+
+[[noreturn]] inline void contract_broken(const char* condition, const char* file, int line) {
+  std::fprintf(stderr, "poesy: %s:%d: broken contract: %s\n", file, line, condition);
+  std::abort();
+}
+
+}  // namespace poesy::detail
+
+/// A precondition between parts of the program: a bug when it fails, never bad input.
+/// Checked where POESY_CONTRACTS is defined (preset `debug` and the sanitizers), free in release.
+#ifdef POESY_CONTRACTS
+#define POESY_EXPECTS(condition) \
+  ((condition) ? static_cast<void>(0) : ::poesy::detail::contract_broken(#condition, __FILE__, __LINE__))
+#else
+#define POESY_EXPECTS(condition) static_cast<void>(0)
+#endif

@@ -1,0 +1,33 @@
+#include "engine/base/error.h"
+
+namespace poesy {
+namespace {
+
+std::string sentence(const std::string& place, std::string_view problem, std::string_view remedy) {
+  std::string text = place;
+  if (!text.empty()) text += ": ";
+  text += problem;
+  if (!remedy.empty()) {
+    text += "; ";
+    text += remedy;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_string(const Place& place) {
+  std::string text = place.file;
+  if (place.line == 0) return text;
+  text += ":" + std::to_string(place.line);
+  if (place.column != 0) text += ":" + std::to_string(place.column);
+  return text;
+}
+
+InputError::InputError(const Place& place, std::string_view problem, std::string_view remedy)
+    : std::runtime_error(sentence(to_string(place), problem, remedy)) {}
+
+FileError::FileError(std::string_view path, std::string_view problem, std::string_view remedy)
+    : std::runtime_error(sentence(std::string(path), problem, remedy)) {}
+
+}  // namespace poesy

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace poesy {
+
+/// Where in a text file something stands. Line and column count from 1; 0 means unknown.
+struct Place {
+  std::string file;
+  std::size_t line = 0;
+  std::size_t column = 0;
+};
+
+/// "FILE", "FILE:LINE" or "FILE:LINE:COL", as much as is known; empty for an empty place.
+std::string to_string(const Place& place);
+
+/// The user's command line, study or data is wrong. Ends the program with exit code 2.
+/// what() reads "FILE:LINE:COL: problem; remedy".
+class InputError : public std::runtime_error {
+ public:
+  InputError(const Place& place, std::string_view problem, std::string_view remedy);
+};
+
+/// A file cannot be read, written or trusted. Ends the program with exit code 3.
+/// what() reads "PATH: problem; remedy".
+class FileError : public std::runtime_error {
+ public:
+  FileError(std::string_view path, std::string_view problem, std::string_view remedy);
+};
+
+}  // namespace poesy

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+
+namespace poesy {
+
+/// A position in one particular list. Positions of different lists do not mix.
+template <class List>
+struct Index {
+  std::size_t value = 0;
+
+  constexpr Index() = default;
+  constexpr explicit Index(std::size_t position) : value(position) {}
+  friend constexpr auto operator<=>(const Index&, const Index&) = default;
+};
+
+/// Position of an error source in its model's list of all error sources.
+using FactorIndex = Index<struct FactorList>;
+/// Position of a pose in a study's pose set.
+using PoseIndex = Index<struct PoseList>;
+/// Position of a sample in the stream of one (factor, pose).
+using SampleIndex = Index<struct SampleList>;
+
+}  // namespace poesy

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace poesy {
+
+enum class Dimension { length, angle, number };
+
+/// A unit that may stand in a study file: its name and its size in SI (m, rad).
+struct Unit {
+  std::string_view name;
+  Dimension dimension;
+  double si;
+};
+
+/// m, mm, um, rad, mrad, deg, arcsec.
+std::span<const Unit> units();
+
+/// "m", "rad" or "1".
+std::string_view si_unit(Dimension dimension);
+
+/// The unit in which people read this dimension, "mm", "deg" or "1".
+const Unit& display_unit(Dimension dimension);
+
+/// "length" or "angle" or "number".
+std::string_view name(Dimension dimension);
+
+struct Quantity {
+  double si = 0.0;
+  Dimension dimension = Dimension::number;
+};
+
+/// A quantity's text does not follow "NUMBER UNIT". what() is a clause without a place.
+class QuantityError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Reads "1.5 mm", "-0.5 rad", "10 um". The number is finite, the unit one of units().
+/// Throws QuantityError with the reason and the units that are known.
+Quantity parse_quantity(std::string_view text);
+
+/// Reads a whole text as one finite number, independent of the locale; empty for anything else.
+std::optional<double> parse_number(std::string_view text);
+
+/// The shortest text that reads back as the same number: "0.001".
+std::string shortest(double value);
+
+/// A quantity for a study file, exact when read back: "0.001 m", "0.5 rad".
+std::string to_text(Quantity quantity);
+
+}  // namespace poesy

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/model/pose_set.h"
+#include "engine/run/result.h"
+#include "engine/run/runner.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// Writes the result of a sensitivity study. The file appears whole or not at all under its name: written beside it
+/// under a temporary name, synced, renamed. Throws FileError and leaves an existing file as it was.
+void write_sensitivity(const std::string& path, const Study& study, const PoseSet& poses,
+                       const SensitivityResult& result, const RunFacts& facts);
+
+/// Writes the result of `evaluate`, in the same way.
+void write_evaluation(const std::string& path, const Study& study, const PoseSet& poses, const ErrorTable& errors,
+                      Pairing pairing, const EvaluationResult& result, const RunFacts& facts);
+
+/// Throws when no result file can come into being at this path, before anything is computed: InputError when its
+/// folder does not exist or the path is a directory, FileError when the folder cannot be written.
+void check_result_path(const std::string& path);
+
+/// A pose coordinate or response or factor as a result file names it.
+struct NamedUnit {
+  std::string name;
+  std::string unit;  ///< "m", "rad" or "1"
+};
+
+/// What a result file of either kind says, read back. Members that the file does not have are empty.
+struct StoredResult {
+  std::string kind;  ///< "sensitivity" or "evaluate"
+  std::string title;
+  std::string model;
+  std::string study_text;
+  std::string poesy_version;
+  std::string content_sha256;
+  std::vector<NamedUnit> pose_coordinates;
+  PoseSet poses;
+  std::vector<NamedUnit> factors;
+  std::vector<NamedUnit> responses;
+  SensitivityResult sensitivity;  ///< by_status of solves is not stored per cell: iterations and counts are summed
+  EvaluationResult evaluation;
+  RunFacts facts;
+};
+
+/// Reads a result file. Throws FileError when it is not one, or of a newer major version. Does not check the hash.
+StoredResult read_result(const std::string& path);
+
+struct Verification {
+  std::string stored;    ///< the hash that the file carries
+  std::string computed;  ///< the hash of its content as it is now
+  bool matches() const { return stored == computed; }
+};
+
+/// Recomputes the content hash of a result file. Throws FileError when it cannot be read as one.
+Verification verify_result(const std::string& path);
+
+/// Writes every table of a result file as CSV into a folder, made if missing; one file per table, named after its
+/// place in the result, first line the column names. Returns the files written. Throws FileError.
+std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);
+
+}  // namespace poesy

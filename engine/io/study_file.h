@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "engine/model/catalog.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// How much of a study a command needs.
+enum class StudyUse {
+  run,      ///< all sections complete
+  evaluate  ///< [mechanism] and [solver]; the others are checked where present but may be incomplete or absent
+};
+
+/// Reads and validates a study file (TOML, format "poesy-study", version 1).
+/// Throws InputError with file, line and column for everything that is wrong with its content (also for a
+/// directory or a file that is not text), FileError when the file cannot be read.
+/// A pose file named by the study is found relative to the study's folder.
+Study read_study(const std::string& path, const Catalog& catalog, StudyUse use);
+
+/// The study with every default filled in, as TOML that reads back to the same study.
+std::string resolved_text(const Study& study);
+
+/// A complete, commented study of this mechanism that runs as it is.
+std::string template_text(const CatalogEntry& entry);
+
+}  // namespace poesy

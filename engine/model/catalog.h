@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+
+namespace poesy {
+
+/// A mechanism that a study may name.
+struct CatalogEntry {
+  ModelDescription description;
+  /// Builds the mechanism from the values of description.geometry, in that order (SI).
+  /// Throws std::invalid_argument with a clause that names the parameter and the rule it breaks.
+  std::function<std::unique_ptr<Model>(std::span<const double> geometry)> build;
+};
+
+using Catalog = std::vector<CatalogEntry>;
+
+/// The entry of that name, or nullptr.
+const CatalogEntry* find(const Catalog& catalog, std::string_view model_name);
+
+}  // namespace poesy

@@ -1,0 +1,28 @@
+#include "engine/model/model.h"
+
+#include <algorithm>
+
+#include "engine/model/catalog.h"
+
+namespace poesy {
+
+std::optional<FactorIndex> ModelDescription::find_factor(std::string_view factor_name) const {
+  const auto found =
+      std::find_if(factors.begin(), factors.end(), [&](const Factor& factor) { return factor.name == factor_name; });
+  if (found == factors.end()) return std::nullopt;
+  return FactorIndex(static_cast<std::size_t>(found - factors.begin()));
+}
+
+const FactorSet* ModelDescription::find_set(std::string_view set_name) const {
+  const auto found =
+      std::find_if(factor_sets.begin(), factor_sets.end(), [&](const FactorSet& set) { return set.name == set_name; });
+  return found == factor_sets.end() ? nullptr : &*found;
+}
+
+const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {
+  const auto found = std::find_if(catalog.begin(), catalog.end(),
+                                  [&](const CatalogEntry& entry) { return entry.description.name == model_name; });
+  return found == catalog.end() ? nullptr : &*found;
+}
+
+}  // namespace poesy

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/index.h"
+#include "engine/base/units.h"
+#include "engine/model/status.h"
+
+namespace poesy {
+
+/// One scalar manufacturing or assembly error of a mechanism, zero when the part is perfect.
+struct Factor {
+  std::string name;     ///< "delta_1_0_x"
+  Dimension dimension;  ///< length (m) or angle (rad)
+  std::size_t limb;     ///< counts from 1, as in the literature
+  std::string description;
+};
+
+/// A named subset of a model's factors, in the order of the model's list.
+struct FactorSet {
+  std::string name;
+  std::string description;
+  std::vector<FactorIndex> factors;
+};
+
+/// A scalar that is judged for every (pose, sample).
+struct Response {
+  std::string name;
+  Dimension dimension;
+  std::string description;
+};
+
+/// A vector behind the responses, given only where a caller asks for it.
+struct Detail {
+  std::string name;
+  std::vector<std::string> components;
+  std::string unit;  ///< "rad,rad,rad,m,m,m" where components differ
+  std::string description;
+};
+
+/// A coordinate of the platform's pose.
+struct PoseCoordinate {
+  std::string name;
+  Dimension dimension;
+  std::string description;
+};
+
+/// A structural parameter that a study may change.
+struct GeometryParameter {
+  std::string name;
+  Dimension dimension;
+  double published;  ///< SI
+  std::string description;
+};
+
+/// How a per-sample solve is done.
+struct SolverOptions {
+  enum class Method { gauss_newton };
+
+  Method method = Method::gauss_newton;
+  /// A solve has converged once the largest component of the change of the residual is below this (rad, m).
+  /// Default 1e-15, Du et al. 2022, Section 5.1.
+  double tolerance = 1e-15;
+  /// Default 50, Du et al. 2022, Section 5.1.
+  int max_iterations = 50;
+};
+
+/// Everything about a mechanism that can be read without solving it.
+struct ModelDescription {
+  std::string name;   ///< as written in a study file
+  std::string title;  ///< with the source
+  std::vector<GeometryParameter> geometry;
+  std::vector<PoseCoordinate> pose_coordinates;
+  std::vector<Factor> factors;
+  std::vector<FactorSet> factor_sets;
+  std::vector<Response> responses;
+  std::vector<Detail> details;
+  std::vector<std::string> joints;  ///< names of all joint displacements, "q_1_1"
+  std::vector<double> pose_lower;   ///< a workspace inside reach, [pose coordinates], SI
+  std::vector<double> pose_upper;
+  std::string workspace_note;  ///< where that workspace comes from
+
+  std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
+  const FactorSet* find_set(std::string_view set_name) const;
+};
+
+/// B samples at one pose: F constant errors, of which V take their own value in each sample.
+struct SampleBlock {
+  std::span<const double> pose;         ///< [pose coordinates], SI
+  std::span<const double> errors;       ///< [F], SI; entries of varied factors are ignored
+  std::span<const FactorIndex> varied;  ///< [V], no repetition
+  std::span<const double> values;       ///< [V x B], row-major: all samples of the first varied factor first
+  std::size_t count;                    ///< B
+};
+
+/// What a block of samples gives. The caller owns the memory.
+struct OutcomeBlock {
+  std::span<double> responses;          ///< [R x B], row-major, SI; the last iterate where not converged
+  std::span<SolveStatus> status;        ///< [B]
+  std::span<std::uint32_t> iterations;  ///< [B]
+  std::span<double> details;            ///< empty, or [D x B] with D the components of all details in order
+};
+
+/// Solves samples. Owns the scratch of one thread; a result depends on nothing but its arguments.
+class Evaluator {
+ public:
+  virtual ~Evaluator() = default;
+
+  /// Precondition: the model reaches the pose, shapes as stated. Never throws for physics: see SolveStatus.
+  virtual void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) = 0;
+};
+
+/// A mechanism with its geometry: immutable, shared by all threads.
+class Model {
+ public:
+  virtual ~Model() = default;
+
+  virtual const ModelDescription& description() const = 0;
+
+  /// Why the mechanism cannot take this pose (SI); empty when it can.
+  virtual std::optional<std::string> unreachable(std::span<const double> pose) const = 0;
+
+  /// Nominal displacements of all joints, limb by limb, base to platform (rad, m).
+  /// Precondition: the pose is reachable.
+  virtual std::vector<double> joint_displacements(std::span<const double> pose) const = 0;
+
+  virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
+
+ protected:
+  Model() = default;
+  Model(const Model&) = default;
+  Model& operator=(const Model&) = default;
+};
+
+}  // namespace poesy

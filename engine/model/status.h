@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace poesy {
+
+/// How one solve ended.
+enum class SolveStatus : std::uint8_t {
+  converged,      ///< the change of the residual fell below the tolerance
+  stagnated,      ///< the change stays at rounding level without falling further: as exact as doubles allow
+  iteration_cap,  ///< still changing after the allowed number of iterations
+  singular,       ///< the normal matrix cannot be factored
+  non_finite      ///< a value overflowed or became undefined
+};
+
+inline constexpr std::array<std::string_view, 5> kStatusNames{"converged", "stagnated", "iteration_cap", "singular",
+                                                              "non_finite"};
+
+/// A solve that reached its fixed point, to the tolerance or to rounding.
+constexpr bool solved(SolveStatus status) {
+  return status == SolveStatus::converged || status == SolveStatus::stagnated;
+}
+
+/// A solve whose last iterate is a number.
+constexpr bool usable(SolveStatus status) {
+  return status != SolveStatus::non_finite && status != SolveStatus::singular;
+}
+
+}  // namespace poesy

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "engine/base/index.h"
+
+namespace poesy {
+
+/// What a stream's draws are used for. Part of every address, so that purposes never share draws.
+enum class Purpose : std::uint64_t { error_samples = 1, sampling_design = 2 };
+
+/// The address of a run of draws: one factor at one pose. The sample index completes it.
+struct StreamAddress {
+  std::uint64_t seed = 0;
+  Purpose purpose = Purpose::error_samples;
+  FactorIndex factor;
+  PoseIndex pose;
+};
+
+/// The 64 random bits at (address, sample): a pure function, Philox4x64-10 (Salmon et al. 2011)
+/// with key (seed, purpose) and counter (factor, pose, sample / 4, 0), word sample mod 4.
+std::uint64_t random_bits(const StreamAddress& address, SampleIndex sample);
+
+/// Fills uniforms[k] with the draw of sample first + k, strictly inside (0, 1): the middle of the
+/// 2^53 cells named by the upper bits. Equal to uniform_from_bits(random_bits(address, first + k)).
+void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms);
+
+/// Maps 64 bits to (cell + 0.5) / 2^53 with cell the upper 53 bits, kept below 1.
+double uniform_from_bits(std::uint64_t bits);
+
+/// The same stream as a Boost.Random engine (also a C++ UniformRandomBitGenerator), for
+/// distributions and shuffles that take an engine: call k returns random_bits(address, k).
+class StreamEngine {
+ public:
+  using result_type = std::uint64_t;
+
+  explicit StreamEngine(const StreamAddress& address) : address_(address) {}
+
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return ~result_type{0}; }
+
+  result_type operator()() { return random_bits(address_, SampleIndex(next_++)); }
+  void discard(std::uint64_t count) { next_ += count; }
+
+ private:
+  StreamAddress address_;
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace poesy

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "engine/run/result.h"
+#include "engine/study/plan.h"
+
+namespace poesy {
+
+struct Progress {
+  std::uint64_t solves = 0;
+  std::uint64_t total = 0;
+  std::uint64_t not_converged = 0;
+};
+
+struct RunOptions {
+  std::size_t threads = 0;  ///< 0: one per processor
+  /// Called now and then, never from two threads at once. May be empty.
+  std::function<void(const Progress&)> progress;
+  /// Set by somebody else to stop the run soon. May be null.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Number of threads that RunOptions::threads stands for.
+std::size_t resolved_threads(std::size_t threads);
+
+/// Runs a sensitivity study on a pool of threads. Units are merged in plan order, so the result has the same bits
+/// for any number of threads. Memory does not grow with the number of samples. Empty when stopped.
+std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
+                                                 const RunOptions& options);
+
+/// Errors that somebody else sampled: S rows of V factors.
+struct ErrorTable {
+  std::vector<FactorIndex> factors;  ///< [V]
+  std::vector<double> values;        ///< [S x V], row-major, SI
+  std::size_t rows = 0;              ///< S
+};
+
+enum class Pairing {
+  every_pose_with_every_row,
+  row_by_row  ///< pose m with row m; equal numbers of both
+};
+
+/// Solves every requested (pose, row). Empty when stopped.
+std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,
+                                               const ErrorTable& errors, Pairing pairing, const RunOptions& options);
+
+}  // namespace poesy

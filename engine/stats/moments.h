@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+namespace poesy {
+
+/// Count, mean and central moments to fourth order of a stream of numbers, in one pass and mergeable
+/// (Welford; Chan et al. 1983; Pebay 2008, Sandia report SAND2008-6212, Eqs. 1.1-1.7, 2.1-2.4).
+class Moments {
+ public:
+  void add(double value);
+  /// The moments of both streams together. Merging in the same order gives the same bits.
+  void merge(const Moments& other);
+
+  std::uint64_t count() const { return count_; }
+  double mean() const { return mean_; }
+  /// Sample variance, divided by count - 1; NaN below two values.
+  double variance() const;
+  double standard_deviation() const;
+  /// Kurtosis m4 / m2^2 of the sample (3 for a normal); NaN when the variance is zero or undefined.
+  double kurtosis() const;
+
+ private:
+  std::uint64_t count_ = 0;
+  double mean_ = 0.0;
+  double m2_ = 0.0;  ///< sum of (x - mean)^2
+  double m3_ = 0.0;  ///< sum of (x - mean)^3
+  double m4_ = 0.0;  ///< sum of (x - mean)^4
+};
+
+}  // namespace poesy

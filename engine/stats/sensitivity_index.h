@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+
+#include "engine/stats/moments.h"
+
+namespace poesy {
+
+/// A confidence interval; NaN at both ends where there are too few samples.
+struct Interval {
+  double low;
+  double high;
+};
+
+/// An estimate with its interval.
+struct Estimate {
+  double value;
+  Interval interval;
+};
+
+/// Sensitivity index at one pose: sigma(response) / sigma(error) (Du et al. 2022, Eqs. 51-52), the
+/// response's sample standard deviation over the error's standard deviation as set.
+/// Interval: Bonett 2006, Comput. Stat. Data Anal. 50, 775-782, on the logarithm of the variance, with the
+/// plain sample kurtosis. Zero spread gives the interval [0, 0].
+Estimate local_index(const Moments& response, double error_sigma, double conf_level);
+
+/// One pose's contribution to a global index.
+struct LocalIndex {
+  double value;           ///< Eqs. 51-52
+  double standard_error;  ///< of value, from sampling
+};
+
+/// The standard error that belongs to local_index.
+LocalIndex local_index_with_error(const Moments& response, double error_sigma);
+
+/// Global index: mean over the poses plus sample standard deviation over the poses (Du et al. 2022,
+/// Eqs. 53-54); NaN when a pose has no index, the mean alone for a single pose.
+/// The interval is for the value that infinitely many samples would give at the same poses: sampling noise, which
+/// the plain formula takes for spread between poses, is subtracted from the spread; mean and spread are combined by
+/// the method of variance estimates recovery (Zou and Donner 2008, Stat. Med. 27, 1693-1702).
+Estimate global_index(std::span<const LocalIndex> poses, double conf_level);
+
+}  // namespace poesy

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/index.h"
+#include "engine/model/pose_set.h"
+#include "engine/random/distribution.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// The smallest piece of work that is scheduled: consecutive samples of one varied factor at one pose.
+struct WorkUnit {
+  std::size_t slot;  ///< position of the factor among the plan's varied factors
+  PoseIndex pose;
+  SampleIndex first;
+  std::size_t count;
+};
+
+/// A sensitivity study, expanded: an immutable table of work units in the order in which they are merged.
+/// The table depends on the study alone, never on threads or ranks.
+class Plan {
+ public:
+  /// A unit never holds more samples than this, so that memory per unit is bounded.
+  static constexpr std::size_t kUnitSamples = 1000;
+
+  Plan(const Study& study, PoseSet poses);
+
+  std::size_t units() const { return factors_.size() * poses_.size() * units_per_cell_; }
+  /// Unit u: factor by factor, pose by pose, samples in order.
+  WorkUnit unit(std::size_t u) const;
+
+  std::size_t samples() const { return samples_; }
+  std::uint64_t seed() const { return seed_; }
+  const PoseSet& poses() const { return poses_; }
+  std::span<const FactorIndex> factors() const { return factors_; }
+  /// Distribution of each varied factor, [slots].
+  std::span<const Distribution> distributions() const { return distributions_; }
+  /// Constant errors, [F].
+  std::span<const double> background() const { return background_; }
+  const SolverOptions& solver() const { return solver_; }
+  NotConverged not_converged() const { return not_converged_; }
+  std::uint64_t solves() const;
+
+ private:
+  PoseSet poses_;
+  std::vector<FactorIndex> factors_;
+  std::vector<Distribution> distributions_;
+  std::vector<double> background_;
+  std::size_t samples_;
+  std::size_t units_per_cell_;
+  std::uint64_t seed_;
+  SolverOptions solver_;
+  NotConverged not_converged_;
+};
+
+}  // namespace poesy

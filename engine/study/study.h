@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/index.h"
+#include "engine/model/catalog.h"
+#include "engine/model/pose_set.h"
+#include "engine/random/distribution.h"
+
+namespace poesy {
+
+struct Range {
+  double lower;
+  double upper;
+};
+
+/// Which mechanism, with the value of every geometry parameter in the order of its description (SI).
+struct MechanismChoice {
+  const CatalogEntry* entry = nullptr;
+  std::vector<double> geometry;
+  Place place;  ///< of the section, for messages about the geometry as a whole
+};
+
+/// Which poses of the platform.
+struct PoseSelection {
+  enum class Select { interior, file };
+
+  Select select = Select::interior;
+  std::size_t count = 0;
+  std::vector<Range> workspace;  ///< one range per pose coordinate, for `interior`
+  std::string file;              ///< as written in the study, for `file`
+  PoseSet from_file;             ///< its poses
+  Place place;                   ///< of the workspace or the first line of the file's data
+};
+
+/// How each error source is distributed.
+struct ErrorModel {
+  std::vector<Distribution> by_factor;  ///< [F], for all factors of the model
+};
+
+/// Errors held constant while others vary.
+struct Background {
+  std::vector<FactorIndex> factors;
+  double linear = 0.0;   ///< m, for factors that are lengths
+  double angular = 0.0;  ///< rad, for factors that are angles
+};
+
+struct Analysis {
+  enum class Kind { sensitivity, identification, evaluate, monte_carlo };
+
+  Kind kind = Kind::sensitivity;
+  std::vector<FactorIndex> factors;
+  std::size_t samples = 1000;
+  double conf_level = 0.95;
+  std::optional<Background> background;
+};
+
+enum class NotConverged {
+  exclude,  ///< samples that did not reach their fixed point are left out of every statistic
+  include,  ///< the last iterate counts, as in the published procedure
+  fail      ///< excluded, and the run ends with exit code 5 if there is one
+};
+
+/// What a study file says, complete and consistent. See engine/io/study_file.h for reading one.
+struct Study {
+  std::string title;
+  MechanismChoice mechanism;
+  PoseSelection poses;
+  ErrorModel errors;
+  Analysis analysis;
+  SolverOptions solver;
+  NotConverged not_converged = NotConverged::exclude;
+  std::uint64_t seed = 1;
+
+  const ModelDescription& model() const { return mechanism.entry->description; }
+};
+
+/// Names as written in a study file.
+std::string_view name(PoseSelection::Select select);
+std::string_view name(Analysis::Kind kind);
+std::string_view name(NotConverged policy);
+std::string_view name(SolverOptions::Method method);
+
+/// The constant errors of a study, [F]: the background's value where it applies, else zero.
+std::vector<double> background_errors(const Study& study);
+
+/// Builds the study's mechanism. Throws InputError at the mechanism's place when the geometry is impossible.
+std::unique_ptr<Model> build_model(const MechanismChoice& mechanism);
+
+/// The study's poses. Throws InputError at the selection's place for the first pose the model cannot take.
+PoseSet select_poses(const PoseSelection& selection, const Model& model);
+
+}  // namespace poesy
