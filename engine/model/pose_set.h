@@ -14,8 +14,7 @@ namespace poesy {
 class PoseSet {
  public:
   PoseSet() = default;
-  PoseSet(std::size_t coordinates, std::vector<double> values)
-      : coordinates_(coordinates), values_(std::move(values)) {
+  PoseSet(std::size_t coordinates, std::vector<double> values) : coordinates_(coordinates), values_(std::move(values)) {
     POESY_EXPECTS(coordinates_ > 0 && values_.size() % coordinates_ == 0);
   }
 

@@ -31,16 +31,16 @@ struct SensitivityResult {
   std::size_t poses = 0;
   double conf_level = 0.95;
 
-  std::vector<double> local;          ///< [R x P x M] Du et al. 2022, Eqs. 51-52
-  std::vector<double> local_ci_low;   ///< [R x P x M]
-  std::vector<double> local_ci_high;  ///< [R x P x M]
-  std::vector<double> count;          ///< [R x P x M] samples behind local, whole numbers
-  std::vector<double> mean;           ///< [R x P x M]
-  std::vector<double> std;            ///< [R x P x M]
-  std::vector<double> global;         ///< [R x P] Eqs. 53-54
-  std::vector<double> global_ci_low;  ///< [R x P]
-  std::vector<double> global_ci_high; ///< [R x P]
-  std::vector<SolveCounts> solves;    ///< [P x M]
+  std::vector<double> local;           ///< [R x P x M] Du et al. 2022, Eqs. 51-52
+  std::vector<double> local_ci_low;    ///< [R x P x M]
+  std::vector<double> local_ci_high;   ///< [R x P x M]
+  std::vector<double> count;           ///< [R x P x M] samples behind local, whole numbers
+  std::vector<double> mean;            ///< [R x P x M]
+  std::vector<double> std;             ///< [R x P x M]
+  std::vector<double> global;          ///< [R x P] Eqs. 53-54
+  std::vector<double> global_ci_low;   ///< [R x P]
+  std::vector<double> global_ci_high;  ///< [R x P]
+  std::vector<SolveCounts> solves;     ///< [P x M]
 
   SolveCounts total() const;
 };

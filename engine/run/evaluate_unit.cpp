@@ -1,0 +1,49 @@
+#include "engine/run/evaluate_unit.h"
+
+#include <cmath>
+
+#include "engine/random/stream.h"
+
+namespace poesy {
+namespace {
+
+bool counts(SolveStatus status, NotConverged policy) {
+  return solved(status) || (policy == NotConverged::include && usable(status));
+}
+
+}  // namespace
+
+void UnitStats::merge(const UnitStats& other) {
+  if (responses.empty()) responses.resize(other.responses.size());
+  for (std::size_t r = 0; r < responses.size(); ++r) responses[r].merge(other.responses[r]);
+  solves.merge(other.solves);
+}
+
+UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
+    : plan_(&plan),
+      responses_(model.description().responses.size()),
+      evaluator_(model.evaluator(plan.solver())),
+      values_(Plan::kUnitSamples),
+      outcome_(responses_ * Plan::kUnitSamples),
+      status_(Plan::kUnitSamples),
+      iterations_(Plan::kUnitSamples) {}
+
+UnitStats UnitEvaluator::operator()(const WorkUnit& unit) {
+  const std::span values = std::span(values_).first(unit.count);
+  const std::span outcome = std::span(outcome_).first(responses_ * unit.count);
+  const FactorIndex factor = plan_->factors()[unit.slot];
+  fill_uniforms({plan_->seed(), Purpose::error_samples, factor, unit.pose}, unit.first, values);
+  plan_->distributions()[unit.slot].transform(values);
+  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), std::span(&factor, 1), values, unit.count},
+                       {outcome, std::span(status_).first(unit.count), std::span(iterations_).first(unit.count), {}});
+  UnitStats stats;
+  stats.responses.resize(responses_);
+  for (std::size_t b = 0; b < unit.count; ++b) {
+    stats.solves.add(status_[b], iterations_[b]);
+    if (!counts(status_[b], plan_->not_converged())) continue;
+    for (std::size_t r = 0; r < responses_; ++r) stats.responses[r].add(outcome[r * unit.count + b]);
+  }
+  return stats;
+}
+
+}  // namespace poesy

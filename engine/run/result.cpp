@@ -1,0 +1,44 @@
+#include "engine/run/result.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace poesy {
+
+std::uint64_t SolveCounts::total() const {
+  return std::accumulate(by_status.begin(), by_status.end(), std::uint64_t{0});
+}
+
+std::uint64_t SolveCounts::not_converged() const {
+  std::uint64_t count = 0;
+  for (std::size_t s = 0; s < by_status.size(); ++s) {
+    if (!solved(static_cast<SolveStatus>(s))) count += by_status[s];
+  }
+  return count;
+}
+
+void SolveCounts::add(SolveStatus status, std::uint32_t sample_iterations) {
+  ++by_status[static_cast<std::size_t>(status)];
+  iterations += sample_iterations;
+  most_iterations = std::max(most_iterations, sample_iterations);
+}
+
+void SolveCounts::merge(const SolveCounts& other) {
+  for (std::size_t s = 0; s < by_status.size(); ++s) by_status[s] += other.by_status[s];
+  iterations += other.iterations;
+  most_iterations = std::max(most_iterations, other.most_iterations);
+}
+
+SolveCounts SensitivityResult::total() const {
+  SolveCounts sum;
+  for (const SolveCounts& cell : solves) sum.merge(cell);
+  return sum;
+}
+
+SolveCounts EvaluationResult::total() const {
+  SolveCounts sum;
+  for (std::size_t n = 0; n < status.size(); ++n) sum.add(status[n], iterations[n]);
+  return sum;
+}
+
+}  // namespace poesy

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "models/chain/limb.h"
+
+namespace poesy::chain {
+
+/// Which entry of which fixed frame's error a factor is.
+struct ErrorSlot {
+  std::size_t limb;       ///< counts from 0
+  std::size_t frame;      ///< 0 .. joints of the limb
+  std::size_t component;  ///< of [omega; v]: 0-2 angular, 3-5 linear
+};
+
+/// A parallel chain as a model whose responses are its limbs' comprehensive deformations.
+struct DeformationModel {
+  ParallelChain chain;
+  std::vector<ErrorSlot> slots;  ///< [F], one per factor
+  /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
+  std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
+};
+
+/// The responses of every deformation model, in the order in which they are evaluated:
+/// angular_deformation (Du et al. 2022, Eq. 49), linear_deformation (Eq. 50), deformation_max (Eq. 45).
+std::vector<Response> deformation_responses();
+
+/// One detail per pair of limbs, delta_mu_ki = [omega; v] (Eqs. 30, 46), named with limbs counted from 1.
+std::vector<Detail> deformation_details(const ParallelChain& chain);
+
+/// Solves blocks of samples. The model must outlive the evaluator.
+std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options);
+
+}  // namespace poesy::chain

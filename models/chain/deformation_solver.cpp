@@ -1,0 +1,109 @@
+#include "models/chain/deformation_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/contract.h"
+
+namespace poesy::chain {
+namespace {
+
+constexpr int kFlatIterations = 3;
+
+/// The longest a limb is, in m, summed over its fixed frames: the size that rounding errors of positions scale with.
+double reach(const ParallelChain& chain) {
+  double longest = 0.0;
+  for (const Limb& limb : chain.limbs) {
+    double length = 0.0;
+    for (const auto& frame : limb.home) length += frame.p.norm();
+    longest = std::max(longest, length);
+  }
+  return longest;
+}
+
+std::vector<std::size_t> passive_positions(const ParallelChain& chain) {
+  std::vector<std::size_t> positions;
+  std::size_t joint = 0;
+  for (const Limb& limb : chain.limbs) {
+    for (const Joint& each : limb.joints) {
+      if (!each.actuated) positions.push_back(joint);
+      ++joint;
+    }
+  }
+  return positions;
+}
+
+bool all_finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOptions& options)
+    : chain_(&chain),
+      options_(options),
+      rounding_level_(64.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, reach(chain))),
+      passive_(passive_positions(chain)),
+      poses_(chain.limbs.size()),
+      columns_(passive_.size()),
+      previous_(6 * chain.pairs.size()),
+      equations_(chain) {}
+
+Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
+                                     std::span<double> delta_mu) {
+  POESY_EXPECTS(frames.size() == chain_->frames());
+  POESY_EXPECTS(displacements.size() == chain_->joints());
+  POESY_EXPECTS(delta_mu.size() == previous_.size());
+  evaluate(frames, displacements, delta_mu);
+  double smallest = std::numeric_limits<double>::infinity();
+  int flat = 0;
+  for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+    const auto done = static_cast<std::uint32_t>(iteration);
+    if (!all_finite(delta_mu)) return {SolveStatus::non_finite, done - 1};
+    if (!equations_.solve(columns_, delta_mu)) return {SolveStatus::singular, done - 1};
+    for (std::size_t k = 0; k < passive_.size(); ++k) displacements[passive_[k]] += equations_.solution()[k];
+    std::copy(delta_mu.begin(), delta_mu.end(), previous_.begin());
+    evaluate(frames, displacements, delta_mu);
+    const double change = largest_change(delta_mu);
+    if (change < options_.tolerance) return {SolveStatus::converged, done};
+    flat = change < smallest ? 0 : flat + 1;
+    smallest = std::min(smallest, change);
+    if (change <= rounding_level_ && flat >= kFlatIterations) return {SolveStatus::stagnated, done};
+  }
+  const auto cap = static_cast<std::uint32_t>(options_.max_iterations);
+  return {all_finite(delta_mu) ? SolveStatus::iteration_cap : SolveStatus::non_finite, cap};
+}
+
+void DeformationSolver::evaluate(std::span<const lie::Transform<double>> frames, std::span<const double> displacements,
+                                 std::span<double> delta_mu) {
+  std::size_t frame = 0;
+  std::size_t joint = 0;
+  std::size_t column = 0;
+  for (std::size_t i = 0; i < chain_->limbs.size(); ++i) {
+    const Limb& limb = chain_->limbs[i];
+    const std::size_t joints = limb.joints.size();
+    poses_[i] = forward_kinematics<double>(
+        limb, frames.subspan(frame, joints + 1), displacements.subspan(joint, joints),
+        [&](std::size_t k, const lie::Screw<double>& screw) { columns_[column + k] = screw; });
+    frame += joints + 1;
+    joint += joints;
+    column += limb.passive_joints();
+  }
+  for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
+    const LimbPair& pair = chain_->pairs[n];
+    Eigen::Map<lie::Screw<double>>(delta_mu.data() + 6 * n) = lie::log(poses_[pair.k] * poses_[pair.i].inverse());
+  }
+}
+
+double DeformationSolver::largest_change(std::span<const double> delta_mu) const {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < delta_mu.size(); ++k) {
+    const double change = std::abs(delta_mu[k] - previous_[k]);
+    // Written so that NaN, which compares false with everything, is kept.
+    if (!(change <= largest)) largest = change;
+  }
+  return largest;
+}
+
+}  // namespace poesy::chain

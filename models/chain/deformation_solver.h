@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "models/chain/limb.h"
+#include "models/chain/normal_equations.h"
+
+namespace poesy::chain {
+
+/// How a deformation solve ended.
+struct Deformation {
+  SolveStatus status;
+  std::uint32_t iterations;
+};
+
+/// Scheme I of Du et al. 2022 (Eqs. 40-44): moves the passive joints so that the poses of the limbs agree as well as
+/// they can, by Gauss-Newton on J(q)^T delta_mu(q) = 0. What disagreement is left is the limbs' deformation.
+///
+/// Stopping rule. With c_j the largest component of |delta_mu^j - delta_mu^(j-1)|, iteration j ends the solve as
+///   converged      when c_j is below the tolerance;
+///   stagnated      when c_j is at rounding level, 64 eps x max(1, reach in m), and three iterations in a row did not
+///                  lower the smallest c so far: the iterate then moves by rounding only;
+///   iteration_cap  when j is the allowed number of iterations;
+///   singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
+///   non_finite     when delta_mu^j is not finite.
+///
+/// Plain double arithmetic: the reference for every faster solver. Owns the scratch of one thread.
+class DeformationSolver {
+ public:
+  /// The chain must outlive the solver.
+  DeformationSolver(const ParallelChain& chain, const SolverOptions& options);
+
+  /// frames [chain.frames()]: fixed frames with errors, limb by limb. displacements [chain.joints()] (rad, m): the
+  /// start on entry, the last iterate on return; actuated entries stay. delta_mu [6 x pairs]: the residual at the last
+  /// iterate, [omega; v] in the base frame (rad, m), Eq. 41.
+  Deformation solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
+                    std::span<double> delta_mu);
+
+ private:
+  void evaluate(std::span<const lie::Transform<double>> frames, std::span<const double> displacements,
+                std::span<double> delta_mu);
+  double largest_change(std::span<const double> delta_mu) const;
+
+  const ParallelChain* chain_;
+  SolverOptions options_;
+  double rounding_level_;
+  std::vector<std::size_t> passive_;  ///< position of each passive joint among all joints
+  std::vector<lie::Transform<double>> poses_;
+  std::vector<lie::Screw<double>> columns_;  ///< spatial Jacobian column of each passive joint
+  std::vector<double> previous_;
+  NormalEquations equations_;
+};
+
+}  // namespace poesy::chain

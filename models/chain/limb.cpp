@@ -1,0 +1,34 @@
+#include "models/chain/limb.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace poesy::chain {
+namespace {
+
+template <class Count>
+std::size_t sum_over(const std::vector<Limb>& limbs, Count count) {
+  return std::accumulate(limbs.begin(), limbs.end(), std::size_t{0},
+                         [&](std::size_t sum, const Limb& limb) { return sum + count(limb); });
+}
+
+}  // namespace
+
+std::size_t Limb::passive_joints() const {
+  return static_cast<std::size_t>(
+      std::count_if(joints.begin(), joints.end(), [](const Joint& joint) { return !joint.actuated; }));
+}
+
+std::size_t ParallelChain::joints() const {
+  return sum_over(limbs, [](const Limb& limb) { return limb.joints.size(); });
+}
+
+std::size_t ParallelChain::passive_joints() const {
+  return sum_over(limbs, [](const Limb& limb) { return limb.passive_joints(); });
+}
+
+std::size_t ParallelChain::frames() const {
+  return sum_over(limbs, [](const Limb& limb) { return limb.frames(); });
+}
+
+}  // namespace poesy::chain

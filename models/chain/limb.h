@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "models/lie/se3.h"
+
+namespace poesy::chain {
+
+enum class JointType {
+  revolute,  ///< turns about the local z axis
+  prismatic  ///< slides along the local z axis
+};
+
+struct Joint {
+  JointType type;
+  bool actuated;
+};
+
+/// A serial limb in local product-of-exponentials form (Du et al. 2022, Eq. 13): n joints between n + 1 fixed
+/// frames. home[0] is the first joint's frame seen from the base, home[n] the platform seen from the last joint's
+/// frame, home[j] the frame of joint j + 1 seen from the frame of joint j, all at zero displacement.
+struct Limb {
+  std::vector<Joint> joints;
+  std::vector<lie::Transform<double>> home;  ///< [n + 1]
+
+  std::size_t frames() const { return home.size(); }
+  std::size_t passive_joints() const;
+};
+
+/// Two limbs whose platform poses are compared: residual log(g_k g_i^-1) (Eq. 30). Positions count from 0.
+struct LimbPair {
+  std::size_t k;
+  std::size_t i;
+};
+
+/// Limbs that hold one platform, and the pairs in which their poses are compared.
+struct ParallelChain {
+  std::vector<Limb> limbs;
+  std::vector<LimbPair> pairs;
+
+  std::size_t joints() const;
+  std::size_t passive_joints() const;
+  std::size_t frames() const;
+};
+
+/// Error of one fixed frame: [omega; v] with omega the angular and v the linear errors (Eqs. 24-25).
+template <class T>
+using FrameError = lie::Screw<T>;
+
+/// Delta g of Eq. 26: rotation exp(omega) and translation v as they stand, which is not the exponential of a screw.
+template <class T>
+lie::Transform<T> error_transform(const FrameError<T>& error) {
+  const lie::Vector3<T> omega = error.template head<3>();
+  return {lie::exp(omega), error.template tail<3>()};
+}
+
+/// Fixed frame j of the limb with its error, g_ij^ge of Eqs. 27-28: the error multiplies from the left, but for the
+/// last frame, where its inverse multiplies from the right.
+template <class T>
+lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameError<T>& error) {
+  const lie::Transform<T> home{limb.home[j].R.template cast<T>(), limb.home[j].p.template cast<T>()};
+  const lie::Transform<T> delta = error_transform(error);
+  return j + 1 == limb.frames() ? home * delta.inverse() : delta * home;
+}
+
+/// g * exp(zeta q) for a joint about or along z (Eq. 14): touches two columns of R, or p.
+template <class T>
+void move_joint(JointType type, T displacement, lie::Transform<T>& g) {
+  using std::cos;
+  using std::sin;
+  if (type == JointType::prismatic) {
+    g.p += displacement * g.R.col(2);
+    return;
+  }
+  const T c = cos(displacement);
+  const T s = sin(displacement);
+  const lie::Vector3<T> x = g.R.col(0);
+  g.R.col(0) = c * x + s * g.R.col(1);
+  g.R.col(1) = c * g.R.col(1) - s * x;
+}
+
+/// The joint's screw in the base frame when g is its own frame: Ad(g) zeta (Eqs. 35-39), a column of the spatial
+/// Jacobian.
+template <class T>
+lie::Screw<T> spatial_column(JointType type, const lie::Transform<T>& g) {
+  const lie::Vector3<T> axis = g.R.col(2);
+  lie::Screw<T> column;
+  if (type == JointType::prismatic) {
+    column << lie::Vector3<T>::Zero(), axis;
+  } else {
+    column << axis, g.p.cross(axis);
+  }
+  return column;
+}
+
+/// Platform pose by the limb (Eq. 28). frames: [n + 1], with or without errors; displacements: [n] (rad, m).
+/// on_passive(k, column) receives the spatial Jacobian column of the limb's k-th passive joint.
+template <class T, class OnPassive>
+lie::Transform<T> forward_kinematics(const Limb& limb, std::span<const lie::Transform<T>> frames,
+                                     std::span<const T> displacements, OnPassive&& on_passive) {
+  lie::Transform<T> g = frames[0];
+  std::size_t passive = 0;
+  for (std::size_t j = 0; j < limb.joints.size(); ++j) {
+    const Joint& joint = limb.joints[j];
+    if (!joint.actuated) on_passive(passive++, spatial_column(joint.type, g));
+    move_joint(joint.type, displacements[j], g);
+    g = g * frames[j + 1];
+  }
+  return g;
+}
+
+}  // namespace poesy::chain

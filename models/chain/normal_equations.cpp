@@ -1,0 +1,82 @@
+#include "models/chain/normal_equations.h"
+
+#include <limits>
+
+namespace poesy::chain {
+
+NormalEquations::NormalEquations(const ParallelChain& chain)
+    : pairs_(chain.pairs), limbs_(chain.limbs.size()), size_(chain.passive_joints()) {
+  coupling_.assign(limbs_ * limbs_, 0.0);
+  for (const LimbPair& pair : pairs_) {
+    coupling_[pair.i * limbs_ + pair.i] += 1.0;
+    coupling_[pair.k * limbs_ + pair.k] += 1.0;
+    coupling_[pair.i * limbs_ + pair.k] -= 1.0;
+    coupling_[pair.k * limbs_ + pair.i] -= 1.0;
+  }
+  for (std::size_t limb = 0; limb < limbs_; ++limb) {
+    limb_of_.insert(limb_of_.end(), chain.limbs[limb].passive_joints(), limb);
+  }
+  matrix_.assign(size_ * size_, 0.0);
+  pull_.resize(limbs_);
+  solution_.assign(size_, 0.0);
+}
+
+bool NormalEquations::solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu) {
+  assemble(columns, delta_mu);
+  if (!factor()) return false;
+  substitute();
+  return true;
+}
+
+void NormalEquations::assemble(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu) {
+  for (auto& pull : pull_) pull.setZero();
+  for (std::size_t n = 0; n < pairs_.size(); ++n) {
+    const Eigen::Map<const lie::Screw<double>> residual(delta_mu.data() + 6 * n);
+    pull_[pairs_[n].i] += residual;
+    pull_[pairs_[n].k] -= residual;
+  }
+  for (std::size_t row = 0; row < size_; ++row) {
+    const lie::Screw<double>& a = columns[row];
+    const double* coupling = coupling_.data() + limb_of_[row] * limbs_;
+    solution_[row] = a.dot(pull_[limb_of_[row]]);
+    for (std::size_t column = 0; column <= row; ++column) {
+      matrix_[row * size_ + column] = coupling[limb_of_[column]] * a.dot(columns[column]);
+    }
+  }
+}
+
+// L D L^T without pivoting, row by row: the matrix is positive semidefinite by construction.
+bool NormalEquations::factor() {
+  const double smallest_ratio = 4.0 * static_cast<double>(size_) * std::numeric_limits<double>::epsilon();
+  for (std::size_t row = 0; row < size_; ++row) {
+    double* a = matrix_.data() + row * size_;
+    for (std::size_t column = 0; column < row; ++column) {
+      const double* b = matrix_.data() + column * size_;
+      double sum = a[column];
+      for (std::size_t k = 0; k < column; ++k) sum -= a[k] * b[k];
+      a[column] = sum;  // L D so far; divided by D below
+    }
+    const double diagonal = a[row];
+    double pivot = diagonal;
+    for (std::size_t k = 0; k < row; ++k) {
+      const double scaled = a[k] * matrix_[k * size_ + k];
+      pivot -= a[k] * scaled;
+      a[k] = scaled;
+    }
+    if (!(pivot > smallest_ratio * diagonal)) return false;
+    a[row] = 1.0 / pivot;
+  }
+  return true;
+}
+
+void NormalEquations::substitute() {
+  for (std::size_t row = 0; row < size_; ++row) {
+    for (std::size_t k = 0; k < row; ++k) solution_[row] -= matrix_[row * size_ + k] * solution_[k];
+  }
+  for (std::size_t row = size_; row-- > 0;) {
+    solution_[row] *= matrix_[row * size_ + row];
+    for (std::size_t k = row + 1; k < size_; ++k) solution_[row] -= matrix_[k * size_ + row] * solution_[k];
+  }
+}
+
+}  // namespace poesy::chain

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "models/chain/limb.h"
+
+namespace poesy::chain {
+
+/// The normal equations J^T J x = J^T delta_mu of Eq. 44, built from the limbs' own columns: J of Eq. 43 holds each of
+/// them twice with opposite signs and is never formed.
+class NormalEquations {
+ public:
+  explicit NormalEquations(const ParallelChain& chain);
+
+  /// Solves for the motion deviations of the passive joints. columns: [passive joints]; delta_mu: [6 x pairs].
+  /// Returns false when a pivot falls to rounding relative to its diagonal entry; the solution is then undefined.
+  bool solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu);
+
+  /// [passive joints], Eq. 42.
+  std::span<const double> solution() const { return solution_; }
+
+ private:
+  void assemble(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu);
+  bool factor();
+  void substitute();
+
+  std::vector<LimbPair> pairs_;
+  std::vector<std::size_t> limb_of_;  ///< limb of each passive joint
+  std::vector<double> coupling_;      ///< [limbs x limbs]: how often, and with which sign, two limbs meet in a pair
+  std::size_t limbs_;
+  std::size_t size_;
+  std::vector<double> matrix_;  ///< [size x size], lower triangle; after factor(): L below, 1 / D on the diagonal
+  std::vector<lie::Screw<double>> pull_;  ///< per limb, the signed sum of the residuals it takes part in
+  std::vector<double> solution_;
+};
+
+}  // namespace poesy::chain

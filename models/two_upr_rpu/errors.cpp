@@ -1,0 +1,93 @@
+#include "models/two_upr_rpu/errors.h"
+
+#include <array>
+#include <string_view>
+
+namespace poesy::two_upr_rpu {
+namespace {
+
+/// One row per frame j = 0..4, one column per error: delta x, y, z, epsilon x, y, z.
+/// '.' no geometric error; 'o' a geometric error; 'x' one that causes internal forces and deformations (Table 7).
+using Table = std::array<std::string_view, 5>;
+constexpr Table kUprLimb{"oxx.xx",   //
+                         "oxox.x",   //
+                         ".oxxxo",   //
+                         "xo..xx",   //
+                         "oxox.x"};  //
+constexpr Table kRpuLimb{"ooo.xx",   //
+                         ".ooxxo",   //
+                         "oo..xx",   //
+                         "ooox..",   //
+                         "ooox.x"};  //
+constexpr std::array<Table, 3> kLimbs{kUprLimb, kUprLimb, kRpuLimb};
+
+struct Entry {
+  std::size_t limb;
+  std::size_t frame;
+  std::size_t column;
+  bool deforming;
+};
+
+std::vector<Entry> entries() {
+  std::vector<Entry> list;
+  for (std::size_t limb = 0; limb < kLimbs.size(); ++limb) {
+    for (std::size_t frame = 0; frame < kLimbs[limb].size(); ++frame) {
+      for (std::size_t column = 0; column < 6; ++column) {
+        const char mark = kLimbs[limb][frame][column];
+        if (mark != '.') list.push_back({limb, frame, column, mark == 'x'});
+      }
+    }
+  }
+  return list;
+}
+
+bool is_linear(const Entry& entry) { return entry.column < 3; }
+
+Factor factor(const Entry& entry) {
+  const char axis = "xyz"[entry.column % 3];
+  const std::string limb = std::to_string(entry.limb + 1);
+  const std::string frame = std::to_string(entry.frame);
+  const std::string kind = is_linear(entry) ? "delta" : "epsilon";
+  const std::string motion = is_linear(entry) ? "linear error along " : "angular error about ";
+  const std::string where = entry.frame == 0   ? "the base and frame 1"
+                            : entry.frame == 4 ? "frame 4 and the platform"
+                                               : "frames " + frame + " and " + std::to_string(entry.frame + 1);
+  return {kind + "_" + limb + "_" + frame + "_" + axis, is_linear(entry) ? Dimension::length : Dimension::angle,
+          entry.limb + 1, motion + axis + " between " + where + " of limb " + limb};
+}
+
+template <class Belongs>
+FactorSet subset(const char* name, const char* description, Belongs belongs) {
+  FactorSet set{name, description, {}};
+  const std::vector<Entry> list = entries();
+  for (std::size_t f = 0; f < list.size(); ++f) {
+    if (belongs(list[f])) set.factors.emplace_back(f);
+  }
+  return set;
+}
+
+}  // namespace
+
+std::vector<Factor> factors() {
+  std::vector<Factor> list;
+  for (const Entry& entry : entries()) list.push_back(factor(entry));
+  return list;
+}
+
+std::vector<chain::ErrorSlot> error_slots() {
+  std::vector<chain::ErrorSlot> slots;
+  for (const Entry& entry : entries()) slots.push_back({entry.limb, entry.frame, (entry.column + 3) % 6});
+  return slots;
+}
+
+std::vector<FactorSet> factor_sets() {
+  return {
+      subset("all", "all geometric errors", [](const Entry&) { return true; }),
+      subset("deforming", "errors of limbs 1 and 3 that cause internal forces and deformations",
+             [](const Entry& entry) { return entry.deforming && entry.limb != 1; }),
+      subset("deforming-all", "errors of all limbs that cause internal forces and deformations",
+             [](const Entry& entry) { return entry.deforming; }),
+      subset("benign", "errors that the passive joints absorb", [](const Entry& entry) { return !entry.deforming; })};
+}
+
+}  // namespace poesy::two_upr_rpu

@@ -1,0 +1,133 @@
+#include "models/two_upr_rpu/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "engine/base/contract.h"
+#include "models/chain/deformation_model.h"
+#include "models/two_upr_rpu/errors.h"
+#include "models/two_upr_rpu/kinematics.h"
+
+namespace poesy::two_upr_rpu {
+namespace {
+
+/// How far a limb's platform pose may be from the wanted one, in m and rad, before its loop counts as open.
+constexpr double kClosure = 1e-9;
+
+ModelDescription describe() {
+  const Geometry published;
+  ModelDescription description;
+  description.name = "2upr-rpu";
+  description.title = "2UPR-RPU over-constrained manipulator (Du, Wang, Zheng 2022, Machines 10, 990)";
+  description.geometry = {
+      {"l_A", Dimension::length, published.l_A, "half of A1 A2 and distance from o_A to A3 on the platform"},
+      {"l_B", Dimension::length, published.l_B, "half of B1 B2 and distance from o_B to B3 on the base"},
+      {"c", Dimension::length, published.c, "offset of frame 4 of limb 3 along the platform's v axis"},
+      {"d", Dimension::length, published.d, "offset of frame 1 of limbs 1 and 2 outwards along x"},
+      {"z_0", Dimension::length, published.z_0, "z of the platform at the home configuration, below the base"}};
+  description.pose_coordinates = {{"z", Dimension::length, "z of the platform's origin o_A in the base frame"},
+                                  {"beta", Dimension::angle, "rotation of the platform about the base's x axis"},
+                                  {"gamma", Dimension::angle, "rotation of the platform about its own v axis"}};
+  description.factors = factors();
+  description.factor_sets = factor_sets();
+  description.responses = chain::deformation_responses();
+  description.details = chain::deformation_details(parallel_chain(published));
+  for (int limb = 1; limb <= 3; ++limb) {
+    for (int joint = 1; joint <= 4; ++joint) {
+      description.joints.push_back("q_" + std::to_string(limb) + "_" + std::to_string(joint));
+    }
+  }
+  description.pose_lower = {-0.30, -0.5, -0.6};
+  description.pose_upper = {-0.18, 0.5, 0.6};
+  description.workspace_note =
+      "The paper draws its workspace but prints no limits. This box is inferred: it reproduces the published angular "
+      "figures of Tables 9 and 11 within 2 %.";
+  return description;
+}
+
+Pose pose_from(std::span<const double> pose) {
+  POESY_EXPECTS(pose.size() == 3);
+  return {pose[0], pose[1], pose[2]};
+}
+
+/// Distance between two poses: the larger of the translation (m) and the rotation angle (rad).
+double distance(const lie::Transform<double>& a, const lie::Transform<double>& b) {
+  const lie::Screw<double> screw = lie::log(a * b.inverse());
+  return std::max(screw.head<3>().norm(), screw.tail<3>().norm());
+}
+
+class TwoUprRpu final : public Model {
+ public:
+  explicit TwoUprRpu(const Geometry& geometry)
+      : geometry_(geometry),
+        description_(describe()),
+        deformation_{parallel_chain(geometry), error_slots(), [geometry](std::span<const double> pose) {
+                       const auto q = two_upr_rpu::joint_displacements(geometry, pose_from(pose));
+                       return std::vector<double>(q.begin(), q.end());
+                     }} {
+    if (auto problem = open_loop({geometry.z_0, 0.0, 0.0})) {
+      throw std::invalid_argument("the home configuration does not assemble: " + *problem);
+    }
+  }
+
+  const ModelDescription& description() const override { return description_; }
+
+  std::optional<std::string> unreachable(std::span<const double> pose) const override {
+    const Pose wanted = pose_from(pose);
+    if (!(std::abs(wanted.beta) < std::numbers::pi / 2.0)) return "beta must lie between -90 and 90 deg";
+    if (!(std::abs(wanted.gamma) < std::numbers::pi)) return "gamma must lie between -180 and 180 deg";
+    if (!(wanted.z < 0.0)) return "z must be negative: the platform hangs below the base";
+    return open_loop(wanted);
+  }
+
+  std::vector<double> joint_displacements(std::span<const double> pose) const override {
+    return deformation_.joint_displacements(pose);
+  }
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
+    return chain::deformation_evaluator(deformation_, options);
+  }
+
+ private:
+  /// The closed-form angles lie between 0 and pi; where a joint would have to pass these limits the limbs do not meet.
+  std::optional<std::string> open_loop(const Pose& pose) const {
+    const auto q = two_upr_rpu::joint_displacements(geometry_, pose);
+    const lie::Transform<double> wanted = base_T_platform(pose);
+    for (std::size_t i = 0; i < deformation_.chain.limbs.size(); ++i) {
+      const chain::Limb& limb = deformation_.chain.limbs[i];
+      const auto reached = chain::forward_kinematics<double>(limb, limb.home, std::span(q).subspan(4 * i, 4),
+                                                             [](std::size_t, const lie::Screw<double>&) {});
+      if (!(distance(reached, wanted) < kClosure)) {
+        return "limb " + std::to_string(i + 1) + " cannot reach the platform there";
+      }
+    }
+    return std::nullopt;
+  }
+
+  Geometry geometry_;
+  ModelDescription description_;
+  chain::DeformationModel deformation_;
+};
+
+void require(bool holds, const char* rule) {
+  if (!holds) throw std::invalid_argument(rule);
+}
+
+std::unique_ptr<Model> build(std::span<const double> values) {
+  POESY_EXPECTS(values.size() == 5);
+  const Geometry geometry{values[0], values[1], values[2], values[3], values[4]};
+  require(geometry.l_A > 0.0, "l_A must be positive");
+  require(geometry.l_B > 0.0, "l_B must be positive");
+  require(geometry.c >= 0.0, "c must not be negative");
+  require(geometry.d >= 0.0, "d must not be negative");
+  require(geometry.z_0 < 0.0, "z_0 must be negative: the platform hangs below the base");
+  return std::make_unique<TwoUprRpu>(geometry);
+}
+
+}  // namespace
+
+CatalogEntry catalog_entry() { return {describe(), build}; }
+
+}  // namespace poesy::two_upr_rpu
