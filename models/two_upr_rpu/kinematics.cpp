@@ -9,49 +9,41 @@ namespace {
 using lie::Axis;
 using Vector3 = lie::Vector3<double>;
 
-double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+constexpr double kQuarter = std::numbers::pi / 2.0;
 
-/// Leg vectors B_i A_i (Eq. 2), A_1 A_2 and the platform's v axis, in the base frame.
-struct Vectors {
-  std::array<Vector3, 3> leg;
-  Vector3 a1_a2;
-  Vector3 v;
-};
-
-Vectors vectors(const Geometry& g, const Pose& pose) {
-  const lie::Transform<double> platform = base_T_platform(pose);
-  const Vector3 u = platform.R.col(0);
-  const Vector3 v = platform.R.col(1);
-  return {{platform.p + g.l_A * u - Vector3(g.l_B, 0.0, 0.0), platform.p - g.l_A * u + Vector3(g.l_B, 0.0, 0.0),
-           platform.p + g.l_A * v - Vector3(0.0, g.l_B, 0.0)},
-          -2.0 * g.l_A * u,
-          v};
+/// Angle from a to b about the normal, in [-pi/2, 3 pi/2): the arccos of the paper between 0 and pi, and its
+/// continuation where a leg swings past the line of the platform.
+double angle(const Vector3& a, const Vector3& b, const Vector3& normal) {
+  const double turn = std::atan2(normal.dot(a.cross(b)), a.dot(b));
+  return turn < -kQuarter ? turn + 4.0 * kQuarter : turn;
 }
 
 /// The joint variables as absolute angles and lengths; displacements are their differences from home.
-std::array<double, 12> joint_variables(const Geometry& geometry, const Pose& pose) {
-  const Vectors w = vectors(geometry, pose);
-  const Vector3 x = Vector3::UnitX();
-  const Vector3 y = Vector3::UnitY();
-  return {pose.beta,                           // Eq. 3
-          angle_between(x, w.leg[0]),          // Eq. 4
-          w.leg[0].norm(),                     // Eq. 1
-          -angle_between(-w.a1_a2, w.leg[0]),  // Eq. 5
-          pose.beta,                           // Eq. 6
-          angle_between(x, w.leg[1]),          // Eq. 7
-          w.leg[1].norm(),                     // Eq. 1
-          angle_between(w.a1_a2, w.leg[1]),    // Eq. 8
-          angle_between(-y, w.leg[2]),         // Eq. 9
-          w.leg[2].norm(),                     // Eq. 1
-          angle_between(w.v, w.leg[2]),        // Eq. 10
-          pose.gamma};                         // Eq. 11
+std::array<double, 12> joint_variables(const Geometry& g, const Pose& pose) {
+  const lie::Transform<double> platform = base_T_platform(pose);
+  const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY();
+  const Vector3 u = platform.R.col(0), v = platform.R.col(1);
+  // B_i A_i, Eq. 2.
+  const Vector3 leg1 = platform.p + g.l_A * u - g.l_B * x;
+  const Vector3 leg2 = platform.p - g.l_A * u + g.l_B * x;
+  const Vector3 leg3 = platform.p + g.l_A * v - g.l_B * y;
+  return {pose.beta,            // Eq. 3
+          angle(x, leg1, v),    // Eq. 4
+          leg1.norm(),          // Eq. 1
+          -angle(u, leg1, v),   // Eq. 5
+          pose.beta,            // Eq. 6
+          angle(x, leg2, v),    // Eq. 7
+          leg2.norm(),          // Eq. 1
+          angle(-u, leg2, -v),  // Eq. 8
+          angle(-y, leg3, x),   // Eq. 9
+          leg3.norm(),          // Eq. 1
+          angle(v, leg3, -x),   // Eq. 10
+          pose.gamma};          // Eq. 11
 }
 
 std::array<double, 12> home_variables(const Geometry& geometry) {
   return joint_variables(geometry, {geometry.z_0, 0.0, 0.0});
 }
-
-constexpr double kQuarter = std::numbers::pi / 2.0;
 
 lie::Transform<double> rot(Axis axis, double angle) { return lie::rotation<double>(axis, angle); }
 lie::Transform<double> trans(Axis axis, double distance) { return lie::translation<double>(axis, distance); }

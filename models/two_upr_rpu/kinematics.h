@@ -26,8 +26,8 @@ struct Pose {
 lie::Transform<double> base_T_platform(const Pose& pose);
 
 /// Displacements q_i,j of the four joints of the three limbs from the home configuration (Eqs. 1-11), limb by limb.
-/// The angles between vectors are taken by atan2 of cross and dot product: equal to the printed arccos, without its
-/// loss of digits near 0 and pi.
+/// Angles are taken by atan2 about the joint's axis: equal to the printed arccos where that holds, without its loss of
+/// digits near 0 and pi, and continued past pi, where a leg swings past the line of the platform.
 std::array<double, 12> joint_displacements(const Geometry& geometry, const Pose& pose);
 
 /// The mechanism as limbs in local product-of-exponentials form (Eqs. 13-23): RRPR, RRPR, RPRR, P actuated, and

@@ -77,7 +77,7 @@ class TwoUprRpu final : public Model {
   std::optional<std::string> unreachable(std::span<const double> pose) const override {
     const Pose wanted = pose_from(pose);
     if (!(std::abs(wanted.beta) < std::numbers::pi / 2.0)) return "beta must lie between -90 and 90 deg";
-    if (!(std::abs(wanted.gamma) < std::numbers::pi)) return "gamma must lie between -180 and 180 deg";
+    if (!(std::abs(wanted.gamma) < std::numbers::pi / 2.0)) return "gamma must lie between -90 and 90 deg";
     if (!(wanted.z < 0.0)) return "z must be negative: the platform hangs below the base";
     return open_loop(wanted);
   }
@@ -91,7 +91,7 @@ class TwoUprRpu final : public Model {
   }
 
  private:
-  /// The closed-form angles lie between 0 and pi; where a joint would have to pass these limits the limbs do not meet.
+  /// Where a leg has no length, or a coordinate is so large that digits are lost, the limbs do not meet.
   std::optional<std::string> open_loop(const Pose& pose) const {
     const auto q = two_upr_rpu::joint_displacements(geometry_, pose);
     const lie::Transform<double> wanted = base_T_platform(pose);

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "engine/app/command.h"
+#include "engine/app/exit_code.h"
+#include "engine/app/facts.h"
+#include "engine/app/interrupt.h"
+#include "engine/app/progress.h"
+#include "engine/base/error.h"
+#include "engine/io/result_file.h"
+#include "engine/io/study_file.h"
+#include "engine/io/table_file.h"
+#include "engine/report/tables.h"
+#include "engine/run/runner.h"
+#include "models/registry.h"
+
+namespace poesy::app {
+namespace {
+
+struct Options {
+  std::string study;
+  std::string poses;
+  std::string errors;
+  std::string result;
+  std::size_t threads = 0;
+  bool paired = false;
+  bool quiet = false;
+};
+
+PoseSet read_reachable_poses(const std::string& path, const Model& model) {
+  PoseSelection selection;
+  selection.select = PoseSelection::Select::file;
+  selection.file = path;
+  selection.from_file = read_poses(path, model.description());
+  selection.place = {path, 2, 0};
+  return select_poses(selection, model);
+}
+
+int evaluate(const Options& options) {
+  const Study study = read_study(options.study, registry(), StudyUse::evaluate);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  const PoseSet poses = read_reachable_poses(options.poses, *model);
+  const ErrorTable errors = read_errors(options.errors, model->description());
+  if (options.paired && poses.size() != errors.rows) {
+    throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.size()),
+                     "--paired needs one row of errors for each pose");
+  }
+  if (!options.result.empty()) check_result_path(options.result);
+  const Pairing pairing = options.paired ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t threads = resolved_threads(options.threads);
+  std::optional<EvaluationResult> result;
+  {
+    ProgressPrinter printer(options.quiet);
+    result = run_evaluation(*model, study.solver, poses, errors, pairing,
+                            {threads, [&](const Progress& progress) { printer(progress); }, &catch_interrupts()});
+  }
+  if (!result) {
+    std::fputs("poesy: interrupted; nothing was written\n", stderr);
+    return kInterrupted;
+  }
+  const SolveCounts total = result->total();
+  StoredResult shown;
+  for (const Response& response : model->description().responses) {
+    shown.responses.push_back({response.name, std::string(si_unit(response.dimension))});
+  }
+  if (!options.result.empty()) {
+    write_evaluation(options.result, study, poses, errors, pairing, *result, run_facts(start, threads, total.total()));
+  }
+  shown.evaluation = std::move(*result);
+  std::fputs(
+      fmt::format("{} solves, {} not converged\n{}", total.total(), total.not_converged(), evaluation_table(shown))
+          .c_str(),
+      stdout);
+  if (study.not_converged != NotConverged::fail || total.not_converged() == 0) return kDone;
+  std::fputs("poesy: samples did not converge and the study allows none; see /evaluate/status in the result\n", stderr);
+  return kTooManyNotConverged;
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("evaluate", "solve errors that somebody else sampled");
+  command->add_option("study", options->study, "study file; its [mechanism] and [solver] are used")
+      ->required()
+      ->type_name("STUDY.toml");
+  command->add_option("--poses", options->poses, "poses, SI; the first line names the pose coordinates")
+      ->required()
+      ->type_name("P.csv");
+  command->add_option("--errors", options->errors, "errors, SI; the first line names the factors, a row is a sample")
+      ->required()
+      ->type_name("E.csv");
+  command->add_flag("--paired", options->paired, "row by row, instead of every pose with every row");
+  command->add_option("-o,--output", options->result, "result file; default: only the summary")->type_name("RESULT.h5");
+  command->add_option("--threads", options->threads, "number of threads; default: one per processor")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1024}))
+      ->type_name("N");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  command->footer("Example: poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o result.h5");
+  command->callback([options, &action] { action = [options] { return evaluate(*options); }; });
+}
+
+}  // namespace poesy::app

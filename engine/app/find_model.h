@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "engine/model/catalog.h"
+
+namespace poesy::app {
+
+/// The mechanism of that name. Throws InputError that lists the known ones.
+const CatalogEntry& find_model(const std::string& name);
+
+}  // namespace poesy::app

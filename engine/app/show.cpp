@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/app/command.h"
+#include "engine/app/exit_code.h"
+#include "engine/base/error.h"
+#include "engine/io/result_file.h"
+#include "engine/report/tables.h"
+
+namespace poesy::app {
+namespace {
+
+struct Options {
+  std::string result;
+  std::string response;
+};
+
+std::string response_of(const Options& options, const StoredResult& result) {
+  if (options.response.empty()) return default_ranking(result);
+  std::string known;
+  for (const NamedUnit& response : result.responses) {
+    if (response.name == options.response) return response.name;
+    known += (known.empty() ? "" : ", ") + response.name;
+  }
+  throw InputError({options.result}, fmt::format("--response: no response '{}' in this result", options.response),
+                   "it has " + known);
+}
+
+int show(const Options& options) {
+  const StoredResult result = read_result(options.result);
+  const std::string response = response_of(options, result);
+  std::fputs(summary_text(result).c_str(), stdout);
+  std::fputs("\n", stdout);
+  std::fputs((result.kind == "sensitivity" ? ranked_table(result, response) : evaluation_table(result)).c_str(),
+             stdout);
+  return kDone;
+}
+
+}  // namespace
+
+void add_show(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("show", "print a result as tables");
+  command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
+  command->add_option("--response", options->response, "response to rank by; default: the first that is a length")
+      ->type_name("NAME");
+  command->footer("Example: poesy show result.h5 --response angular_deformation");
+  command->callback([options, &action] { action = [options] { return show(*options); }; });
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,32 @@
+#include <cstdio>
+
+#include "engine/app/command.h"
+#include "engine/app/exit_code.h"
+#include "engine/app/find_model.h"
+#include "engine/base/error.h"
+#include "engine/io/study_file.h"
+
+namespace poesy::app {
+namespace {
+
+int print_template(const std::string& model, const std::string& kind) {
+  if (kind != name(Analysis::Kind::sensitivity)) {
+    throw InputError({}, "no template of kind '" + kind + "'", "this version has: sensitivity");
+  }
+  std::fputs(template_text(find_model(model)).c_str(), stdout);
+  return kDone;
+}
+
+}  // namespace
+
+void add_template(CLI::App& program, Action& action) {
+  auto model = std::make_shared<std::string>();
+  auto kind = std::make_shared<std::string>("sensitivity");
+  CLI::App* command = program.add_subcommand("template", "print a complete, commented study file");
+  command->add_option("model", *model, "mechanism")->required()->type_name("MODEL");
+  command->add_option("kind", *kind, "kind of study; default: sensitivity")->type_name("KIND");
+  command->footer("Example: poesy template 2upr-rpu > study.toml");
+  command->callback([model, kind, &action] { action = [model, kind] { return print_template(*model, *kind); }; });
+}
+
+}  // namespace poesy::app

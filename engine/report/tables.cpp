@@ -1,0 +1,199 @@
+#include "engine/report/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace poesy {
+namespace {
+
+Dimension dimension_of(std::string_view si_name) {
+  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+    if (si_unit(dimension) == si_name) return dimension;
+  }
+  return Dimension::number;
+}
+
+const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
+
+std::string count_text(std::uint64_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
+  return digits;
+}
+
+/// The responses worth a column: those with a dimension, or all when none has one.
+std::vector<std::size_t> shown_responses(const StoredResult& result, std::size_t first) {
+  std::vector<std::size_t> shown{first};
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    if (r != first && dimension_of(result.responses[r].unit) != Dimension::number) shown.push_back(r);
+  }
+  return shown;
+}
+
+/// Below this, in SI, an index is rounding: the solver works to about 1e-14 rad or m for errors of about 1e-3.
+constexpr double kRounding = 1e-10;
+
+std::string number(double value, double scale) {
+  if (std::abs(value) < kRounding) return fmt::format("{:>8}", "0");
+  return fmt::format("{:>8.4g}", value * scale);
+}
+
+std::string index_cell(const SensitivityResult& s, std::size_t row, double scale) {
+  if (std::isnan(s.global[row])) return fmt::format("{:>8} {:<21}", "-", "");
+  const std::string interval =
+      fmt::format("[{},{}]", number(s.global_ci_low[row], scale), number(s.global_ci_high[row], scale));
+  return fmt::format("{} {:<21}", number(s.global[row], scale), interval);
+}
+
+double share_not_converged(const SensitivityResult& s, std::size_t factor) {
+  SolveCounts solves;
+  for (std::size_t m = 0; m < s.poses; ++m) solves.merge(s.solves[factor * s.poses + m]);
+  return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
+}
+
+std::vector<std::size_t> ranking(const SensitivityResult& s, std::size_t response) {
+  std::vector<std::size_t> order(s.factors);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t p) {
+    const double index = s.global[response * s.factors + p];
+    return std::isnan(index) ? -1.0 : index;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) > key(b); });
+  return order;
+}
+
+std::size_t response_named(const StoredResult& result, std::string_view name) {
+  const auto found = std::find_if(result.responses.begin(), result.responses.end(),
+                                  [&](const NamedUnit& response) { return response.name == name; });
+  return static_cast<std::size_t>(found - result.responses.begin());
+}
+
+}  // namespace
+
+std::string summary_text(const StoredResult& result) {
+  const SolveCounts solves = result.kind == "sensitivity" ? result.sensitivity.total() : result.evaluation.total();
+  const double share = solves.total() == 0
+                           ? 0.0
+                           : 100.0 * static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
+  std::string text;
+  if (!result.title.empty()) text += result.title + "\n";
+  text += fmt::format("{} of {}: {} poses, poesy {}\n", result.kind, result.model, result.poses.size(),
+                      result.poesy_version);
+  text += fmt::format("{} solves in {:.2f} s on {} threads: {} solves/s\n", count_text(result.facts.solves),
+                      result.facts.wall_seconds, result.facts.threads,
+                      count_text(static_cast<std::uint64_t>(
+                          std::llround(static_cast<double>(result.facts.solves) /
+                                       std::max(result.facts.wall_seconds, std::numeric_limits<double>::min())))));
+  text += fmt::format("{} solves ({:.3g} %) did not converge\n", count_text(solves.not_converged()), share);
+  return text;
+}
+
+std::string default_ranking(const StoredResult& result) {
+  for (const NamedUnit& response : result.responses) {
+    if (dimension_of(response.unit) == Dimension::length) return response.name;
+  }
+  return result.responses.empty() ? std::string() : result.responses.front().name;
+}
+
+std::string ranked_table(const StoredResult& result, std::string_view ranked_by) {
+  const SensitivityResult& s = result.sensitivity;
+  const std::vector<std::size_t> shown = shown_responses(result, response_named(result, ranked_by));
+  std::string text = fmt::format("Global sensitivity indices, ranked by {}, with {:.3g} % intervals\n", ranked_by,
+                                 100.0 * s.conf_level);
+  text += fmt::format("{:>4}  {:<16}", "rank", "error");
+  for (const std::size_t r : shown) {
+    text +=
+        fmt::format("  {:<38}", fmt::format("{} [{}/..]", result.responses[r].name, display(result.responses[r]).name));
+  }
+  text += "  not converged\n";
+  std::size_t rank = 0;
+  for (const std::size_t p : ranking(s, shown.front())) {
+    const Unit& factor_unit = display(result.factors[p]);
+    text += fmt::format("{:>4}  {:<16}", ++rank, result.factors[p].name);
+    for (const std::size_t r : shown) {
+      const Unit& unit = display(result.responses[r]);
+      text += fmt::format("  {} {:<7}", index_cell(s, r * s.factors + p, factor_unit.si / unit.si),
+                          fmt::format("{}/{}", unit.name, factor_unit.name));
+    }
+    text += fmt::format("  {:>10.3g} %\n", 100.0 * share_not_converged(s, p));
+  }
+  return text;
+}
+
+std::string evaluation_table(const StoredResult& result) {
+  const EvaluationResult& e = result.evaluation;
+  std::string text =
+      fmt::format("{:<22} {:>6} {:>13} {:>13} {:>13}\n", "response", "unit", "mean", "smallest", "largest");
+  const std::size_t all = e.poses * e.samples;
+  for (std::size_t r = 0; r < e.responses; ++r) {
+    double sum = 0.0;
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < all; ++n) {
+      if (!solved(e.status[n])) continue;
+      const double value = e.response[r * all + n];
+      sum += value;
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+      ++count;
+    }
+    const Unit& unit = display(result.responses[r]);
+    text += fmt::format("{:<22} {:>6}", result.responses[r].name, unit.name);
+    if (count == 0) {
+      text += fmt::format(" {:>13}\n", "none solved");
+      continue;
+    }
+    text += fmt::format(" {:>13.6g} {:>13.6g} {:>13.6g}\n", sum / static_cast<double>(count) / unit.si,
+                        lowest / unit.si, highest / unit.si);
+  }
+  return text;
+}
+
+std::string models_text(const Catalog& catalog) {
+  std::string text;
+  for (const CatalogEntry& entry : catalog) {
+    text += fmt::format("{:<12} {}\n", entry.description.name, entry.description.title);
+  }
+  return text;
+}
+
+std::string model_text(const ModelDescription& model) {
+  std::string text = fmt::format("{}: {}\n\ngeometry (change it in [mechanism] geometry)\n", model.name, model.title);
+  for (const GeometryParameter& parameter : model.geometry) {
+    const Unit& unit = display_unit(parameter.dimension);
+    text += fmt::format("  {:<16} {:>8.6g} {:<4} {}\n", parameter.name, parameter.published / unit.si, unit.name,
+                        parameter.description);
+  }
+  text += "\npose coordinates and default workspace\n";
+  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    const Unit& unit = coordinate.dimension == Dimension::angle ? units()[3] : display_unit(coordinate.dimension);
+    text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
+                        model.pose_upper[c] / unit.si, unit.name, coordinate.description);
+  }
+  text += fmt::format("  {}\n\nfactor sets\n", model.workspace_note);
+  for (const FactorSet& set : model.factor_sets) {
+    text += fmt::format("  {:<16} {:>8} {}\n", set.name, set.factors.size(), set.description);
+  }
+  text += "\nerror factors\n";
+  for (const Factor& factor : model.factors) {
+    text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
+  }
+  text += "\nresponses\n";
+  for (const Response& response : model.responses) {
+    text += fmt::format("  {:<20} {:>4} {}\n", response.name, si_unit(response.dimension), response.description);
+  }
+  text += "\ndetails (given by `poesy evaluate`)\n";
+  for (const Detail& detail : model.details) {
+    text += fmt::format("  {:<20} {:>4} {}\n", detail.name, detail.components.size(), detail.description);
+  }
+  return text;
+}
+
+}  // namespace poesy

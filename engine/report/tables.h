@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/io/result_file.h"
+#include "engine/model/catalog.h"
+
+namespace poesy {
+
+/// What was run, how long it took and how many solves did not converge, a few lines.
+std::string summary_text(const StoredResult& result);
+
+/// The factors of a sensitivity result, ranked by the global index of one response, with the intervals of all
+/// responses that have a dimension, in mm and deg. ranked_by is a response of the result.
+std::string ranked_table(const StoredResult& result, std::string_view ranked_by);
+
+/// The response a result is ranked by unless asked otherwise: the first length, else the first.
+std::string default_ranking(const StoredResult& result);
+
+/// Per response of an `evaluate` result, the mean and the extremes over all solved samples, and where they are.
+std::string evaluation_table(const StoredResult& result);
+
+/// All mechanisms, a line each.
+std::string models_text(const Catalog& catalog);
+
+/// One mechanism: geometry, pose coordinates, workspace, factors, factor sets, responses, details.
+std::string model_text(const ModelDescription& model);
+
+}  // namespace poesy
