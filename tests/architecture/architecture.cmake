@@ -1,0 +1,23 @@
+# python3 is looked up when the tests run: quickstart installs it for the tests, after the first configuring perhaps.
+add_test(NAME architecture.include_table
+         COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/architecture/include_table.py ${PROJECT_SOURCE_DIR})
+add_test(NAME architecture.include_table_finds_violations
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/include_table_test.py)
+add_test(NAME architecture.readme_commands
+         COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/architecture/readme_commands.py $<TARGET_FILE:poesy>)
+set_tests_properties(architecture.include_table architecture.include_table_finds_violations
+                     architecture.readme_commands PROPERTIES LABELS architecture)
+
+# Every public header compiles alone, with nothing but what the exported targets offer: one source a header.
+file(GLOB_RECURSE public_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine/*.h
+     ${PROJECT_SOURCE_DIR}/models/*.h)
+list(FILTER public_headers EXCLUDE REGEX ^engine/app/)
+foreach(header IN LISTS public_headers)
+  string(MAKE_C_IDENTIFIER ${header} name)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n")
+  list(APPEND header_sources ${source})
+endforeach()
+add_library(public_headers_alone OBJECT ${header_sources})
+target_link_libraries(public_headers_alone PRIVATE poesy_engine poesy_models poesy_options)
+target_compile_options(public_headers_alone PRIVATE -O0)

@@ -1,0 +1,20 @@
+# cmake -D BUILD= -D CONFIG= -D GENERATOR= -D CXX= -D LINK_FLAGS= -D VERSION= -D SOURCE= -D WORK= -P downstream.cmake
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+set(prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${prefix})
+
+file(GLOB_RECURSE leaked ${prefix}/include/*.cpp ${prefix}/include/*/engine/app/*)
+if(leaked)
+  message(FATAL_ERROR "installed, but not part of the public interface: ${leaked}")
+endif()
+
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}
+    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_EXE_LINKER_FLAGS=${LINK_FLAGS}
+    -D POESY_EXPECTED_VERSION=${VERSION})
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/downstream)
+run(${prefix}/bin/poesy --version)
