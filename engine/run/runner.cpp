@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/sensitivity.h"
@@ -27,8 +28,9 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
   const std::size_t threads = resolved_threads(options.threads);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));
-  tbb::enumerable_thread_specific workers(make_worker);
-  using Output = decltype(work(workers.local(), std::size_t{0}));
+  using Worker = decltype(make_worker());
+  using Output = decltype(work(std::declval<Worker&>(), std::size_t{0}));
+  tbb::enumerable_thread_specific<Worker> workers(make_worker);
   struct Item {
     std::size_t n;
     Output output;

@@ -1,0 +1,121 @@
+"""Bad input gives one clear sentence with its place, exit code 2, and no file; an existing result stays."""
+
+from poesy_program import STUDY, ProgramTest, main
+
+
+def changed(old, new):
+    assert old in STUDY
+    return STUDY.replace(old, new)
+
+
+# name: (study, where the message points to, words it holds)
+BAD_STUDIES = {
+    "unknown_key": (changed("count = 6", "count = 6\ncolour = 1"), "7:1", ["colour"]),
+    "unknown_model": (changed('"2upr-rpu"', '"2upr-rpx"'), "4:", ["2upr-rpx", "2upr-rpu"]),
+    "unknown_factor": (changed('"delta_1_1_y"', '"delta_9_1_y"'), "12:", ["delta_9_1_y"]),
+    "unknown_unit": (changed('"1 mm" }\nangular', '"1 inch" }\nangular'), "8:", ["inch", "mm"]),
+    "bare_number": (changed('sigma = "1 mm" }\n', "sigma = 1 }\n"), "8:", ["unit"]),
+    "negative_sigma": (changed('"0.2 deg"', '"-0.2 deg"'), "9:", ["sigma"]),
+    "zero_sigma": (changed('"0.2 deg"', '"0 deg"'), "9:", ["sigma"]),
+    "one_sample": (changed("samples = 1500", "samples = 1"), "13:", ["samples", "2"]),
+    "no_pose": (changed("count = 6", "count = 0"), "6:", ["count", "1"]),
+    "reversed_range": (
+        changed("count = 6", 'count = 6\nworkspace = { z = ["-0.18 m", "-0.3 m"], beta = ["-0.1 rad", "0.1 rad"], '
+                'gamma = ["-0.1 rad", "0.1 rad"] }'),
+        "7:", ["z"]),
+    "out_of_reach": (
+        changed("count = 6", 'count = 6\nworkspace = { z = ["0.18 m", "0.3 m"], beta = ["-0.1 rad", "0.1 rad"], '
+                'gamma = ["-0.1 rad", "0.1 rad"] }'),
+        "7:", ["z"]),
+    "duplicate_factor": (changed('"epsilon_1_4_z"', '"delta_1_1_y"'), "12:", ["delta_1_1_y"]),
+    "wrong_type": (changed("samples = 1500", 'samples = "many"'), "13:", ["samples"]),
+    "not_toml": (changed("[poses]", "[poses"), "5:", []),
+    "rubbish": (bytes(range(256)) * 20, "", []),
+    "empty": ("", "1:1", ["empty"]),
+}
+
+POSES = "z,beta,gamma\n-0.2,0.1,0.1\n-0.25,0,0.2\n"
+ERRORS = "delta_1_1_y,epsilon_1_4_z\n0.001,0\n0,0.002\n"
+BAD_TABLES = {
+    "missing_column": ("z,beta\n-0.2,0.1\n", ERRORS, "poses.csv:1", ["gamma"]),
+    "extra_column": ("z,beta,gamma,delta\n-0.2,0.1,0.1,0\n", ERRORS, "poses.csv:1", ["delta"]),
+    "unknown_factor": (POSES, "delta_1_1_q\n0.001\n", "errors.csv:1", ["delta_1_1_q"]),
+    "repeated_factor": (POSES, "delta_1_1_y,delta_1_1_y\n0.001,0.001\n", "errors.csv:1", ["delta_1_1_y"]),
+    "not_a_number": (POSES, "delta_1_1_y\n0.001\nabc\n", "errors.csv:3", ["abc"]),
+    "nan": (POSES, "delta_1_1_y\nnan\n", "errors.csv:2", ["nan"]),
+    "infinite": ("z,beta,gamma\n-0.2,0.1,inf\n", ERRORS, "poses.csv:2", ["inf"]),
+    "empty_file": ("", ERRORS, "poses.csv", []),
+    "header_only": (POSES, "delta_1_1_y\n", "errors.csv", []),
+    "short_row": (POSES, "delta_1_1_y,epsilon_1_4_z\n0.001\n", "errors.csv:2", []),
+    "out_of_reach": ("z,beta,gamma\n-0.2,0.1,0.1\n0.2,0,0\n", ERRORS, "poses.csv:3", ["z"]),
+}
+
+
+class BadInput(ProgramTest):
+    def check_refusal(self, done, place, words, result):
+        message = done.stderr.decode()
+        self.assertEqual(done.returncode, 2, message)
+        self.assertEqual(message.count("\n"), 1, message)
+        self.assertTrue(message.startswith("poesy: "), message)
+        self.assertIn(place, message)
+        for word in words:
+            self.assertIn(word, message)
+        self.assertEqual(done.stdout, b"")
+        self.assertEqual(result.read_text(), "an older result", "an existing result was touched")
+        self.assertEqual({path.suffix for path in self.folder.iterdir()} - {".toml", ".csv", ".h5"}, set(), "left over")
+
+    def test_studies(self):
+        for name, (study, place, words) in BAD_STUDIES.items():
+            with self.subTest(name):
+                result = self.write("out.h5", "an older result")
+                path = self.write("bad.toml", study)
+                place = f"bad.toml:{place}" if place else "bad.toml"
+                self.check_refusal(self.poesy("run", path.name, "-o", result, "--quiet"), place, words, result)
+                self.assertEqual(self.poesy("check", path.name).returncode, 2)
+
+    def test_tables(self):
+        self.write("study.toml", STUDY)
+        for name, (poses, errors, place, words) in BAD_TABLES.items():
+            with self.subTest(name):
+                result = self.write("out.h5", "an older result")
+                self.write("poses.csv", poses)
+                self.write("errors.csv", errors)
+                done = self.poesy("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", result)
+                self.check_refusal(done, place, words, result)
+
+    def test_pairs_need_equal_numbers(self):
+        self.write("study.toml", STUDY)
+        result = self.write("out.h5", "an older result")
+        self.write("poses.csv", POSES)
+        self.write("errors.csv", ERRORS + "0,0\n")
+        done = self.poesy("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "--paired", "-o", result)
+        self.check_refusal(done, "errors.csv", ["3", "2"], result)
+
+    def test_folder_as_study(self):
+        (self.folder / "dir.toml").mkdir()
+        result = self.write("out.h5", "an older result")
+        self.check_refusal(self.poesy("run", "dir.toml", "-o", result), "dir.toml", [], result)
+
+    def test_missing_output_folder(self):
+        self.write("study.toml", STUDY)
+        done = self.poesy("run", "study.toml", "-o", "nowhere/out.h5")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"nowhere", done.stderr)
+
+    def test_command_lines(self):
+        for arguments in [[], ["fly"], ["run"], ["run", "a.toml", "--threads", "0"], ["run", "a.toml", "--threads", "x"],
+                          ["run", "a.toml", "--seed", "-1"], ["show"], ["models", "9upr"], ["template", "9upr"],
+                          ["template", "2upr-rpu", "poetry"]]:
+            with self.subTest(arguments):
+                done = self.poesy(*arguments)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stderr.count(b"\n"), 1, done.stderr)
+
+    def test_files_that_cannot_be_read(self):
+        for arguments in [["run", "absent.toml"], ["show", "absent.h5"], ["verify", "absent.h5"]]:
+            with self.subTest(arguments):
+                self.assertEqual(self.poesy(*arguments).returncode, 3)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+"""The same study gives the same content for any number of threads and any number of repetitions."""
+
+import h5py
+
+from poesy_program import STUDY, ProgramTest, main
+
+
+class Determinism(ProgramTest):
+    def content_hash(self, study, *options):
+        self.write("study.toml", study)
+        self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet", *options)
+        self.succeeds("verify", "out.h5")
+        with h5py.File(self.folder / "out.h5") as result:
+            return result.attrs["content_sha256"]
+
+    def test_threads_and_repetitions(self):
+        hashes = {self.content_hash(STUDY, "--threads", n) for n in (1, 2, 3, 7, 1)}
+        self.assertEqual(len(hashes), 1, hashes)
+
+    def test_seeds_differ(self):
+        self.assertNotEqual(self.content_hash(STUDY), self.content_hash(STUDY, "--seed", "6"))
+        self.assertEqual(self.content_hash(STUDY), self.content_hash(STUDY, "--seed", "5"))
+
+    def test_evaluate(self):
+        self.write("study.toml", STUDY)
+        self.write("poses.csv", "gamma,z,beta\n" + "".join(f"{0.1 * k},-0.25,0.1\n" for k in range(4)))
+        self.write("errors.csv", "epsilon_1_4_z\n" + "".join(f"{1e-4 * k}\n" for k in range(700)))
+        hashes = set()
+        for threads in (1, 2, 7):
+            self.succeeds("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "out.h5",
+                          "--threads", threads, "--quiet")
+            with h5py.File(self.folder / "out.h5") as result:
+                hashes.add(result.attrs["content_sha256"])
+        self.assertEqual(len(hashes), 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,54 @@
+"""A run that is stopped, or that cannot write, leaves the older result as it was."""
+
+import os
+import signal
+import subprocess
+import time
+
+from poesy_program import PROGRAM, STUDY, ProgramTest, main
+
+LONG_STUDY = STUDY.replace("samples = 1500", "samples = 100000000").replace("count = 6", "count = 50")
+
+
+class Interruption(ProgramTest):
+    def test_signals(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number.name):
+                self.write("study.toml", LONG_STUDY)
+                result = self.write("out.h5", "an older result")
+                with subprocess.Popen([PROGRAM, "run", "study.toml", "-o", "out.h5"], cwd=self.folder, stderr=subprocess.PIPE) as run:
+                    time.sleep(1.0)
+                    run.send_signal(number)
+                    _, message = run.communicate(timeout=60)
+                self.assertEqual(run.returncode, 4, message)
+                self.assertIn(b"interrupted", message)
+                self.assertEqual(result.read_text(), "an older result")
+                self.assertEqual({path.name for path in self.folder.iterdir()}, {"study.toml", "out.h5"})
+
+    def test_full_disk(self):
+        if os.geteuid() != 0:
+            self.skipTest("mounting a small file system needs root")
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], check=False).returncode != 0:
+            self.skipTest("a small file system cannot be mounted here")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        (disk / "out.h5").write_text("an older result")
+        self.write("study.toml", STUDY.replace("count = 6", "count = 600").replace("samples = 1500", "samples = 2"))
+        done = self.poesy("run", "study.toml", "-o", "disk/out.h5", "--quiet")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn(b"disk/out.h5", done.stderr)
+        self.assertIn(b"No space left", done.stderr)
+        self.assertEqual([path.name for path in disk.iterdir()], ["out.h5"])
+        self.assertEqual((disk / "out.h5").read_text(), "an older result")
+
+    def test_samples_that_fail(self):
+        study = STUDY.replace('method = "gauss-newton"', 'method = "gauss-newton"\nmax_iterations = 1\nnot_converged = "fail"')
+        self.write("study.toml", study)
+        done = self.poesy("run", "study.toml", "-o", "out.h5", "--quiet")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.succeeds("verify", "out.h5")
+
+
+if __name__ == "__main__":
+    main()

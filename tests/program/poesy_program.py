@@ -1,0 +1,60 @@
+"""What the tests of the program share: running it, and a study that is quick to solve."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["POESY_PROGRAM"]
+
+STUDY = """\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "2upr-rpu"
+[poses]
+count = 6
+[errors]
+linear = { distribution = "normal", sigma = "1 mm" }
+angular = { distribution = "normal", sigma = "0.2 deg" }
+[analysis]
+kind = "sensitivity"
+factors = ["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]
+samples = 1500
+background = { factors = "benign", linear = "1 mm", angular = "1 deg" }
+[solver]
+method = "gauss-newton"
+[run]
+seed = 5
+"""
+
+
+class ProgramTest(unittest.TestCase):
+    """Runs the program in a folder of its own."""
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+
+    def write(self, name, content):
+        path = self.folder / name
+        if isinstance(content, bytes):
+            path.write_bytes(content)
+        else:
+            path.write_text(content)
+        return path
+
+    def poesy(self, *arguments):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=300, check=False)
+
+    def succeeds(self, *arguments):
+        done = self.poesy(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr.decode(errors="replace"))
+        return done.stdout.decode()
+
+
+def main():
+    unittest.main(argv=[sys.argv[0], "-v"])

@@ -1,0 +1,19 @@
+# The program, driven as a user drives it. The system's python3 has h5py from Debian's packages.
+find_program(POESY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+
+# program_test(NAME LABEL)
+function(program_test name label)
+  add_test(NAME program.${name}
+           COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/program/${name}_test.py)
+  set_tests_properties(program.${name} PROPERTIES LABELS ${label} TIMEOUT 600 ENVIRONMENT
+    "POESY_PROGRAM=$<TARGET_FILE:poesy>;POESY_ORACLE=${CMAKE_CURRENT_SOURCE_DIR}/data/deformation_2upr_rpu.json")
+endfunction()
+
+program_test(bad_input unit)
+program_test(oracle regression)
+program_test(determinism determinism)
+program_test(interruption robustness)
+
+add_test(NAME regression.golden
+         COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/regression/regression_test.py $<TARGET_FILE:poesy>)
+set_tests_properties(regression.golden PROPERTIES LABELS regression TIMEOUT 600)
