@@ -21,7 +21,7 @@ struct Estimate {
 /// Sensitivity index at one pose: sigma(response) / sigma(error) (Du et al. 2022, Eqs. 51-52), the
 /// response's sample standard deviation over the error's standard deviation as set.
 /// Interval: Bonett 2006, Comput. Stat. Data Anal. 50, 775-782, on the logarithm of the variance, with the
-/// plain sample kurtosis. Zero spread gives the interval [0, 0].
+/// plain sample kurtosis. Zero spread gives the interval [0, 0]; fewer than five samples give NaN at both ends.
 Estimate local_index(const Moments& response, double error_sigma, double conf_level);
 
 /// One pose's contribution to a global index.
@@ -30,14 +30,20 @@ struct LocalIndex {
   double standard_error;  ///< of value, from sampling
 };
 
-/// The standard error that belongs to local_index.
+/// The standard error that belongs to local_index: of its logarithm by Bonett 2006, times the index. NaN below five
+/// samples; 0 for zero spread.
 LocalIndex local_index_with_error(const Moments& response, double error_sigma);
 
 /// Global index: mean over the poses plus sample standard deviation over the poses (Du et al. 2022,
 /// Eqs. 53-54); NaN when a pose has no index, the mean alone for a single pose.
-/// The interval is for the value that infinitely many samples would give at the same poses: sampling noise, which
-/// the plain formula takes for spread between poses, is subtracted from the spread; mean and spread are combined by
-/// the method of variance estimates recovery (Zou and Donner 2008, Stat. Med. 27, 1693-1702).
+/// The interval is for the value that infinitely many samples would give at the same poses. Sampling noise, which the
+/// plain formula takes for spread between poses, is subtracted from the spread, so where poses differ by little more
+/// than noise the estimate may lie above its own interval; more samples close that gap.
+/// Mean and spread are combined, with their correlation, by the method of variance estimates recovery (Zou and
+/// Donner 2008, Stat. Med. 27, 1693-1702). Where the spread seen is no more than noise at this level (chi-square with
+/// Satterthwaite's degrees of freedom), the lower limit is that of the mean alone.
+/// There the interval may cover more than its level; where poses differ clearly it covers its level.
+/// Indices that are all exactly zero give [0, 0]; a pose without a standard error gives NaN at both ends.
 Estimate global_index(std::span<const LocalIndex> poses, double conf_level);
 
 }  // namespace poesy

@@ -1,0 +1,175 @@
+#include "engine/stats/sensitivity_index.h"
+
+#include <algorithm>
+#include <boost/math/special_functions/erf.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr Interval kUnknown{kNaN, kNaN};
+
+/// Fewer samples say too little about a kurtosis (Bonett's own trimmed mean needs more than four).
+constexpr std::uint64_t kFewestSamples = 5;
+
+double square(double x) { return x * x; }
+
+/// The normal quantile that leaves out (1 - conf_level) / 2 on either side.
+double two_sided_quantile(double conf_level) {
+  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
+  return std::numbers::sqrt2 * boost::math::erf_inv(conf_level);
+}
+
+/// Standard error of the logarithm of the sample variance, without the small-sample factor (Bonett 2006).
+double log_variance_error(const Moments& response) {
+  const auto n = static_cast<double>(response.count());
+  return std::sqrt((response.kurtosis() - (n - 3.0) / n) / (n - 1.0));
+}
+
+Interval local_interval(const Moments& response, double value, double conf_level) {
+  if (response.count() >= 2 && value == 0.0) return {0.0, 0.0};
+  const auto n = static_cast<double>(response.count());
+  const double z = two_sided_quantile(conf_level);
+  if (response.count() < kFewestSamples || n <= z) return kUnknown;
+  const double factor = n / (n - z);
+  const double half = 0.5 * z * factor * log_variance_error(response);
+  const double centre = value * std::sqrt(factor);
+  return {centre * std::exp(-half), centre * std::exp(half)};
+}
+
+/// What the indices x_i of M poses, with variances v_i from sampling, say about mean and spread over the poses.
+struct PoseStatistics {
+  double mean;
+  double mean_variance;
+  double seen2;            ///< sample variance of the x_i
+  double noise2;           ///< its part that is sampling noise, on average
+  double noise_variance;   ///< variance of seen2 were the true spread zero
+  double signal_variance;  ///< growth of that variance per unit of true spread^2
+  double covariance;       ///< of mean and seen2
+
+  /// Unbiased estimate of the true spread^2; negative when by chance there is less to see than noise.
+  double spread2() const { return seen2 - noise2; }
+  double spread() const { return std::sqrt(std::max(spread2(), 0.0)); }
+  double spread2_variance() const { return noise_variance + signal_variance * std::max(spread2(), 0.0); }
+};
+
+/// A sample standard deviation is too small by half of v / x on average (second order of the square root).
+double unbiased(const LocalIndex& pose) {
+  return pose.value == 0.0 ? 0.0 : pose.value + 0.5 * square(pose.standard_error) / pose.value;
+}
+
+/// For independent x_i ~ (mu_i, v_i), x' A x / (M - 1) with A = I - 1/M has the variance
+/// (4 mu' A V A mu + 2 tr(A V A V)) / (M - 1)^2 and the covariance 2 1' V A mu / (M (M - 1)) with the mean.
+PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
+  const auto m = static_cast<double>(poses.size());
+  const double freedom = std::max(m - 1.0, 1.0);
+  double sum = 0.0;
+  double v_sum = 0.0;
+  double v2_sum = 0.0;
+  for (const LocalIndex& pose : poses) {
+    const double v = square(pose.standard_error);
+    sum += unbiased(pose);
+    v_sum += v;
+    v2_sum += square(v);
+  }
+  const double mean = sum / m;
+  double d2_sum = 0.0;
+  double vd_sum = 0.0;
+  double vd2_sum = 0.0;
+  for (const LocalIndex& pose : poses) {
+    const double v = square(pose.standard_error);
+    const double d = unbiased(pose) - mean;
+    d2_sum += square(d);
+    vd_sum += v * d;
+    vd2_sum += v * square(d);
+  }
+  const double trace = v2_sum * (1.0 - 2.0 / m) + square(v_sum) / square(m);
+  // mu' A V A mu = (sum of v d^2 over sum of d^2) (M - 1) spread^2: the quotient weighs the v_i by what each pose adds
+  // to the spread and, unlike its noisy numerator, always stays between the smallest and the largest v_i.
+  const double v_of_spread = d2_sum > 0.0 ? vd2_sum / d2_sum : 0.0;
+  return {.mean = mean,
+          .mean_variance = v_sum / square(m),
+          .seen2 = d2_sum / freedom,
+          .noise2 = poses.size() > 1 ? v_sum / m : 0.0,
+          .noise_variance = 2.0 * trace / square(freedom),
+          .signal_variance = 4.0 * v_of_spread / freedom,
+          .covariance = 2.0 * vd_sum / (m * freedom)};
+}
+
+/// Whether noise alone would show at least as much spread with a probability above `level`. Without true spread,
+/// seen2 follows noise2 / f times a chi-square of f = 2 noise2^2 / noise_variance degrees of freedom (Satterthwaite).
+bool may_be_noise(const PoseStatistics& s, double level) {
+  if (s.seen2 == 0.0) return true;
+  if (s.noise_variance == 0.0) return false;
+  return boost::math::gamma_q(square(s.noise2) / s.noise_variance, s.seen2 * s.noise2 / s.noise_variance) > level;
+}
+
+/// The true spreads that the data do not contradict: |spread2() - x^2| <= z sqrt(variance if x were true), which, other
+/// than a variance taken at the estimate, holds near zero spread.
+Interval spread_interval(const PoseStatistics& s, double z) {
+  const double middle = s.spread2() + 0.5 * square(z) * s.signal_variance;
+  const double under_root =
+      square(z) * (s.noise_variance + s.signal_variance * s.spread2()) + square(0.5 * square(z) * s.signal_variance);
+  const double half = std::sqrt(std::max(under_root, 0.0));
+  return {std::sqrt(std::max(middle - half, 0.0)), std::sqrt(std::max(middle + half, 0.0))};
+}
+
+/// Half the interval of mean + spread on one side, from the distances of their own limits (Zou and Donner 2008, with
+/// a correlation).
+double recovered(double of_mean, double of_spread, double correlation) {
+  const double sum = square(of_mean) + square(of_spread) + 2.0 * correlation * of_mean * of_spread;
+  return std::sqrt(std::max(sum, 0.0));
+}
+
+Interval global_interval(std::span<const LocalIndex> poses, double conf_level) {
+  const double z = two_sided_quantile(conf_level);
+  const PoseStatistics s = statistics_over(poses);
+  const double of_mean = z * std::sqrt(s.mean_variance);
+  const double scale = std::sqrt(s.mean_variance * s.spread2_variance());
+  const double correlation = scale > 0.0 ? std::clamp(s.covariance / scale, -1.0, 1.0) : 0.0;
+  const double centre = s.mean + s.spread();
+  const Interval spread = spread_interval(s, z);
+  const double up = recovered(of_mean, std::max(spread.high - s.spread(), 0.0), correlation);
+  // At zero spread the recovered lower limit would leave no room for the error of the mean.
+  const double low = may_be_noise(s, 0.5 * (1.0 - conf_level)) || spread.low == 0.0
+                         ? s.mean - of_mean
+                         : centre - recovered(of_mean, s.spread() - spread.low, correlation);
+  return {std::max(low, 0.0), centre + up};
+}
+
+}  // namespace
+
+Estimate local_index(const Moments& response, double error_sigma, double conf_level) {
+  POESY_EXPECTS(error_sigma > 0.0);
+  const double value = response.standard_deviation() / error_sigma;
+  return {value, local_interval(response, value, conf_level)};
+}
+
+LocalIndex local_index_with_error(const Moments& response, double error_sigma) {
+  POESY_EXPECTS(error_sigma > 0.0);
+  const double value = response.standard_deviation() / error_sigma;
+  if (value == 0.0) return {0.0, 0.0};
+  if (response.count() < kFewestSamples) return {value, kNaN};
+  return {value, 0.5 * value * log_variance_error(response)};
+}
+
+Estimate global_index(std::span<const LocalIndex> poses, double conf_level) {
+  Moments over_poses;
+  bool known = true;
+  for (const LocalIndex& pose : poses) {
+    over_poses.add(pose.value);
+    known = known && std::isfinite(pose.value) && std::isfinite(pose.standard_error);
+  }
+  if (poses.empty()) return {kNaN, kUnknown};
+  const double value = over_poses.mean() + (poses.size() > 1 ? over_poses.standard_deviation() : 0.0);
+  return {value, known ? global_interval(poses, conf_level) : kUnknown};
+}
+
+}  // namespace poesy

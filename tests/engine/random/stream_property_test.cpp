@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "engine/random/stream.h"
+
+namespace poesy {
+namespace {
+
+static_assert(std::uniform_random_bit_generator<StreamEngine>);
+
+const StreamAddress kAddress{
+    .seed = 42, .purpose = Purpose::error_samples, .factor = FactorIndex(5), .pose = PoseIndex(11)};
+
+std::vector<double> uniforms(const StreamAddress& address, std::size_t first, std::size_t count) {
+  std::vector<double> draws(count);
+  fill_uniforms(address, SampleIndex(first), draws);
+  return draws;
+}
+
+TEST(RandomBits, DiffersWhereAnyComponentDiffers) {
+  std::set<std::uint64_t> draws;
+  std::size_t addresses = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    for (const Purpose purpose : {Purpose::error_samples, Purpose::sampling_design}) {
+      for (std::size_t factor = 0; factor < 8; ++factor) {
+        for (std::size_t pose = 0; pose < 8; ++pose) {
+          for (std::size_t sample = 0; sample < 16; ++sample) {
+            draws.insert(random_bits({seed, purpose, FactorIndex(factor), PoseIndex(pose)}, SampleIndex(sample)));
+            ++addresses;
+          }
+        }
+      }
+    }
+  }
+  // Two equal among 8192 random words of 64 bits have a probability of 2e-12.
+  EXPECT_EQ(draws.size(), addresses);
+}
+
+TEST(RandomBits, DoesNotDependOnTheOrderOfCalls) {
+  std::vector<std::uint64_t> forward(50);
+  std::vector<std::uint64_t> backward(50);
+  for (std::size_t k = 0; k < 50; ++k) forward[k] = random_bits(kAddress, SampleIndex(k));
+  for (std::size_t k = 50; k-- > 0;) backward[k] = random_bits(kAddress, SampleIndex(k));
+  EXPECT_EQ(forward, backward);
+}
+
+TEST(FillUniforms, EqualsTheSingleDrawsFromAnyStart) {
+  for (std::size_t first = 0; first < 9; ++first) {
+    for (std::size_t count = 0; count < 14; ++count) {
+      const std::vector<double> draws = uniforms(kAddress, first, count);
+      for (std::size_t k = 0; k < count; ++k) {
+        EXPECT_EQ(draws[k], uniform_from_bits(random_bits(kAddress, SampleIndex(first + k))))
+            << "first " << first << ", draw " << k << " of " << count;
+      }
+    }
+  }
+}
+
+TEST(FillUniforms, FewerDrawsAreThePrefixOfMore) {
+  const std::vector<double> more = uniforms(kAddress, 0, 2000);
+  for (const std::size_t count : {std::size_t{1}, std::size_t{999}, std::size_t{1000}, std::size_t{1998}}) {
+    const std::vector<double> fewer = uniforms(kAddress, 0, count);
+    EXPECT_TRUE(std::equal(fewer.begin(), fewer.end(), more.begin())) << count;
+  }
+}
+
+TEST(FillUniforms, PiecesMakeTheWhole) {
+  const std::vector<double> whole = uniforms(kAddress, 0, 1001);
+  std::vector<double> joined = uniforms(kAddress, 0, 333);
+  for (const double draw : uniforms(kAddress, 333, 668)) joined.push_back(draw);
+  EXPECT_EQ(joined, whole);
+}
+
+TEST(StreamEngine, CallKIsTheDrawOfSampleK) {
+  StreamEngine engine(kAddress);
+  for (std::size_t k = 0; k < 100; ++k) EXPECT_EQ(engine(), random_bits(kAddress, SampleIndex(k)));
+}
+
+TEST(StreamEngine, DiscardSkipsDraws) {
+  StreamEngine engine(kAddress);
+  engine();
+  engine.discard(41);
+  EXPECT_EQ(engine(), random_bits(kAddress, SampleIndex(42)));
+}
+
+TEST(StreamEngine, FeedsBoostDistributions) {
+  StreamEngine engine(kAddress);
+  boost::random::uniform_01<double> uniform;
+  boost::random::normal_distribution<double> normal;
+  double sum = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    const double u = uniform(engine);
+    ASSERT_GE(u, 0.0);
+    ASSERT_LT(u, 1.0);
+    sum += normal(engine);
+  }
+  // The mean of 1000 standard normal draws; z at alpha = 0.001 is 3.291.
+  EXPECT_LE(std::abs(sum / 1000.0), 3.291 / std::sqrt(1000.0));
+}
+
+TEST(StreamEngine, ShufflesRepeatably) {
+  const auto shuffled = [](const StreamAddress& address) {
+    std::vector<int> order(100);
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), StreamEngine(address));
+    return order;
+  };
+  std::vector<int> order = shuffled(kAddress);
+  EXPECT_EQ(order, shuffled(kAddress));
+  StreamAddress other = kAddress;
+  other.pose = PoseIndex(12);
+  EXPECT_NE(order, shuffled(other));
+  EXPECT_FALSE(std::is_sorted(order.begin(), order.end()));
+  std::sort(order.begin(), order.end());
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(order[static_cast<std::size_t>(k)], k);
+}
+
+}  // namespace
+}  // namespace poesy

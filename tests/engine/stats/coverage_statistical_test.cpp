@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "engine/stats/sensitivity_index.h"
+
+// How often a 95 % interval holds the truth, in repeated experiments with known truth and fixed seeds. A correct
+// interval fails a two-sided check with probability alpha = 0.001 (|z| > 3.291), a one-sided one likewise (z < -3.090),
+// where z is the distance of the observed share from 0.95 in standard errors of that share.
+
+namespace poesy {
+namespace {
+
+constexpr double kLevel = 0.95;
+
+/// Response to a normal error that folds it: |scale e|, as a deformation does. Standard deviation scale sqrt(1 - 2/pi).
+const double kFoldedDeviation = std::sqrt(1.0 - 2.0 / std::numbers::pi);
+
+class Experiment {
+ public:
+  explicit Experiment(std::uint64_t seed) : engine_(seed) {}
+
+  Moments folded_normal(double scale, int samples) {
+    Moments moments;
+    for (int k = 0; k < samples; ++k) moments.add(std::abs(scale * normal_(engine_)));
+    return moments;
+  }
+
+  std::vector<LocalIndex> folded_poses(const std::vector<double>& scales, int samples) {
+    std::vector<LocalIndex> poses;
+    for (const double scale : scales) poses.push_back(local_index_with_error(folded_normal(scale, samples), 1.0));
+    return poses;
+  }
+
+ private:
+  boost::random::mt19937_64 engine_;
+  boost::random::normal_distribution<double> normal_;
+};
+
+/// Distance of the share of hits from the level, in its standard errors.
+double z_of(int hits, int repetitions) {
+  const double share = static_cast<double>(hits) / repetitions;
+  return (share - kLevel) / std::sqrt(kLevel * (1.0 - kLevel) / repetitions);
+}
+
+bool holds(const Interval& interval, double truth) { return interval.low <= truth && truth <= interval.high; }
+
+double mean_plus_spread(const std::vector<double>& scales) {
+  Moments over_poses;
+  for (const double scale : scales) over_poses.add(scale * kFoldedDeviation);
+  return over_poses.mean() + over_poses.standard_deviation();
+}
+
+/// z of the coverage of the global interval over poses whose indices are known.
+double z_of_global_coverage(const std::vector<double>& scales, int samples, int repetitions, std::uint64_t seed) {
+  Experiment experiment(seed);
+  const double truth = mean_plus_spread(scales);
+  int hits = 0;
+  for (int r = 0; r < repetitions; ++r) {
+    hits += holds(global_index(experiment.folded_poses(scales, samples), kLevel).interval, truth) ? 1 : 0;
+  }
+  const double z = z_of(hits, repetitions);
+  testing::Test::RecordProperty("coverage", std::to_string(static_cast<double>(hits) / repetitions));
+  return z;
+}
+
+/// Evenly spaced from low to high.
+std::vector<double> scales_between(double low, double high, std::size_t count) {
+  std::vector<double> scales(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    scales[k] = low + (high - low) * static_cast<double>(k) / static_cast<double>(count - 1);
+  }
+  return scales;
+}
+
+TEST(LocalIndexInterval, CoversTheFoldedNormal) {
+  constexpr int kRepetitions = 10000;
+  Experiment experiment(11);
+  const double truth = 3.0 * kFoldedDeviation / 2.0;
+  int hits = 0;
+  for (int r = 0; r < kRepetitions; ++r) {
+    hits += holds(local_index(experiment.folded_normal(3.0, 1000), 2.0, kLevel).interval, truth) ? 1 : 0;
+  }
+  EXPECT_LE(std::abs(z_of(hits, kRepetitions)), 3.291) << hits << " of " << kRepetitions;
+}
+
+TEST(LocalIndexWithError, StandardErrorIsTheDeviationOfRepeatedIndices) {
+  constexpr int kRepetitions = 10000;
+  Experiment experiment(12);
+  Moments values;
+  Moments errors;
+  for (int r = 0; r < kRepetitions; ++r) {
+    const LocalIndex index = local_index_with_error(experiment.folded_normal(1.0, 1000), 1.0);
+    values.add(index.value);
+    errors.add(index.standard_error);
+  }
+  // The deviation of a near-normal sample has the relative standard error sqrt(1 / (2 n)); 3.291 at alpha = 0.001.
+  EXPECT_NEAR(errors.mean() / values.standard_deviation(), 1.0, 3.291 * std::sqrt(0.5 / kRepetitions));
+}
+
+TEST(GlobalIndexInterval, CoversOverTwentyVeryDifferentPoses) {
+  EXPECT_LE(std::abs(z_of_global_coverage(scales_between(0.2, 1.0, 20), 1000, 4000, 21)), 3.291);
+}
+
+TEST(GlobalIndexInterval, CoversOverThePublishedNumberOfPoses) {
+  EXPECT_LE(std::abs(z_of_global_coverage(scales_between(0.2, 1.0, 158), 1000, 1000, 22)), 3.291);
+}
+
+TEST(GlobalIndexInterval, CoversOverTwoPoses) {
+  EXPECT_LE(std::abs(z_of_global_coverage({0.2, 1.0}, 1000, 10000, 23)), 3.291);
+}
+
+TEST(GlobalIndexInterval, CoversWhereOnePoseMakesTheSpread) {
+  std::vector<double> scales(20, 0.1);
+  scales[7] = 1.0;
+  EXPECT_LE(std::abs(z_of_global_coverage(scales, 1000, 4000, 24)), 3.291);
+}
+
+// Where the spread is as small as its noise, the interval may cover more than its level, never less.
+
+TEST(GlobalIndexInterval, CoversAtLeastItsLevelWhereSpreadIsAsSmallAsNoise) {
+  EXPECT_GE(z_of_global_coverage(scales_between(0.97, 1.03, 20), 1000, 4000, 31), -3.090);
+}
+
+TEST(GlobalIndexInterval, CoversAtLeastItsLevelWithoutSpreadOverFewPoses) {
+  EXPECT_GE(z_of_global_coverage(std::vector<double>(4, 1.0), 500, 10000, 35), -3.090);
+}
+
+TEST(GlobalIndexInterval, CoversAtLeastItsLevelWithoutSpread) {
+  EXPECT_GE(z_of_global_coverage(std::vector<double>(20, 1.0), 1000, 4000, 32), -3.090);
+}
+
+TEST(GlobalIndexInterval, CoversAtLeastItsLevelWithoutSpreadOverThePublishedNumberOfPoses) {
+  EXPECT_GE(z_of_global_coverage(std::vector<double>(158, 1.0), 1000, 1000, 33), -3.090);
+}
+
+TEST(GlobalIndexInterval, LiesBelowThePlainEstimateWithoutSpread) {
+  // Why the interval cannot simply be put about the plain estimate: that takes noise for spread.
+  Experiment experiment(34);
+  const std::vector<double> scales(158, 1.0);
+  const Estimate index = global_index(experiment.folded_poses(scales, 1000), kLevel);
+  EXPECT_GT(index.value, index.interval.high);
+  EXPECT_TRUE(holds(index.interval, mean_plus_spread(scales)));
+}
+
+}  // namespace
+}  // namespace poesy
