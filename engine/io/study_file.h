@@ -10,7 +10,8 @@ namespace poesy {
 /// How much of a study a command needs.
 enum class StudyUse {
   run,      ///< all sections complete
-  evaluate  ///< [mechanism] and [solver]; the others are checked where present but may be incomplete or absent
+  evaluate  ///< [mechanism] and [solver]; the others are checked where present but may be incomplete or absent, and a
+            ///< pose file is not opened
 };
 
 /// Reads and validates a study file (TOML, format "poesy-study", version 1).

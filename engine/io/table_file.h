@@ -9,9 +9,9 @@
 namespace poesy {
 
 /// Reads poses from CSV: the first line names all of the model's pose coordinates, in any order; then one
-/// pose a line, SI. Throws InputError with line and column for a missing, extra or repeated column, a cell that is not a
-/// finite number, a line with too few or many cells, or no data; FileError when the file cannot be read.
-/// The poses come back in the model's order of coordinates. Does not ask whether the model reaches them.
+/// pose a line, SI. Throws InputError with line and column for a missing, extra or repeated column, a cell that is not
+/// a finite number, a line with too few or many cells, or no data; FileError when the file cannot be read. The poses
+/// come back in the model's order of coordinates. Does not ask whether the model reaches them.
 PoseSet read_poses(const std::string& path, const ModelDescription& model);
 
 /// Reads errors from CSV: the first line names factors of the model, any subset in any order; then one sample

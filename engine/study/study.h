@@ -29,14 +29,15 @@ struct MechanismChoice {
 
 /// Which poses of the platform.
 struct PoseSelection {
-  enum class Select { interior, file };
+  /// Only interior and file can be run so far; the others may stand in a study that is only evaluated.
+  enum class Select { interior, file, boundary, grid, trajectory };
 
   Select select = Select::interior;
   std::size_t count = 0;
   std::vector<Range> workspace;  ///< one range per pose coordinate, for `interior`
   std::string file;              ///< as written in the study, for `file`
   PoseSet from_file;             ///< its poses
-  Place place;                   ///< of the workspace or the first line of the file's data
+  Place place;                   ///< of the workspace, or of the file's first pose (pose m stands m lines below)
 };
 
 /// How each error source is distributed.

@@ -1,0 +1,146 @@
+#include "engine/io/study_file.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "engine/io/study_file_parts.h"
+#include "engine/io/study_file_section.h"
+#include "engine/io/text_file.h"
+#include "engine/io/wording.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::size_t kMostBytes = 1 << 20;
+/// Bounds the depth to which dotted keys nest tables, which the TOML library frees by recursion.
+constexpr std::size_t kLongestLine = 16384;
+constexpr std::int64_t kVersion = 1;
+
+std::string read_lines(const std::string& path) {
+  std::string text = read_text(path, "study", kMostBytes);
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw InputError({path, 1, 1}, "the study is empty", "'poesy template MODEL' writes one to start from");
+  }
+  std::size_t line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > kLongestLine) {
+      throw InputError({path, line, 1}, "the line is longer than " + std::to_string(kLongestLine) + " bytes",
+                       "break it into several lines");
+    }
+    begin = end + 1;
+  }
+  return text;
+}
+
+toml::table parse(const std::string& text, const std::string& path) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    std::string reason(error.description());
+    constexpr std::string_view kPrefix = "Error while ";
+    if (reason.starts_with(kPrefix)) reason.erase(0, kPrefix.size());
+    throw InputError({path, error.source().begin.line, error.source().begin.column},
+                     "this is not TOML: " + printable(reason, 120),
+                     "correct this line; 'poesy template MODEL' shows a complete study");
+  }
+}
+
+void check_format(const StudySection& root) {
+  const StudyValue format = root.require("format", "begin a study with format = \"poesy-study\"");
+  if (format.text() != "poesy-study") {
+    format.fail("is '" + printable(format.text()) + "'", "a study has format = \"poesy-study\"");
+  }
+  const StudyValue version = root.require("version", "write version = 1");
+  const std::int64_t number = version.whole_number(1);
+  if (number > kVersion) {
+    version.fail("is " + std::to_string(number) + ", but this poesy knows version 1 only", "use a newer poesy");
+  }
+}
+
+SolverOptions::Method read_method(const StudyValue& value) {
+  constexpr std::array<std::string_view, 2> kWords{"gauss-newton", "newton"};
+  if (value.word(kWords) == 1) {
+    value.fail("is \"newton\", which is not available yet in this version", "use \"gauss-newton\"");
+  }
+  return SolverOptions::Method::gauss_newton;
+}
+
+SolverOptions read_solver(const StudySection& section) {
+  SolverOptions solver;
+  if (const auto value = section.find("method")) solver.method = read_method(*value);
+  if (const auto value = section.find("tolerance")) {
+    solver.tolerance = value->number();
+    if (!(solver.tolerance > 0.0)) {
+      value->fail("is " + shortest(solver.tolerance), "it must be greater than zero, e.g. 1e-15");
+    }
+  }
+  if (const auto value = section.find("max_iterations")) {
+    solver.max_iterations = static_cast<int>(value->whole_number(1, std::numeric_limits<int>::max()));
+  }
+  return solver;
+}
+
+NotConverged read_not_converged(const StudySection& section) {
+  constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::fail};
+  const auto value = section.find("not_converged");
+  if (!value) return NotConverged::exclude;
+  std::vector<std::string_view> words;
+  for (const NotConverged policy : kPolicies) words.push_back(name(policy));
+  return kPolicies[value->word(words)];
+}
+
+/// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
+void check_size(const StudySection& root, const Study& study) {
+  const bool from_file = study.poses.select == PoseSelection::Select::file;
+  const double poses = static_cast<double>(from_file ? study.poses.from_file.size() : study.poses.count);
+  const double cells = poses * static_cast<double>(study.analysis.factors.size());
+  const double solves = cells * static_cast<double>(study.analysis.samples);
+  if (cells > static_cast<double>(kMostCells)) {
+    throw InputError(
+        root.section("poses").place(),
+        "poses times factors is " + shortest(cells) + ", but a result holds at most " + std::to_string(kMostCells),
+        "ask for fewer poses or factors");
+  }
+  if (solves > static_cast<double>(kMostSolves)) {
+    throw InputError(root.section("analysis").place(),
+                     "poses times factors times samples is " + shortest(solves) + ", but at most " +
+                         std::to_string(kMostSolves) + " can be solved",
+                     "ask for fewer samples");
+  }
+}
+
+Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use) {
+  check_format(root);
+  root.allow({"format", "version", "title", "mechanism", "poses", "errors", "analysis", "solver", "run"});
+  Study study;
+  if (const auto title = root.find("title")) study.title = title->text();
+  study.mechanism = read_mechanism(root, catalog);
+  study.poses = read_pose_selection(root, study.model(), use);
+  study.errors = read_error_model(root, study.model());
+  study.analysis = read_analysis(root, study.model(), use);
+  const StudySection solver = root.section("solver");
+  solver.allow({"method", "tolerance", "max_iterations", "not_converged"});
+  study.solver = read_solver(solver);
+  study.not_converged = read_not_converged(solver);
+  const StudySection run = root.section("run");
+  run.allow({"seed"});
+  if (const auto seed = run.find("seed")) study.seed = static_cast<std::uint64_t>(seed->whole_number(0));
+  check_size(root, study);
+  return study;
+}
+
+}  // namespace
+
+Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) {
+  const std::string text = read_lines(path);
+  const toml::table table = parse(text, path);
+  Study study = study_from(StudySection(table, "", {path, 1, 1}), catalog, use);
+  static_cast<void>(build_model(study.mechanism));
+  return study;
+}
+
+}  // namespace poesy

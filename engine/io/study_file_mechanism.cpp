@@ -1,0 +1,124 @@
+#include <array>
+#include <filesystem>
+
+#include "engine/io/study_file_parts.h"
+#include "engine/io/table_file.h"
+#include "engine/io/wording.h"
+
+namespace poesy {
+namespace {
+
+std::vector<double> read_geometry(const StudySection& section, const ModelDescription& model) {
+  section.allow(names(model.geometry), "parameter");
+  std::vector<double> values;
+  for (const GeometryParameter& parameter : model.geometry) {
+    const auto value = section.find(parameter.name);
+    values.push_back(value ? value->quantity(parameter.dimension) : parameter.published);
+  }
+  return values;
+}
+
+Range read_range(const StudyValue& value, Dimension dimension) {
+  const std::vector<StudyValue> ends = value.list();
+  if (ends.size() != 2) {
+    value.fail("has " + std::to_string(ends.size()) + " values", "write the two ends of the range");
+  }
+  const Range range{ends[0].quantity(dimension), ends[1].quantity(dimension)};
+  if (!(range.lower < range.upper)) {
+    value.fail("runs from " + to_text({range.lower, dimension}) + " to " + to_text({range.upper, dimension}),
+               "write the lower end first, and two different ends");
+  }
+  return range;
+}
+
+std::vector<Range> read_workspace(const StudySection& section, const ModelDescription& model) {
+  section.allow(names(model.pose_coordinates), "pose coordinate");
+  std::vector<Range> ranges;
+  for (const PoseCoordinate& coordinate : model.pose_coordinates) {
+    const StudyValue value = section.require(coordinate.name, "give a range for every pose coordinate of the model");
+    ranges.push_back(read_range(value, coordinate.dimension));
+  }
+  return ranges;
+}
+
+std::vector<Range> default_workspace(const ModelDescription& model) {
+  std::vector<Range> ranges;
+  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
+    ranges.push_back({model.pose_lower[c], model.pose_upper[c]});
+  }
+  return ranges;
+}
+
+void read_pose_file(const StudySection& section, const ModelDescription& model, StudyUse use,
+                    PoseSelection& selection) {
+  section.refuse("count", "select = \"file\"");
+  section.refuse("workspace", "select = \"file\"");
+  selection.file = section.require("file", "write file = \"poses.csv\"").text();
+  if (use == StudyUse::evaluate) return;
+  const std::filesystem::path folder = std::filesystem::path(section.place().file).parent_path();
+  const std::string path = (folder / selection.file).string();
+  selection.from_file = read_poses(path, model);
+  selection.place = {path, 2, 1};
+}
+
+void read_box(const StudySection& section, const ModelDescription& model, StudyUse use, PoseSelection& selection) {
+  section.refuse("file", "select = \"" + std::string(name(selection.select)) + "\"");
+  const auto workspace = section.find("workspace");
+  selection.workspace = workspace ? read_workspace(workspace->section(), model) : default_workspace(model);
+  if (workspace) selection.place = workspace->place();
+  if (use == StudyUse::evaluate && !section.find("count")) return;
+  const StudyValue count = section.require("count", "write how many poses, e.g. count = 158");
+  selection.count = static_cast<std::size_t>(count.whole_number(1, kMostPoses));
+}
+
+PoseSelection::Select read_select(const StudySection& section, StudyUse use) {
+  using Select = PoseSelection::Select;
+  constexpr std::array kSelects{Select::interior, Select::file, Select::boundary, Select::grid, Select::trajectory};
+  const auto value = section.find("select");
+  if (!value) return Select::interior;
+  std::vector<std::string_view> words;
+  for (const Select select : kSelects) words.push_back(name(select));
+  const Select select = kSelects[value->word(words)];
+  if (use == StudyUse::run && select != Select::interior && select != Select::file) {
+    value->fail("is \"" + std::string(name(select)) + "\", which is not available yet in this version",
+                "use \"interior\" or \"file\"");
+  }
+  return select;
+}
+
+}  // namespace
+
+MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog) {
+  const StudySection section = root.require("mechanism", "add the section [mechanism] with the key model").section();
+  section.allow({"model", "geometry", "fidelity"});
+  const StudyValue model = section.require("model", "write model = \"NAME\"; 'poesy models' lists the names");
+  std::vector<std::string_view> known;
+  for (const CatalogEntry& entry : catalog) known.push_back(entry.description.name);
+  MechanismChoice choice;
+  choice.entry = &catalog[model.word(known)];
+  const auto geometry = section.find("geometry");
+  choice.place = geometry ? geometry->place() : section.place();
+  choice.geometry = read_geometry(section.section("geometry"), choice.entry->description);
+  section.refuse("fidelity", "model \"" + choice.entry->description.name + "\", which offers no choice of it");
+  return choice;
+}
+
+PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use) {
+  if (use == StudyUse::run) static_cast<void>(root.require("poses", "add the section [poses] with the key count"));
+  const StudySection section = root.section("poses");
+  section.allow({"select", "count", "workspace", "file", "trajectory"});
+  PoseSelection selection;
+  selection.place = section.place();
+  selection.select = read_select(section, use);
+  if (selection.select != PoseSelection::Select::trajectory) {
+    section.refuse("trajectory", "select = \"" + std::string(name(selection.select)) + "\"");
+  }
+  if (selection.select == PoseSelection::Select::file) {
+    read_pose_file(section, model, use, selection);
+  } else {
+    read_box(section, model, use, selection);
+  }
+  return selection;
+}
+
+}  // namespace poesy

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "engine/io/study_file.h"
+#include "engine/io/study_file_section.h"
+
+namespace poesy {
+
+/// Limits of what a study may ask for: far above any use, far below what breaks memory or arithmetic.
+inline constexpr std::int64_t kMostPoses = 10'000'000;
+inline constexpr std::int64_t kMostCells = 10'000'000;  ///< (factor, pose) pairs of a result
+inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;
+
+/// Each reads one part of a study file and throws InputError for the first thing that is wrong with it.
+MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog);
+/// For StudyUse::evaluate the pose file is not opened.
+PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use);
+ErrorModel read_error_model(const StudySection& root, const ModelDescription& model);
+Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
+
+}  // namespace poesy

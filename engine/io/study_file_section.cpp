@@ -1,0 +1,176 @@
+#include "engine/io/study_file_section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/io/wording.h"
+
+namespace poesy {
+namespace {
+
+Place place_in(const Place& section, const toml::source_region& region) {
+  if (region.begin.line == 0) return section;
+  return {section.file, region.begin.line, region.begin.column};
+}
+
+/// What a value is, with the value where it is short: "the number 0.5".
+std::string described(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string:
+      return "the text '" + printable(node.as_string()->get()) + "'";
+    case toml::node_type::integer:
+      return "the whole number " + std::to_string(node.as_integer()->get());
+    case toml::node_type::floating_point:
+      return "the number " + shortest(node.as_floating_point()->get());
+    case toml::node_type::boolean:
+      return node.as_boolean()->get() ? "true" : "false";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::table:
+      return "a section";
+    default:
+      return "a date or time";
+  }
+}
+
+std::string unit_remedy(std::string_view text) {
+  const std::string_view written = text.substr(text.find_last_of("0123456789. ") + 1);
+  std::vector<std::string_view> known;
+  for (const Unit& unit : units()) known.push_back(unit.name);
+  if (std::find(known.begin(), known.end(), written) == known.end()) {
+    if (const std::string hint = suggestion(written, known); hint.starts_with("did you mean")) return hint;
+  }
+  return "write a number and a unit, e.g. \"1 mm\"";
+}
+
+std::string example(Dimension dimension) { return "\"1 " + std::string(display_unit(dimension).name) + "\""; }
+
+}  // namespace
+
+StudyValue::StudyValue(const toml::node& node, std::string name, const Place& section)
+    : node_(&node), name_(std::move(name)), place_(place_in(section, node.source())) {}
+
+void StudyValue::fail(std::string_view problem, std::string_view remedy) const {
+  throw InputError(place_, name_ + " " + std::string(problem), remedy);
+}
+
+void StudyValue::wrong_type(std::string_view remedy) const { fail("is " + described(*node_), remedy); }
+
+std::string StudyValue::text() const {
+  if (const auto* text = node_->as_string()) return text->get();
+  wrong_type("write a text in quotes");
+}
+
+std::int64_t StudyValue::whole_number(std::int64_t least, std::int64_t most) const {
+  const auto* number = node_->as_integer();
+  if (number == nullptr) wrong_type("write a whole number");
+  const std::int64_t value = number->get();
+  if (value < least) fail("is " + std::to_string(value), "it must be at least " + std::to_string(least));
+  if (value > most) fail("is " + std::to_string(value), "it must be at most " + std::to_string(most));
+  return value;
+}
+
+double StudyValue::number() const {
+  if (!node_->is_number()) wrong_type("write a number without a unit");
+  const double number = node_->value<double>().value_or(std::nan(""));
+  if (!std::isfinite(number)) fail("is not finite", "write a finite number");
+  return number;
+}
+
+double StudyValue::quantity(Dimension dimension) const {
+  if (dimension == Dimension::number) return number();
+  if (node_->is_number())
+    fail("is the bare number " + shortest(number()), "write it with a unit, e.g. " + example(dimension));
+  if (!is_text()) wrong_type("write a number and a unit in quotes, e.g. " + example(dimension));
+  const std::string written = printable(text());
+  try {
+    const Quantity quantity = parse_quantity(written);
+    if (quantity.dimension == dimension) return quantity.si;
+  } catch (const QuantityError& reason) {
+    fail(std::string("cannot be read: ") + reason.what(), unit_remedy(written));
+  }
+  fail("is '" + written + "', but must be " + (dimension == Dimension::angle ? "an angle" : "a length"),
+       "write it like " + example(dimension));
+}
+
+double StudyValue::positive_quantity(Dimension dimension) const {
+  const double value = quantity(dimension);
+  if (value > 0.0) return value;
+  fail("is '" + printable(text()) + "'", "it must be greater than zero");
+}
+
+std::size_t StudyValue::word(std::span<const std::string_view> words) const {
+  const std::string written = text();
+  const auto found = std::find(words.begin(), words.end(), written);
+  if (found == words.end()) fail("is '" + printable(written) + "', which is unknown", suggestion(written, words));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+StudySection StudyValue::section() const {
+  const auto* table = node_->as_table();
+  if (table == nullptr) wrong_type("write a section [" + name_ + "] or { key = value }");
+  return StudySection(*table, name_, place_);
+}
+
+std::vector<StudyValue> StudyValue::list() const {
+  const auto* array = node_->as_array();
+  if (array == nullptr) wrong_type("write a list in [ ]");
+  std::vector<StudyValue> values;
+  for (const toml::node& element : *array) {
+    values.emplace_back(element, name_ + "[" + std::to_string(values.size()) + "]", place_);
+  }
+  return values;
+}
+
+StudySection::StudySection(const toml::table& table, std::string name, Place place)
+    : table_(&table), name_(std::move(name)), place_(std::move(place)) {}
+
+std::vector<std::string> StudySection::keys() const {
+  std::vector<std::string> list;
+  for (const auto& [key, value] : *table_) list.emplace_back(key.str());
+  return list;
+}
+
+void StudySection::allow(std::span<const std::string_view> known, std::string_view what) const {
+  for (const std::string& key : keys()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    throw InputError(place_of_key(key), "unknown " + std::string(what) + " '" + printable(key) + "'" + where(),
+                     suggestion(key, known));
+  }
+}
+
+void StudySection::refuse(std::string_view key, std::string_view owner) const {
+  if (!find(key)) return;
+  throw InputError(place_of_key(key), full_name(key) + " does not belong to " + std::string(owner), "remove it");
+}
+
+std::optional<StudyValue> StudySection::find(std::string_view key) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) return std::nullopt;
+  return StudyValue(*node, full_name(key), place_);
+}
+
+StudyValue StudySection::require(std::string_view key, std::string_view remedy) const {
+  if (auto value = find(key)) return *std::move(value);
+  throw InputError(place_, "key '" + std::string(key) + "' is missing" + where(), remedy);
+}
+
+StudySection StudySection::section(std::string_view key) const {
+  static const toml::table kNothing;
+  const auto value = find(key);
+  return value ? value->section() : StudySection(kNothing, full_name(key), place_);
+}
+
+Place StudySection::place_of_key(std::string_view key) const {
+  const auto entry = table_->find(key);
+  return entry == table_->end() ? place_ : place_in(place_, entry->first.source());
+}
+
+std::string StudySection::full_name(std::string_view key) const {
+  return name_.empty() ? printable(key) : name_ + "." + printable(key);
+}
+
+std::string StudySection::where() const { return name_.empty() ? std::string() : " in [" + name_ + "]"; }
+
+}  // namespace poesy

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/units.h"
+
+namespace poesy {
+
+class StudySection;
+
+/// One value of a study file. Every function throws InputError at the value's place when the value is not what is
+/// asked for. Refers to the parsed file, which must outlive it.
+class StudyValue {
+ public:
+  /// `name` is the value's full name for messages: "errors.linear.sigma".
+  StudyValue(const toml::node& node, std::string name, const Place& section);
+
+  const Place& place() const { return place_; }
+  bool is_text() const { return node_->is_string(); }
+
+  std::string text() const;
+  std::int64_t whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
+  double number() const;
+  /// SI.
+  double quantity(Dimension dimension) const;
+  double positive_quantity(Dimension dimension) const;
+  /// The position among these words.
+  std::size_t word(std::span<const std::string_view> words) const;
+  StudySection section() const;
+  std::vector<StudyValue> list() const;
+
+  /// "NAME PROBLEM; REMEDY" at the value's place.
+  [[noreturn]] void fail(std::string_view problem, std::string_view remedy) const;
+
+ private:
+  [[noreturn]] void wrong_type(std::string_view remedy) const;
+
+  const toml::node* node_;
+  std::string name_;
+  Place place_;
+};
+
+/// A table of a study file, in the same way.
+class StudySection {
+ public:
+  /// `name` is empty for the file as a whole.
+  StudySection(const toml::table& table, std::string name, Place place);
+
+  const Place& place() const { return place_; }
+  bool empty() const { return table_->empty(); }
+  std::vector<std::string> keys() const;
+
+  /// Throws for a key that is not one of these; `what` says what the keys of this section are.
+  void allow(std::span<const std::string_view> known, std::string_view what = "key") const;
+  void allow(std::initializer_list<std::string_view> known) const { allow(std::span(known.begin(), known.size())); }
+  /// Throws when the key is there: it "does not belong to OWNER".
+  void refuse(std::string_view key, std::string_view owner) const;
+
+  std::optional<StudyValue> find(std::string_view key) const;
+  /// Throws when it is missing; the remedy says what to write.
+  StudyValue require(std::string_view key, std::string_view remedy) const;
+  /// Empty when it is missing.
+  StudySection section(std::string_view key) const;
+
+ private:
+  Place place_of_key(std::string_view key) const;
+  std::string full_name(std::string_view key) const;
+  std::string where() const;
+
+  const toml::table* table_;
+  std::string name_;
+  Place place_;
+};
+
+}  // namespace poesy

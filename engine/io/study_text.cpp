@@ -1,0 +1,163 @@
+#include "engine/io/study_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "engine/io/study_file.h"
+
+namespace poesy {
+namespace {
+
+bool same(const Distribution& a, const Distribution& b) {
+  return a.shape() == b.shape() && a.sigma() == b.sigma() && a.half_width() == b.half_width();
+}
+
+std::string distribution_text(const Distribution& distribution, Dimension dimension) {
+  using Shape = Distribution::Shape;
+  const Shape shape = distribution.shape();
+  std::string text = fmt::format("{{ distribution = {}", quoted(name(shape)));
+  if (shape == Shape::normal || shape == Shape::truncated_normal) {
+    text += ", sigma = " + exact_value(distribution.sigma(), dimension);
+  }
+  if (shape != Shape::normal) text += ", half_width = " + exact_value(distribution.half_width(), dimension);
+  return text + " }";
+}
+
+/// The distribution that most factors of this dimension have: what `linear` or `angular` is set to.
+Distribution usual_distribution(const Study& study, Dimension dimension) {
+  const std::vector<Distribution>& all = study.errors.by_factor;
+  const std::vector<Factor>& factors = study.model().factors;
+  Distribution usual = Distribution::normal(display_unit(dimension).si);
+  std::ptrdiff_t most = 0;
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (factors[f].dimension != dimension) continue;
+    std::ptrdiff_t shared = 0;
+    for (std::size_t g = 0; g < factors.size(); ++g) {
+      shared += factors[g].dimension == dimension && same(all[f], all[g]) ? 1 : 0;
+    }
+    if (shared <= most) continue;
+    usual = all[f];
+    most = shared;
+  }
+  return usual;
+}
+
+std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model) {
+  if (const std::string set = set_name(factors, model); !set.empty()) return quoted(set);
+  std::string text = "[";
+  for (const FactorIndex factor : factors) text += "\n  " + quoted(model.factors[factor.value].name) + ",";
+  return text + "\n]";
+}
+
+std::string mechanism_text(const Study& study) {
+  const ModelDescription& model = study.model();
+  std::string text = fmt::format("[mechanism]\nmodel = {}\n", quoted(model.name));
+  if (model.geometry.empty()) return text;
+  text += "\n[mechanism.geometry]\n";
+  for (std::size_t g = 0; g < model.geometry.size(); ++g) {
+    const GeometryParameter& parameter = model.geometry[g];
+    text += parameter.name + " = " + exact_value(study.mechanism.geometry[g], parameter.dimension) + "\n";
+  }
+  return text;
+}
+
+std::string poses_text(const Study& study) {
+  const PoseSelection& poses = study.poses;
+  std::string text = fmt::format("[poses]\nselect = {}\n", quoted(name(poses.select)));
+  if (poses.select == PoseSelection::Select::file) return text + "file = " + quoted(poses.file) + "\n";
+  if (poses.count > 0) text += fmt::format("count = {}\n", poses.count);
+  return text + "workspace = " + workspace_text(poses.workspace, study.model(), exact_value) + "\n";
+}
+
+std::string errors_text(const Study& study) {
+  const Distribution linear = usual_distribution(study, Dimension::length);
+  const Distribution angular = usual_distribution(study, Dimension::angle);
+  std::string overrides;
+  for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
+    const Factor& factor = study.model().factors[f];
+    const Distribution& own = study.errors.by_factor[f];
+    if (same(own, factor.dimension == Dimension::length ? linear : angular)) continue;
+    overrides += factor.name + " = " + distribution_text(own, factor.dimension) + "\n";
+  }
+  if (!overrides.empty()) overrides = "\n[errors.override]\n" + overrides;
+  return fmt::format("[errors]\nlinear = {}\nangular = {}\n{}", distribution_text(linear, Dimension::length),
+                     distribution_text(angular, Dimension::angle), overrides);
+}
+
+std::string analysis_text(const Study& study) {
+  const Analysis& analysis = study.analysis;
+  std::string text =
+      fmt::format("[analysis]\nkind = {}\nfactors = {}\nsamples = {}\nconf_level = {}\n", quoted(name(analysis.kind)),
+                  factors_text(analysis.factors, study.model()), analysis.samples, shortest(analysis.conf_level));
+  if (!analysis.background) return text;
+  return text + fmt::format("\n[analysis.background]\nfactors = {}\nlinear = {}\nangular = {}\n",
+                            factors_text(analysis.background->factors, study.model()),
+                            exact_value(analysis.background->linear, Dimension::length),
+                            exact_value(analysis.background->angular, Dimension::angle));
+}
+
+}  // namespace
+
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char character : text) {
+    const auto code = static_cast<unsigned char>(character);
+    if (code < 0x20 || code == 0x7F) {
+      out += fmt::format("\\u{:04X}", code);
+    } else {
+      if (character == '"' || character == '\\') out += '\\';
+      out += character;
+    }
+  }
+  return out + '"';
+}
+
+std::string exact_value(double si, Dimension dimension) {
+  return dimension == Dimension::number ? shortest(si) : quoted(to_text({si, dimension}));
+}
+
+std::string readable_value(double si, Dimension dimension) {
+  const std::string exact = exact_value(si, dimension);
+  if (dimension == Dimension::number) return exact;
+  const Unit& unit = display_unit(dimension);
+  const std::string text = fmt::format("{:.12g} {}", si / unit.si, unit.name);
+  const bool as_exact = parse_quantity(text).si == si;
+  return as_exact && text.size() + 2 <= exact.size() + 1 ? quoted(text) : exact;
+}
+
+std::string workspace_text(std::span<const Range> workspace, const ModelDescription& model,
+                           std::string (*value)(double si, Dimension dimension)) {
+  std::string text;
+  for (std::size_t c = 0; c < workspace.size(); ++c) {
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    text +=
+        fmt::format("{}{} = [{}, {}]", c == 0 ? "{ " : ", ", coordinate.name,
+                    value(workspace[c].lower, coordinate.dimension), value(workspace[c].upper, coordinate.dimension));
+  }
+  return text + " }";
+}
+
+std::string set_name(std::span<const FactorIndex> factors, const ModelDescription& model) {
+  for (const FactorSet& set : model.factor_sets) {
+    if (std::equal(factors.begin(), factors.end(), set.factors.begin(), set.factors.end())) return set.name;
+  }
+  if (model.find_set("all") != nullptr || factors.size() != model.factors.size()) return {};
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (factors[f].value != f) return {};
+  }
+  return "all";
+}
+
+std::string resolved_text(const Study& study) {
+  const SolverOptions& solver = study.solver;
+  const std::string solver_text = fmt::format(
+      "[solver]\nmethod = {}\ntolerance = {}\nmax_iterations = {}\nnot_converged = {}\n", quoted(name(solver.method)),
+      shortest(solver.tolerance), solver.max_iterations, quoted(name(study.not_converged)));
+  return fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}\n\n{}\n{}\n{}\n{}\n{}\n[run]\nseed = {}\n",
+                     quoted(study.title), mechanism_text(study), poses_text(study), errors_text(study),
+                     analysis_text(study), solver_text, study.seed);
+}
+
+}  // namespace poesy

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/units.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// A TOML string: in quotes, with what needs it escaped.
+std::string quoted(std::string_view text);
+
+/// A value of this dimension as a study file has it, exact when read back: "0.001 m" in quotes, or a bare number.
+std::string exact_value(double si, Dimension dimension);
+
+/// The same in the unit in which people read it, where that is as exact and shorter: "60 mm" rather than "0.06 m".
+std::string readable_value(double si, Dimension dimension);
+
+/// The workspace of a study as a TOML inline table, with one of the functions above for its numbers.
+std::string workspace_text(std::span<const Range> workspace, const ModelDescription& model,
+                           std::string (*value)(double si, Dimension dimension));
+
+/// The name of the factor set that these are, or "all"; empty when they are no set.
+std::string set_name(std::span<const FactorIndex> factors, const ModelDescription& model);
+
+}  // namespace poesy

@@ -1,0 +1,83 @@
+#include "engine/io/wording.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace poesy {
+namespace {
+
+constexpr std::size_t kMostWords = 12;
+
+/// Length of the UTF-8 character at the start of this text, 0 when it is not one.
+std::size_t character_length(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  std::size_t length = 0;
+  if (byte(0) < 0x80) return 1;
+  if (byte(0) >= 0xC2 && byte(0) < 0xE0) length = 2;
+  if (byte(0) >= 0xE0 && byte(0) < 0xF0) length = 3;
+  if (byte(0) >= 0xF0 && byte(0) < 0xF5) length = 4;
+  if (length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(k) & 0xC0) != 0x80) return 0;
+  }
+  return length;
+}
+
+bool is_control(std::string_view character) {
+  const auto lead = static_cast<unsigned char>(character[0]);
+  const bool c1 = character.size() == 2 && lead == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+  return lead < 0x20 || lead == 0x7F || c1;
+}
+
+/// Fewest single-character insertions, deletions and replacements between two words (Levenshtein).
+std::size_t edit_distance(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[to.size()];
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t most) {
+  std::string shown;
+  while (!text.empty()) {
+    if (shown.size() >= most) return shown + "...";
+    const std::size_t length = character_length(text);
+    const std::string_view character = text.substr(0, std::max(length, std::size_t{1}));
+    shown += length == 0 || is_control(character) ? "?" : character;
+    text.remove_prefix(character.size());
+  }
+  return shown;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+  const std::size_t allowed = std::max<std::size_t>(1, (word.size() + 2) / 3);
+  std::string_view best;
+  std::size_t best_distance = allowed + 1;
+  for (const std::string_view candidate : known) {
+    if (candidate.size() > word.size() + allowed || word.size() > candidate.size() + allowed) continue;
+    const std::size_t distance = edit_distance(word, candidate);
+    const bool nothing_in_common = distance == std::max(word.size(), candidate.size());
+    if (distance < best_distance && !nothing_in_common) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  if (!best.empty()) return "did you mean '" + std::string(best) + "'?";
+  std::string list = "known: ";
+  for (std::size_t k = 0; k < std::min(known.size(), kMostWords); ++k) {
+    list += (k > 0 ? ", " : "") + std::string(known[k]);
+  }
+  return known.size() > kMostWords ? list + ", ... (" + std::to_string(known.size()) + " in all)" : list;
+}
+
+}  // namespace poesy

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace poesy {
+
+/// A user's text as a message may show it: on one line, valid UTF-8, no control characters, cut off after
+/// about `most` bytes.
+std::string printable(std::string_view text, std::size_t most = 60);
+
+/// "did you mean 'sigma'?" when a known word is close to this one, else the known words: "known: sigma, half_width".
+std::string suggestion(std::string_view word, std::span<const std::string_view> known);
+
+/// The names of named things, for suggestion().
+template <class Named>
+std::vector<std::string_view> names(const std::vector<Named>& things) {
+  std::vector<std::string_view> list;
+  for (const Named& thing : things) list.push_back(thing.name);
+  return list;
+}
+
+}  // namespace poesy

@@ -1,0 +1,35 @@
+#include "engine/study/plan.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+
+Plan::Plan(const Study& study, PoseSet poses)
+    : poses_(std::move(poses)),
+      factors_(study.analysis.factors),
+      background_(background_errors(study)),
+      samples_(study.analysis.samples),
+      units_per_cell_((samples_ + kUnitSamples - 1) / kUnitSamples),
+      seed_(study.seed),
+      solver_(study.solver),
+      not_converged_(study.not_converged) {
+  distributions_.reserve(factors_.size());
+  for (const FactorIndex factor : factors_) distributions_.push_back(study.errors.by_factor[factor.value]);
+}
+
+WorkUnit Plan::unit(std::size_t u) const {
+  POESY_EXPECTS(u < units());
+  const std::size_t cell = u / units_per_cell_;
+  const std::size_t first = u % units_per_cell_ * kUnitSamples;
+  return {cell / poses_.size(), PoseIndex(cell % poses_.size()), SampleIndex(first),
+          std::min(kUnitSamples, samples_ - first)};
+}
+
+std::uint64_t Plan::solves() const {
+  return std::uint64_t{factors_.size()} * std::uint64_t{poses_.size()} * std::uint64_t{samples_};
+}
+
+}  // namespace poesy

@@ -1,0 +1,118 @@
+#include "engine/io/table_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_model.h"
+#include "tests/support/input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy {
+namespace {
+
+const ModelDescription kModel = test::FakeModel::describe();
+
+PoseSet poses_of(std::string_view text) {
+  const test::TempFolder folder;
+  return read_poses(folder.write("poses.csv", text), kModel);
+}
+
+TEST(ReadPoses, ComesBackInTheModelsOrder) {
+  const PoseSet poses = poses_of("gamma,z,beta\n0.3,-0.2,0.1\n0.4,-0.25,1e-1\n");
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses.column(0), (std::vector<double>{-0.2, -0.25}));
+  EXPECT_EQ(poses.column(1), (std::vector<double>{0.1, 0.1}));
+  EXPECT_EQ(poses.column(2), (std::vector<double>{0.3, 0.4}));
+}
+
+TEST(ReadPoses, ToleratesWhatProgramsWrite) {
+  const std::vector<double> expected{-0.2, -0.25};
+  EXPECT_EQ(poses_of("\xEF\xBB\xBFz,beta,gamma\r\n-0.2,0,0\r\n-0.25,0,0\r\n").column(0), expected);
+  EXPECT_EQ(poses_of("z, beta\t, gamma\n  -0.2 , +0 ,0\n-0.25,0,0").column(0), expected);
+  EXPECT_EQ(poses_of("z,beta,gamma\n-0.2,0,0\n-0.25,0,0\n\n  \r\n\n").column(0), expected);
+}
+
+TEST(ReadErrors, TakesAnySubsetInAnyOrder) {
+  const test::TempFolder folder;
+  const ErrorTable table = read_errors(folder.write("e.csv", "delta_2,delta_1\n1,2\n3,4\n5,6\n"), kModel);
+  EXPECT_EQ(table.factors, (std::vector<FactorIndex>{FactorIndex(2), FactorIndex(0)}));
+  EXPECT_EQ(table.values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(table.rows, 3u);
+}
+
+struct BadTable {
+  const char* name;
+  std::string text;  ///< the place of the mistake marked with ^
+  std::vector<std::string> words;
+};
+
+void PrintTo(const BadTable& bad, std::ostream* out) { *out << bad.name; }
+
+const auto kName = [](const auto& info) { return std::string(info.param.name); };
+
+class BadPoses : public testing::TestWithParam<BadTable> {};
+
+TEST_P(BadPoses, AreAnInputErrorWithItsPlace) {
+  const test::TempFolder folder;
+  const test::Marked bad(GetParam().text);
+  const std::string path = folder.write("poses.csv", bad.text);
+  test::expect_input_error([&] { read_poses(path, kModel); }, {path, bad.line, bad.column}, GetParam().words);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadPoses,
+    testing::Values(BadTable{"Empty", "^", {"empty"}}, BadTable{"OnlyBlank", "^\n \r\n", {"empty"}},
+                    BadTable{"OnlyByteOrderMark", "^\xEF\xBB\xBF\n", {"empty"}},
+                    BadTable{"HeaderOnly", "z,beta,gamma\n^", {"no data"}},
+                    BadTable{"BlankFirstLine", "^\nz,beta,gamma\n0,0,0\n", {"column ''", "pose coordinate"}},
+                    BadTable{"MissingColumn", "^z,beta\n0,0\n", {"'gamma' is missing"}},
+                    BadTable{"ExtraColumn", "z,beta,gamma,^weight\n0,0,0,0\n", {"'weight'", "known: z, beta, gamma"}},
+                    BadTable{"MisspeltColumn", "z, ^bta,gamma\n0,0,0\n", {"'bta'", "did you mean 'beta'?"}},
+                    BadTable{"RepeatedColumn", "z,beta,^z,gamma\n0,0,0,0\n", {"'z'", "second time"}},
+                    BadTable{"NoHeader", "^0,0,0\n0,0,0\n", {"column '0'"}},
+                    BadTable{"Word", "z,beta,gamma\n0,0,0\n0, ^left,0\n", {"'left'", "'beta'", "not a finite number"}},
+                    BadTable{"NotANumber", "z,beta,gamma\n0,^nan,0\n", {"'nan'", "not a finite number"}},
+                    BadTable{"Infinity", "z,beta,gamma\n0,0,^-inf\n", {"'-inf'", "not a finite number"}},
+                    BadTable{"Overflow", "z,beta,gamma\n^1e999,0,0\n", {"'1e999'", "not a finite number"}},
+                    BadTable{"Unit", "z,beta,gamma\n^1 mm,0,0\n", {"'1 mm'", "SI"}},
+                    BadTable{"Hexadecimal", "z,beta,gamma\n^0x1,0,0\n", {"'0x1'"}},
+                    BadTable{"EmptyCell", "z,beta,gamma\n0,^,0\n", {"''", "'beta'"}},
+                    BadTable{"TooFewCells", "z,beta,gamma\n0,0,0\n^0,0\n", {"should have 3 cells, but has 2"}},
+                    BadTable{"TooManyCells", "z,beta,gamma\n0,0,0,^0\n", {"should have 3 cells, but has 4"}},
+                    BadTable{"BlankLineBetween", "z,beta,gamma\n0,0,0\n^\n0,0,0\n", {"should have 3 cells, but has 1"}},
+                    BadTable{"Semicolons", "^z;beta;gamma\n0;0;0\n", {"'z;beta;gamma'"}},
+                    BadTable{"DecimalComma", "z,beta,gamma\n0,5,0,^5\n", {"but has 4"}},
+                    BadTable{"BinaryRubbish",
+                             std::string("^\x7F"
+                                         "ELF\x02\x01\x00\x00\xFF",
+                                         10),
+                             {"'?ELF?"}},
+                    BadTable{"ZeroByte", std::string("z,beta,gamma\n0,^0\0,0\n", 21), {"'0?'"}}),
+    kName);
+
+class BadErrors : public testing::TestWithParam<BadTable> {};
+
+TEST_P(BadErrors, AreAnInputErrorWithItsPlace) {
+  const test::TempFolder folder;
+  const test::Marked bad(GetParam().text);
+  const std::string path = folder.write("errors.csv", bad.text);
+  test::expect_input_error([&] { read_errors(path, kModel); }, {path, bad.line, bad.column}, GetParam().words);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadErrors,
+    testing::Values(BadTable{"UnknownFactor", "delta_1,^delta_9\n0,0\n", {"'delta_9'", "did you mean 'delta_1'?"}},
+                    BadTable{"RepeatedFactor", "delta_1,^delta_1\n0,0\n", {"'delta_1'", "second time"}},
+                    BadTable{"Word", "delta_1\n^x\n", {"'x'", "'delta_1'"}},
+                    BadTable{"HeaderOnly", "delta_1\n^", {"no data"}}, BadTable{"Empty", "^", {"empty"}}),
+    kName);
+
+TEST(ReadTables, TellAFolderFromAMissingFile) {
+  const test::TempFolder folder;
+  test::expect_input_error([&] { read_poses(folder.file("."), kModel); }, {folder.file("."), 0, 0}, {"folder"});
+  test::expect_input_error([&] { read_errors(folder.file("."), kModel); }, {folder.file("."), 0, 0}, {"folder"});
+  EXPECT_THROW(read_poses(folder.file("none.csv"), kModel), FileError);
+  EXPECT_THROW(read_errors(folder.file("none.csv"), kModel), FileError);
+}
+
+}  // namespace
+}  // namespace poesy
