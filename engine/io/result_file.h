@@ -20,7 +20,8 @@ void write_evaluation(const std::string& path, const Study& study, const PoseSet
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts);
 
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
-/// folder does not exist or the path is a directory, FileError when the folder cannot be written.
+/// folder does not exist or something other than a plain file stands there, FileError when the folder cannot be
+/// written.
 void check_result_path(const std::string& path);
 
 /// A pose coordinate or response or factor as a result file names it.
@@ -30,6 +31,7 @@ struct NamedUnit {
 };
 
 /// What a result file of either kind says, read back. Members that the file does not have are empty.
+/// Where a model has details, evaluation.detail holds their components in the order of `details`.
 struct StoredResult {
   std::string kind;  ///< "sensitivity" or "evaluate"
   std::string title;
@@ -40,9 +42,14 @@ struct StoredResult {
   std::vector<NamedUnit> pose_coordinates;
   PoseSet poses;
   std::vector<NamedUnit> factors;
+  std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;
-  SensitivityResult sensitivity;  ///< by_status of solves is not stored per cell: iterations and counts are summed
+  SensitivityResult sensitivity;
   EvaluationResult evaluation;
+  std::vector<Detail> details;
+  std::vector<std::string> joints;
+  Pairing pairing = Pairing::every_pose_with_every_row;
+  std::vector<double> errors;  ///< [S x P], or [M x P] row by row; SI
   RunFacts facts;
 };
 
@@ -58,8 +65,24 @@ struct Verification {
 /// Recomputes the content hash of a result file. Throws FileError when it cannot be read as one.
 Verification verify_result(const std::string& path);
 
-/// Writes every table of a result file as CSV into a folder, made if missing; one file per table, named after its
-/// place in the result, first line the column names. Returns the files written. Throws FileError.
+/// Writes every table of a result file as CSV into a folder, made if missing; one file per table, first line the column
+/// names with their units. Only the first column may hold text (names of factors), nothing is quoted: in Octave
+/// `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Tables of a sensitivity result:
+///
+///     global.csv           factor | each response's index and interval in SI, then in the units people read
+///     local_RESPONSE.csv   factor | one column a pose, SI
+///     not_converged.csv    factor | one column a pose
+///     factors.csv          factor | standard deviation
+///     poses.csv            pose | coordinates
+///
+/// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
+/// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and
+///
+///     evaluate.csv              pose, sample | responses, details, status (position in kStatusNames), iterations
+///     joint_displacements.csv   pose | joints
+///     errors.csv                sample (or pose, row by row) | factors
+///
+/// Returns the paths of the files written. Throws FileError.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);
 
 }  // namespace poesy

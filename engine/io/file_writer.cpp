@@ -1,0 +1,99 @@
+#include "engine/io/file_writer.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace poesy {
+namespace {
+
+constexpr int kClosed = -1;
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+std::string_view remedy(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space or choose another folder";
+    case EFBIG:
+      return "raise the limit on file sizes or choose another folder";
+    case ENOENT:
+    case ENOTDIR:
+      return "make the folder or choose another one";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a folder that you may write to";
+    default:
+      return "choose another folder, or repair the disk";
+  }
+}
+
+/// Makes the rename survive a crash. Some file systems cannot sync a folder: the file itself is safe there.
+bool sync_folder(const std::string& path) {
+  const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder == kClosed) return errno == EACCES;
+  const bool synced = ::fsync(folder) == 0 || errno == EINVAL;
+  const int error = errno;
+  ::close(folder);
+  errno = error;
+  return synced;
+}
+
+}  // namespace
+
+FileWriter::FileWriter(std::string path)
+    : path_(std::move(path)), temporary_(path_ + ".tmp." + std::to_string(::getpid())) {
+  struct stat there {};
+  if (::stat(path_.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
+    throw FileError(path_, "is not a plain file and will not be replaced", "choose another name");
+  }
+  constexpr mode_t kReadableByAll = 0666;  // before the umask
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadableByAll);
+  if (descriptor_ == kClosed) fail("cannot be created", errno);
+}
+
+FileWriter::~FileWriter() {
+  if (descriptor_ != kClosed) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void FileWriter::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("cannot be written", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void FileWriter::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+void FileWriter::commit() {
+  if (::fsync(descriptor_) != 0) fail("cannot be written", errno);
+  close_file();
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be put in place", errno);
+  temporary_.clear();
+  if (!sync_folder(path_)) fail("is in place, but its folder cannot be synced", errno);
+}
+
+void FileWriter::close_file() {
+  if (::close(std::exchange(descriptor_, kClosed)) != 0) fail("cannot be written", errno);
+}
+
+void FileWriter::fail(std::string_view action, int error) const {
+  throw FileError(path_, std::string(action) + " (" + std::generic_category().message(error) + ")", remedy(error));
+}
+
+}  // namespace poesy

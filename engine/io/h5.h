@@ -1,0 +1,101 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// The part of HDF5 that result files use: objects are named by their absolute path, every call is checked, every id is
+/// closed. HDF5 stays behind this header and h5.cpp; opening a File turns off HDF5's own printing of errors.
+namespace poesy::h5 {
+
+/// A call into HDF5 failed. what() is a clause: what was tried on which object, and HDF5's own reason.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+template <class T>
+concept Element = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t> ||
+    std::same_as<T, std::uint32_t> || std::same_as<T, std::uint8_t> || std::same_as<T, std::string>;
+
+/// Length of each axis; empty for a scalar.
+using Shape = std::vector<std::size_t>;
+
+/// Number of elements.
+std::size_t size(const Shape& shape);
+
+/// The value of a dataset or attribute as it is stored, whatever its type.
+struct Value {
+  enum class Type { floating, signed_integer, unsigned_integer, text };
+
+  Type type = Type::text;
+  std::size_t width = 0;             ///< bytes per number; 0 for text
+  Shape shape;                       ///< row-major
+  std::vector<std::byte> numbers;    ///< [size(shape) * width], little-endian
+  std::vector<std::string> strings;  ///< [size(shape)], for text
+};
+
+/// An HDF5 file. Numbers are stored little-endian in the width of T, strings with variable length in UTF-8, objects
+/// without times and with their order of creation. Every member throws Error when HDF5 refuses.
+class File {
+ public:
+  /// An empty file that lives in memory only.
+  static File in_memory();
+  /// An existing file, read-only.
+  static File open(const std::string& path);
+
+  File(File&& other) noexcept;
+  File& operator=(File&& other) noexcept;
+  ~File();
+
+  /// The bytes of the whole file, ready to be written to disk.
+  std::vector<std::byte> image() const;
+
+  void make_group(const std::string& path);
+  /// Creates a dataset. Precondition: values.size() == size(shape).
+  template <Element T>
+  void write(const std::string& path, const Shape& shape, std::span<const T> values);
+  /// Creates an attribute of the object at path: a scalar, or a list.
+  template <Element T>
+  void set_attribute(const std::string& path, const std::string& name, const T& value);
+  template <Element T>
+  void set_attribute(const std::string& path, const std::string& name, std::span<const T> values);
+  /// Makes a one-dimensional dataset a dimension scale named after itself.
+  void make_scale(const std::string& path);
+  /// Lets a scale name the positions along one axis of a dataset.
+  void attach_scale(const std::string& dataset, std::size_t axis, const std::string& scale);
+  /// Gives an object a second name (hard link).
+  void link(const std::string& existing, const std::string& second);
+
+  bool exists(const std::string& path) const;
+  bool is_group(const std::string& path) const;
+  /// Names of the links in a group, in the order of their bytes.
+  std::vector<std::string> children(const std::string& path) const;
+  /// Names of the attributes of an object, in the order of their bytes.
+  std::vector<std::string> attributes(const std::string& path) const;
+  bool has_attribute(const std::string& path, const std::string& name) const;
+
+  Shape shape(const std::string& path) const;
+  /// All elements of a dataset, row-major; numbers are converted to T.
+  template <Element T>
+  std::vector<T> read(const std::string& path) const;
+  /// All elements of an attribute.
+  template <Element T>
+  std::vector<T> attribute(const std::string& path, const std::string& name) const;
+  Value value(const std::string& path) const;
+  Value attribute_value(const std::string& path, const std::string& name) const;
+
+ private:
+  explicit File(std::int64_t id) : id_(id) {}
+
+  std::int64_t id_;
+};
+
+/// Version of the HDF5 library in use, "1.10.8".
+std::string library_version();
+
+}  // namespace poesy::h5

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+/// The words that writer and reader of result files share.
+namespace poesy::result_format {
+
+inline constexpr std::string_view kFileType = "poesy-result";
+/// A reader refuses a newer major version; a minor version only adds.
+inline constexpr std::int64_t kMajor = 1;
+inline constexpr std::int64_t kMinor = 0;
+
+inline constexpr std::string_view kSensitivity = "sensitivity";
+inline constexpr std::string_view kEvaluate = "evaluate";
+
+inline constexpr std::string_view kRowByRow = "row-by-row";
+inline constexpr std::string_view kEveryPoseWithEveryRow = "every-pose-with-every-row";
+
+}  // namespace poesy::result_format

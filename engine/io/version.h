@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace poesy {
+
+/// "0.1.0"
+std::string poesy_version();
+
+/// The commit this program was built from, 40 hexadecimal digits, with "-dirty" behind it when files
+/// differed from that commit; "unknown" when it was not built in a git checkout.
+std::string git_commit();
+
+struct LibraryVersion {
+  std::string_view name;  ///< "tbb"
+  std::string_view version;
+};
+
+/// The compiler and the libraries this program was built with.
+std::span<const LibraryVersion> build_versions();
+
+}  // namespace poesy

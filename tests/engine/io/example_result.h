@@ -1,0 +1,126 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "engine/io/result_file.h"
+#include "tests/support/fake_model.h"
+
+namespace poesy::test {
+
+/// Results of the fake mechanism with made-up numbers that name their own place, so that a script in another language
+/// knows what to expect: element (r, p, m) of array k is 1000 k + 100 r + 10 p + m / 8, and the last of all is NaN.
+/// Two more details share one list of components, so that axes are shared too.
+class Example {
+ public:
+  static constexpr std::size_t kPoses = 4;
+  static constexpr std::size_t kSamples = 3;
+
+  Example() {
+    CatalogEntry& entry = catalog_.front();
+    for (const char* name : {"twist_21", "twist_32"}) {
+      entry.description.details.push_back(
+          {name, {"omega_x", "omega_y", "v_z"}, "rad,rad,m", "a twist between two limbs"});
+    }
+    study.title = "Beispiel für Dateien";  // not ASCII
+    study.mechanism.entry = &entry;
+    study.mechanism.geometry = {FakeModel::kArm};
+    study.poses.count = kPoses;
+    study.poses.workspace = {{-0.3, -0.18}, {-0.5, 0.5}, {-0.6, 0.6}};
+    study.errors.by_factor.assign(3, Distribution::normal(0.001));
+    study.errors.by_factor[1] = Distribution::uniform(0.5);
+    study.analysis.factors = {FactorIndex(1), FactorIndex(0)};
+    study.analysis.samples = 100;
+    std::vector<double> coordinates;
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      const double step = static_cast<double>(m);
+      coordinates.insert(coordinates.end(), {-0.25 + step / 64.0, step / 8.0, -step / 4.0});
+    }
+    poses = PoseSet(3, coordinates);
+    facts = {.created = "2024-05-06T07:08:09Z",
+             .host = "somewhere",
+             .cpu = "a processor",
+             .threads = 2,
+             .ranks = 1,
+             .wall_seconds = 0.5,
+             .solves = 800};
+  }
+  Example(const Example&) = delete;
+  Example& operator=(const Example&) = delete;
+
+  SensitivityResult sensitivity() const {
+    SensitivityResult result;
+    result.responses = 2;
+    result.factors = 2;
+    result.poses = kPoses;
+    result.conf_level = 0.95;
+    std::size_t array = 0;
+    for (auto* values : {&result.local, &result.local_ci_low, &result.local_ci_high, &result.mean, &result.std}) {
+      *values = numbered(array++, kPoses);
+      values->back() = std::numeric_limits<double>::quiet_NaN();
+    }
+    for (auto* values : {&result.global, &result.global_ci_low, &result.global_ci_high}) {
+      *values = numbered(array++, 1);
+      values->back() = std::numeric_limits<double>::quiet_NaN();
+    }
+    result.count.assign(result.local.size(), 97.0);
+    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
+      result.solves.push_back(
+          {.by_status = {90 - cell, 7, 2, 1, cell}, .iterations = 700 + cell, .most_iterations = 50});
+    }
+    return result;
+  }
+
+  EvaluationResult evaluation(Pairing pairing) const {
+    const std::size_t samples = pairing == Pairing::row_by_row ? 1 : kSamples;
+    const std::size_t rows = kPoses * samples;
+    EvaluationResult result;
+    result.poses = kPoses;
+    result.samples = samples;
+    result.responses = 2;
+    result.details = 8;
+    for (std::size_t k = 0; k < 2 * rows; ++k) result.response.push_back(static_cast<double>(k) / 8.0);
+    for (std::size_t k = 0; k < 8 * rows; ++k) result.detail.push_back(static_cast<double>(k));
+    for (std::size_t k = 0; k < rows; ++k) result.status.push_back(static_cast<SolveStatus>(k % kStatusNames.size()));
+    for (std::size_t k = 0; k < rows; ++k) result.iterations.push_back(static_cast<std::uint32_t>(10 + k));
+    for (std::size_t k = 0; k < 2 * kPoses; ++k) result.joint_displacement.push_back(static_cast<double>(k) / 4.0);
+    return result;
+  }
+
+  ErrorTable errors(Pairing pairing) const {
+    const std::size_t rows = pairing == Pairing::row_by_row ? kPoses : kSamples;
+    ErrorTable table{.factors = {FactorIndex(2), FactorIndex(1)}, .values = {}, .rows = rows};
+    for (std::size_t k = 0; k < 2 * rows; ++k) table.values.push_back(static_cast<double>(k) / 1024.0);
+    return table;
+  }
+
+  void write_sensitivity(const std::string& path) const {
+    poesy::write_sensitivity(path, study, poses, sensitivity(), facts);
+  }
+  void write_evaluation(const std::string& path, Pairing pairing) const {
+    poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);
+  }
+
+  Study study;
+  PoseSet poses;
+  RunFacts facts;
+
+ private:
+  /// [2 x 2 x length] values that name their place.
+  static std::vector<double> numbered(std::size_t array, std::size_t length) {
+    std::vector<double> values;
+    for (std::size_t r = 0; r < 2; ++r) {
+      for (std::size_t p = 0; p < 2; ++p) {
+        for (std::size_t m = 0; m < length; ++m) {
+          values.push_back(static_cast<double>(1000 * array + 100 * r + 10 * p) + static_cast<double>(m) / 8.0);
+        }
+      }
+    }
+    return values;
+  }
+
+  Catalog catalog_ = fake_catalog();
+};
+
+}  // namespace poesy::test

@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <sstream>
+
+#include "engine/base/error.h"
+#include "engine/base/units.h"
+#include "engine/io/result_file.h"
+#include "tests/engine/io/example_result.h"
+#include "tests/engine/io/temp_folder.h"
+
+namespace poesy::test {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+std::vector<Cells> read_table(const std::string& path) {
+  std::vector<Cells> table;
+  std::istringstream lines(read_bytes(path));
+  for (std::string line; std::getline(lines, line);) {
+    Cells cells;
+    std::istringstream rest(line);
+    for (std::string text; std::getline(rest, text, ',');) cells.push_back(text);
+    table.push_back(cells);
+  }
+  return table;
+}
+
+std::vector<std::string> base_names(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths) names.push_back(std::filesystem::path(path).filename().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+class Export : public testing::Test {
+ protected:
+  Export() {
+    example_.write_sensitivity(folder_ / "s.h5");
+    example_.write_evaluation(folder_ / "e.h5", Pairing::every_pose_with_every_row);
+  }
+
+  TempFolder folder_;
+  Example example_;
+};
+
+TEST_F(Export, SensitivityHasThePromisedTables) {
+  EXPECT_EQ(base_names(export_tables(folder_ / "s.h5", folder_ / "new/folder")),
+            (std::vector<std::string>{"count_angular_deformation.csv",
+                                      "count_linear_deformation.csv",
+                                      "factors.csv",
+                                      "global.csv",
+                                      "iterations_max.csv",
+                                      "iterations_mean.csv",
+                                      "local_angular_deformation.csv",
+                                      "local_ci_high_angular_deformation.csv",
+                                      "local_ci_high_linear_deformation.csv",
+                                      "local_ci_low_angular_deformation.csv",
+                                      "local_ci_low_linear_deformation.csv",
+                                      "local_linear_deformation.csv",
+                                      "mean_angular_deformation.csv",
+                                      "mean_linear_deformation.csv",
+                                      "not_converged.csv",
+                                      "poses.csv",
+                                      "solves_converged.csv",
+                                      "solves_iteration_cap.csv",
+                                      "solves_non_finite.csv",
+                                      "solves_singular.csv",
+                                      "solves_stagnated.csv",
+                                      "std_angular_deformation.csv",
+                                      "std_linear_deformation.csv"}));
+}
+
+TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
+  export_tables(folder_ / "s.h5", folder_.path());
+  const auto table = read_table(folder_ / "global.csv");
+  ASSERT_EQ(table.size(), 3U);
+  ASSERT_EQ(table[0].size(), 13U);
+  EXPECT_EQ(table[0][0], "factor");
+  EXPECT_EQ(table[0][1], "angular_deformation [rad per rad or m]");
+  EXPECT_EQ(table[0][5], "angular_deformation_ci_low [deg per deg or mm]");
+  EXPECT_EQ(table[0][12], "linear_deformation_ci_high [mm per deg or mm]");
+  EXPECT_EQ(table[1][0], "epsilon_1");
+  EXPECT_EQ(table[2][0], "delta_1");
+  // global is array 5 of the example: 5000 + 100 r + 10 p.
+  EXPECT_EQ(table[1][1], "5000");
+  EXPECT_DOUBLE_EQ(parse_number(table[1][4]).value(), 5000.0);  // deg per deg
+  EXPECT_EQ(table[2][1], "5010");
+  EXPECT_DOUBLE_EQ(parse_number(table[2][4]).value(), 5010.0 * 1e-3 * 180.0 / std::numbers::pi);  // deg per mm
+  EXPECT_EQ(table[1][7], "5100");
+  EXPECT_DOUBLE_EQ(parse_number(table[1][10]).value(), 5100.0 * 1e3 * std::numbers::pi / 180.0);  // mm per deg
+  EXPECT_EQ(table[2][7], "NaN");
+}
+
+TEST_F(Export, LocalTableHasFactorsDownAndPosesAcross) {
+  export_tables(folder_ / "s.h5", folder_.path());
+  const auto table = read_table(folder_ / "local_ci_low_linear_deformation.csv");
+  EXPECT_EQ(table[0][2], "pose_1 [m per rad or m]");
+  EXPECT_EQ(table[1], (Cells{"epsilon_1", "1100", "1100.125", "1100.25", "1100.375"}));
+  EXPECT_EQ(table[2], (Cells{"delta_1", "1110", "1110.125", "1110.25", "NaN"}));
+}
+
+TEST_F(Export, SolverTablesCountSamples) {
+  export_tables(folder_ / "s.h5", folder_.path());
+  // by_status {90 - cell, 7, 2, 1, cell} with cell = 4 p + m: two statuses are solved.
+  EXPECT_EQ(read_table(folder_ / "not_converged.csv")[2], (Cells{"delta_1", "7", "8", "9", "10"}));
+  EXPECT_EQ(read_table(folder_ / "solves_converged.csv")[1], (Cells{"epsilon_1", "90", "89", "88", "87"}));
+  EXPECT_EQ(read_table(folder_ / "iterations_mean.csv")[1], (Cells{"epsilon_1", "7", "7.01", "7.02", "7.03"}));
+}
+
+TEST_F(Export, PosesKeepTheModelsOrderAndUnits) {
+  export_tables(folder_ / "s.h5", folder_.path());
+  const auto table = read_table(folder_ / "poses.csv");
+  EXPECT_EQ(table[0], (Cells{"pose", "z [m]", "beta [rad]", "gamma [rad]"}));
+  EXPECT_EQ(table[3], (Cells{"2", "-0.21875", "0.25", "-0.5"}));
+}
+
+TEST_F(Export, EvaluationHasARowForEachSolve) {
+  EXPECT_EQ(base_names(export_tables(folder_ / "e.h5", folder_.path())),
+            (std::vector<std::string>{"errors.csv", "evaluate.csv", "joint_displacements.csv", "poses.csv"}));
+  const auto table = read_table(folder_ / "evaluate.csv");
+  ASSERT_EQ(table.size(), 1 + Example::kPoses * Example::kSamples);
+  EXPECT_EQ(table[0],
+            (Cells{"pose", "sample", "angular_deformation [rad]", "linear_deformation [m]", "signed_angular [rad]",
+                   "signed_linear [m]", "twist_21_omega_x [rad]", "twist_21_omega_y [rad]", "twist_21_v_z [m]",
+                   "twist_32_omega_x [rad]", "twist_32_omega_y [rad]", "twist_32_v_z [m]", "status", "iterations"}));
+  // Row 7: pose 2, sample 1; responses k / 8 with k = 7 and 12 + 7; details 56..63; status 7 mod 5.
+  EXPECT_EQ(table[8], (Cells{"2", "1", "0.875", "2.375", "56", "57", "58", "59", "60", "61", "62", "63", "2", "17"}));
+  const auto errors = read_table(folder_ / "errors.csv");
+  EXPECT_EQ(errors[0], (Cells{"sample", "delta_2 [m]", "epsilon_1 [rad]"}));
+  EXPECT_EQ(errors[2], (Cells{"1", "0.001953125", "0.0029296875"}));
+}
+
+TEST_F(Export, IntoAFolderThatIsAFileIsAFileError) {
+  EXPECT_THROW(export_tables(folder_ / "s.h5", folder_ / "e.h5"), FileError);
+}
+
+}  // namespace
+}  // namespace poesy::test

@@ -1,0 +1,111 @@
+"""Checks the example results of tests/engine/io/example_result.h: names, units and every value, with h5py and xarray.
+
+usage: check_values.py SENSITIVITY.h5 EVALUATE.h5 PAIRED.h5
+"""
+
+import sys
+
+import h5py
+import numpy as np
+import xarray
+
+RESPONSES = ["angular_deformation", "linear_deformation"]
+FACTORS = ["epsilon_1", "delta_1"]
+STATUS = ["converged", "stagnated", "iteration_cap", "singular", "non_finite"]
+
+
+def expect(found, expected):
+    np.testing.assert_array_equal(np.asarray(found), np.asarray(expected))
+
+
+def opened(path, group):
+    with xarray.open_dataset(path, engine="h5netcdf", group=group) as dataset:
+        return dataset.load()
+
+
+def numbered(array, poses):
+    r, p, m = np.meshgrid([0, 1], [0, 1], np.arange(poses), indexing="ij")
+    values = 1000 * array + 100 * r + 10 * p + m / 8
+    values[-1, -1, -1] = np.nan
+    return values
+
+
+def check_sensitivity(path):
+    found = opened(path, "sensitivity")
+    expect(found.coords["response"], RESPONSES)
+    expect(found.coords["factor"], FACTORS)
+    expect(found.coords["pose"], [0, 1, 2, 3])
+    for array, name in enumerate(["local", "local_ci_low", "local_ci_high", "mean", "std"]):
+        assert found[name].dims == ("response", "factor", "pose"), name
+        expect(found[name], numbered(array, 4))
+    for array, name in enumerate(["global", "global_ci_low", "global_ci_high"], start=5):
+        assert found[name].dims == ("response", "factor"), name
+        expect(found[name], numbered(array, 1)[:, :, 0])
+    assert found["count"].dtype.kind == "u"
+    expect(found["count"], np.full((2, 2, 4), 97))
+    assert found["local"].sel(response="linear_deformation", factor="epsilon_1", pose=2) == 100.25
+    assert found["global"].attrs["unit"] == "SI: response unit / factor unit"
+    assert found.attrs["conf_level"] == 0.95
+    for name in ("global_ci_low", "global_ci_high", "local_ci_low", "local_ci_high"):
+        assert found[name].attrs["conf_level"] == 0.95
+
+    solver = opened(path, "solver")
+    cell = np.arange(8).reshape(2, 4)
+    assert solver["not_converged"].dims == ("factor", "pose")
+    expect(solver["not_converged"], 3 + cell)
+    expect(solver["iterations_mean"], (700 + cell) / 100)
+    expect(solver["iterations_max"], np.full((2, 4), 50))
+    expect(solver.coords["status"], STATUS)
+    expect(solver["solves_by_status"].sel(status="converged"), 90 - cell)
+    expect(solver["solves_by_status"].sel(status="non_finite"), cell)
+
+    with h5py.File(path) as file:
+        assert file.attrs["kind"] == "sensitivity"
+        assert file.attrs["model"] == "fake"
+        assert file.attrs["title"] == "Beispiel für Dateien"
+        expect(file["factors/name"].asstr()[:], FACTORS)
+        expect(file["factors/unit"].asstr()[:], ["rad", "m"])
+        np.testing.assert_allclose(file["factors/sigma"][:], [0.5 / np.sqrt(3), 0.001], rtol=1e-15)
+        expect(file["responses/name"].asstr()[:], RESPONSES)
+        expect(file["responses/unit"].asstr()[:], ["rad", "m"])
+        expect(file["poses/z"][:], -0.25 + np.arange(4) / 64)
+        expect(file["poses/gamma"][:], -np.arange(4) / 4)
+        assert [file["poses"][name].attrs["unit"] for name in ("z", "beta", "gamma")] == ["m", "rad", "rad"]
+        assert set(file["poses"]) == {"z", "beta", "gamma"}
+
+
+def check_evaluation(path, samples, rows_axis):
+    found = opened(path, "evaluate")
+    rows = 4 * samples
+    expect(found.coords["pose"], np.arange(4))
+    expect(found.coords["sample"], np.arange(samples))
+    for r, response in enumerate(RESPONSES):
+        assert found[response].dims == ("pose", "sample")
+        expect(found[response], (r * rows + np.arange(rows)).reshape(4, samples) / 8)
+    assert found["angular_deformation"].attrs["unit"] == "rad"
+    details = np.arange(8 * rows).reshape(4, samples, 8)
+    expect(found["signed"], details[:, :, 0:2])
+    expect(found["twist_21"], details[:, :, 2:5])
+    expect(found["twist_32"], details[:, :, 5:8])
+    expect(found["twist_32"].sel(component_2="v_z"), details[:, :, 7])
+    expect(found["signed"].sel(component="linear"), details[:, :, 1])
+    assert found["twist_21"].attrs["unit"] == "rad,rad,m"
+    expect(found["status"], (np.arange(rows) % 5).reshape(4, samples))
+    expect(found["status"].attrs["status_names"], STATUS)
+    expect(found["iterations"], (10 + np.arange(rows)).reshape(4, samples))
+    expect(found["joint_displacements"].sel(joint="q_2"), (2 * np.arange(4) + 1) / 4)
+
+    errors = opened(path, "errors")
+    assert errors["values"].dims == (rows_axis, "factor")
+    expect(errors["values"].sel(factor="epsilon_1"), (2 * np.arange(errors.dims[rows_axis]) + 1) / 1024)
+    return errors.attrs["pairing"]
+
+
+def main(sensitivity, evaluate, paired):
+    check_sensitivity(sensitivity)
+    assert check_evaluation(evaluate, 3, "sample") == "every-pose-with-every-row"
+    assert check_evaluation(paired, 1, "pose") == "row-by-row"
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,36 @@
+# Programs of other people read our files: h5dump, Python (h5py, xarray), Octave.
+# The system's Python comes first: it is the one that Debian's h5py and xarray belong to.
+find_program(POESY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(POESY_PYTHON python3)
+find_program(POESY_OCTAVE octave-cli)
+find_program(POESY_H5DUMP h5dump)
+foreach(tool POESY_PYTHON POESY_OCTAVE POESY_H5DUMP)
+  if(NOT ${tool})
+    message(FATAL_ERROR "The tests need python3, octave-cli and h5dump; not found: ${tool}. Install Debian's python3-h5py "
+                        "python3-h5netcdf python3-xarray octave hdf5-tools, or configure with -DPOESY_TESTS=OFF.")
+  endif()
+endforeach()
+
+add_executable(write_examples interop/write_examples.cpp)
+target_link_libraries(write_examples PRIVATE poesy_io poesy_options)
+
+set(examples ${CMAKE_CURRENT_BINARY_DIR}/interop)
+file(MAKE_DIRECTORY ${examples})
+add_test(NAME interop.write_examples COMMAND write_examples ${examples})
+set_tests_properties(interop.write_examples PROPERTIES FIXTURES_SETUP interop_examples LABELS interop)
+
+function(poesy_interop_test name)
+  add_test(NAME interop.${name} COMMAND ${ARGN})
+  set_tests_properties(interop.${name} PROPERTIES FIXTURES_REQUIRED interop_examples LABELS interop TIMEOUT 120)
+endfunction()
+
+set(scripts ${CMAKE_CURRENT_SOURCE_DIR}/interop)
+foreach(kind sensitivity evaluate paired)
+  poesy_interop_test(h5dump_${kind} ${POESY_H5DUMP} ${examples}/${kind}.h5)
+  poesy_interop_test(python_structure_${kind} ${POESY_PYTHON} ${scripts}/check_structure.py ${examples}/${kind}.h5)
+  poesy_interop_test(python_tables_${kind} ${POESY_PYTHON} ${scripts}/check_tables.py ${examples}/${kind})
+  poesy_interop_test(octave_tables_${kind} ${POESY_OCTAVE} --no-init-file --quiet ${scripts}/check_tables.m
+                     ${examples}/${kind})
+endforeach()
+poesy_interop_test(python_values ${POESY_PYTHON} ${scripts}/check_values.py ${examples}/sensitivity.h5
+                   ${examples}/evaluate.h5 ${examples}/paired.h5)

@@ -1,0 +1,26 @@
+// Writes example results and their tables into the folder on the command line, for programs in other languages to read.
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "tests/engine/io/example_result.h"
+
+int main(int argc, char** argv) try {
+  using poesy::Pairing;
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+    return 2;
+  }
+  const std::string folder = argv[1];
+  const poesy::test::Example example;
+  example.write_sensitivity(folder + "/sensitivity.h5");
+  example.write_evaluation(folder + "/evaluate.h5", Pairing::every_pose_with_every_row);
+  example.write_evaluation(folder + "/paired.h5", Pairing::row_by_row);
+  for (const char* name : {"/sensitivity", "/evaluate", "/paired"}) {
+    poesy::export_tables(folder + name + ".h5", folder + name);
+  }
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
