@@ -56,5 +56,3 @@ void frame_with_error(benchmark::State& state) {
 BENCHMARK(inverse_kinematics)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(limb_pose_and_jacobian)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(frame_with_error)->UseRealTime()->MeasureProcessCPUTime();
-
-BENCHMARK_MAIN();

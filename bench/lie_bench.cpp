@@ -52,5 +52,3 @@ void product(benchmark::State& state) {
 BENCHMARK(exp_of_screw)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(log_of_transform)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(product)->UseRealTime()->MeasureProcessCPUTime();
-
-BENCHMARK_MAIN();

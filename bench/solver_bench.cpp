@@ -31,5 +31,3 @@ void solver(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK(solver)->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
-
-BENCHMARK_MAIN();

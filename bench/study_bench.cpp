@@ -22,5 +22,3 @@ void study(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK(study)->Arg(1)->Arg(2)->ArgName("threads")->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kSecond);
-
-BENCHMARK_MAIN();

@@ -25,6 +25,11 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+/// std::from_chars takes no plus sign; one is allowed here, but not "+-1".
+const char* after_plus(const char* begin, const char* end) {
+  return end - begin > 1 && begin[0] == '+' && begin[1] != '-' ? begin + 1 : begin;
+}
+
 std::string known_units() {
   std::string list;
   for (const Unit& unit : kUnits) {
@@ -79,7 +84,7 @@ Quantity parse_quantity(std::string_view text) {
   double number = 0.0;
   const char* begin = body.data();
   const char* end = begin + body.size();
-  if (begin != end && *begin == '+') ++begin;
+  begin = after_plus(begin, end);
   const auto [after, failure] = std::from_chars(begin, end, number);
   if (failure != std::errc() || !std::isfinite(number)) {
     throw QuantityError("'" + std::string(text) + "' is not a finite number with a unit");
@@ -99,7 +104,7 @@ std::optional<double> parse_number(std::string_view text) {
   const std::string_view body = trimmed(text);
   const char* begin = body.data();
   const char* end = begin + body.size();
-  if (begin != end && *begin == '+') ++begin;
+  begin = after_plus(begin, end);
   double number = 0.0;
   const auto [after, failure] = std::from_chars(begin, end, number);
   if (failure != std::errc() || after != end || !std::isfinite(number)) return std::nullopt;

@@ -169,7 +169,10 @@ Estimate global_index(std::span<const LocalIndex> poses, double conf_level) {
   }
   if (poses.empty()) return {kNaN, kUnknown};
   const double value = over_poses.mean() + (poses.size() > 1 ? over_poses.standard_deviation() : 0.0);
-  return {value, known ? global_interval(poses, conf_level) : kUnknown};
+  if (!known) return {value, kUnknown};
+  Interval interval = global_interval(poses, conf_level);
+  interval.high = std::max(interval.high, value);
+  return {value, interval};
 }
 
 }  // namespace poesy

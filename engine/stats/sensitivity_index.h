@@ -38,7 +38,7 @@ LocalIndex local_index_with_error(const Moments& response, double error_sigma);
 /// Eqs. 53-54); NaN when a pose has no index, the mean alone for a single pose.
 /// The interval is for the value that infinitely many samples would give at the same poses. Sampling noise, which the
 /// plain formula takes for spread between poses, is subtracted from the spread, so where poses differ by little more
-/// than noise the estimate may lie above its own interval; more samples close that gap.
+/// than noise the estimate lies high in its interval, which is extended to reach it; more samples close that gap.
 /// Mean and spread are combined, with their correlation, by the method of variance estimates recovery (Zou and
 /// Donner 2008, Stat. Med. 27, 1693-1702). Where the spread seen is no more than noise at this level (chi-square with
 /// Satterthwaite's degrees of freedom), the lower limit is that of the mean alone.
