@@ -242,12 +242,23 @@ herr_t add_attribute_name(hid_t, const char* name, const H5A_info_t*, void* name
 
 // netCDF readers want to know in which order things came into being.
 constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+// Links and attributes stay in the object's header, which has a checksum, rather than move to a heap when there are
+// many: HDF5 1.10 frees what it never allocated when it meets a damaged heap.
+constexpr unsigned kMostInHeader = 1000;
+
+/// Same bytes for the same content: no times.
+Handle object_properties(hid_t kind) {
+  Handle properties = property_list(kind);
+  checked(H5Pset_obj_track_times(properties.get(), false), "drop the times of", "a new object");
+  checked(H5Pset_attr_creation_order(properties.get(), kCreationOrder), "order the attributes of", "a new object");
+  checked(H5Pset_attr_phase_change(properties.get(), kMostInHeader, 0), "place the attributes of", "a new object");
+  return properties;
+}
 
 Handle group_properties(hid_t kind) {
-  Handle properties = property_list(kind);
-  checked(H5Pset_obj_track_times(properties.get(), false), "drop the times of", "a group");
+  Handle properties = object_properties(kind);
   checked(H5Pset_link_creation_order(properties.get(), kCreationOrder), "order the links of", "a group");
-  checked(H5Pset_attr_creation_order(properties.get(), kCreationOrder), "order the attributes of", "a group");
+  checked(H5Pset_link_phase_change(properties.get(), kMostInHeader, 0), "place the links of", "a group");
   return properties;
 }
 
@@ -309,9 +320,7 @@ void File::make_group(const std::string& path) {
 template <Element T>
 void File::write(const std::string& path, const Shape& shape, std::span<const T> values) {
   POESY_EXPECTS(values.size() == size(shape));
-  const Handle creation = property_list(H5P_DATASET_CREATE);
-  checked(H5Pset_obj_track_times(creation.get(), false), "drop the times of", path);
-  checked(H5Pset_attr_creation_order(creation.get(), kCreationOrder), "order the attributes of", path);
+  const Handle creation = object_properties(H5P_DATASET_CREATE);
   // Inside the object's header, where checksums are, as far as there is room: what HDF5 stores of a text is where to
   // find it.
   constexpr std::size_t kHeaderRoom = 2000;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
@@ -73,12 +74,16 @@ void alter(hid_t type, hid_t space, const Read& read, const Write& write) {
   std::vector<char> bytes(count * H5Tget_size(type));
   ASSERT_GE(read(type, bytes.data()), 0);
   if (H5Tis_variable_str(type) > 0) {
-    static char another[] = "another";
-    *reinterpret_cast<char**>(bytes.data()) = another;
+    std::string another = "another";
+    auto* texts = reinterpret_cast<char**>(bytes.data());
+    char* first = std::exchange(texts[0], another.data());
+    ASSERT_GE(write(type, bytes.data()), 0);
+    texts[0] = first;
+    H5Dvlen_reclaim(type, space, H5P_DEFAULT, bytes.data());
   } else {
     bytes.front() = static_cast<char>(bytes.front() ^ 1);
+    ASSERT_GE(write(type, bytes.data()), 0);
   }
-  ASSERT_GE(write(type, bytes.data()), 0);
 }
 
 void alter_dataset(hid_t file, const std::string& path) {
