@@ -5,8 +5,11 @@ add_test(NAME architecture.include_table_finds_violations
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/include_table_test.py)
 add_test(NAME architecture.readme_commands
          COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/architecture/readme_commands.py $<TARGET_FILE:poesy>)
+add_test(NAME architecture.readme_commands_finds_violations
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/readme_commands_test.py $<TARGET_FILE:poesy>)
 set_tests_properties(architecture.include_table architecture.include_table_finds_violations
-                     architecture.readme_commands PROPERTIES LABELS architecture)
+                     architecture.readme_commands architecture.readme_commands_finds_violations
+                     PROPERTIES LABELS architecture)
 
 # Every public header compiles alone, with nothing but what the exported targets offer: one source a header.
 file(GLOB_RECURSE public_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine/*.h

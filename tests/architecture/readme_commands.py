@@ -25,9 +25,10 @@ def code_lines(text):
 
 
 def help_of(program, command):
-    """What `poesy COMMAND --help` prints; None when there is no such command."""
+    """What `poesy COMMAND --help` prints; None when there is no such command (that prints the program's own help)."""
     done = subprocess.run([program, command, "--help"], capture_output=True, text=True, timeout=60, check=False)
-    return done.stdout if done.returncode == 0 else None
+    is_of_command = re.search(rf"^Usage: \S+ {command}\b", done.stdout, re.MULTILINE)
+    return done.stdout if done.returncode == 0 and is_of_command else None
 
 
 def poesy_problems(program, line):
