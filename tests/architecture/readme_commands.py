@@ -11,7 +11,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-CODE = re.compile(r"```.*?\n(?P<fenced>.*?)```|^(?: {4}|\t)(?P<indented>.*)$|`(?P<inline>[^`\n]+)`", re.DOTALL | re.MULTILINE)
+CODE = re.compile(
+    r"^```[^\n]*\n(?P<fenced>.*?)^```|^(?: {4}|\t)(?P<indented>[^\n]*)$|`(?P<inline>[^`\n]+)`", re.DOTALL | re.MULTILINE)
 POESY = re.compile(r"(?:^|[\s/;|])poesy ([a-z][a-z-]*)(.*)")
 OPTION = re.compile(r"(?<=\s)--?[a-z][a-z-]*")
 PRESET = re.compile(r"--preset[ =](\S+)")
