@@ -62,11 +62,9 @@ void check_format(const StudySection& root) {
 }
 
 SolverOptions::Method read_method(const StudyValue& value) {
-  constexpr std::array<std::string_view, 2> kWords{"gauss-newton", "newton"};
-  if (value.word(kWords) == 1) {
-    value.fail("is \"newton\", which is not available yet in this version", "use \"gauss-newton\"");
-  }
-  return SolverOptions::Method::gauss_newton;
+  using Method = SolverOptions::Method;
+  constexpr std::array kMethods{Method::newton, Method::gauss_newton};
+  return kMethods[value.word(std::array{name(kMethods[0]), name(kMethods[1])})];
 }
 
 SolverOptions read_solver(const StudySection& section) {

@@ -108,7 +108,7 @@ std::string analysis_section(const ModelDescription& model) {
 std::string solver_and_run_sections() {
   return "\n# All values shown are the defaults.\n"
          "[solver]\n"
-         "method = \"gauss-newton\"\n"
+         "method = \"newton\"  # or \"gauss-newton\", as published: slower, and more samples do not converge\n"
          "tolerance = 1e-15  # converged: the residual's largest change (rad, m) in one iteration is below this\n"
          "max_iterations = 50  # at least 1\n"
          "not_converged = \"exclude\"  # from all statistics; include: keep the last iterate; fail: exclude, exit code "

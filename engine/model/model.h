@@ -62,9 +62,12 @@ struct GeometryParameter {
 
 /// How a per-sample solve is done.
 struct SolverOptions {
-  enum class Method { gauss_newton };
+  enum class Method {
+    newton,       ///< the model's own, fast and far-reaching
+    gauss_newton  ///< as published
+  };
 
-  Method method = Method::gauss_newton;
+  Method method = Method::newton;
   /// A solve has converged once the largest component of the change of the residual is below this (rad, m).
   /// Default 1e-15, Du et al. 2022, Section 5.1.
   double tolerance = 1e-15;
@@ -98,6 +101,9 @@ struct SampleBlock {
   std::span<const FactorIndex> varied;  ///< [V], no repetition
   std::span<const double> values;       ///< [V x B], row-major: all samples of the first varied factor first
   std::size_t count;                    ///< B
+  /// With one varied factor: values beyond +-range are rare, and a model may prepare for those inside. 0: nothing is known.
+  /// What a sample gives may depend on this to rounding, and does not depend on the other samples.
+  double range = 0.0;
 };
 
 /// What a block of samples gives. The caller owns the memory.

@@ -1,6 +1,6 @@
 #include "engine/run/evaluate_unit.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "engine/random/stream.h"
 
@@ -9,6 +9,11 @@ namespace {
 
 bool counts(SolveStatus status, NotConverged policy) {
   return solved(status) || (policy == NotConverged::include && usable(status));
+}
+
+/// Largest error to expect: one draw in 16 000 of a normal lies beyond four standard deviations.
+double expected_range(const Distribution& distribution) {
+  return std::min(distribution.half_width(), 4.0 * distribution.standard_deviation());
 }
 
 }  // namespace
@@ -34,7 +39,8 @@ UnitStats UnitEvaluator::operator()(const WorkUnit& unit) {
   const FactorIndex factor = plan_->factors()[unit.slot];
   fill_uniforms({plan_->seed(), Purpose::error_samples, factor, unit.pose}, unit.first, values);
   plan_->distributions()[unit.slot].transform(values);
-  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), std::span(&factor, 1), values, unit.count},
+  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), std::span(&factor, 1), values, unit.count,
+                        expected_range(plan_->distributions()[unit.slot])},
                        {outcome, std::span(status_).first(unit.count), std::span(iterations_).first(unit.count), {}});
   UnitStats stats;
   stats.responses.resize(responses_);

@@ -87,6 +87,8 @@ std::string_view name(NotConverged policy) {
 
 std::string_view name(SolverOptions::Method method) {
   switch (method) {
+    case SolverOptions::Method::newton:
+      return "newton";
     case SolverOptions::Method::gauss_newton:
       break;
   }

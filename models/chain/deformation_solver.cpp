@@ -40,10 +40,14 @@ bool all_finite(std::span<const double> values) {
 
 }  // namespace
 
+double rounding_level(const ParallelChain& chain) {
+  return 64.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, reach(chain));
+}
+
 DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOptions& options)
     : chain_(&chain),
       options_(options),
-      rounding_level_(64.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, reach(chain))),
+      rounding_level_(rounding_level(chain)),
       passive_(passive_positions(chain)),
       poses_(chain.limbs.size()),
       columns_(passive_.size()),

@@ -16,18 +16,22 @@ struct Deformation {
   std::uint32_t iterations;
 };
 
+/// Changes of the residual below this may be rounding: 64 eps x max(1, reach in m), the reach being the longest limb's
+/// length over its fixed frames.
+double rounding_level(const ParallelChain& chain);
+
 /// Scheme I of Du et al. 2022 (Eqs. 40-44): moves the passive joints so that the poses of the limbs agree as well as
 /// they can, by Gauss-Newton on J(q)^T delta_mu(q) = 0. What disagreement is left is the limbs' deformation.
 ///
 /// Stopping rule. With c_j the largest component of |delta_mu^j - delta_mu^(j-1)|, iteration j ends the solve as
 ///   converged      when c_j is below the tolerance;
-///   stagnated      when c_j is at rounding level, 64 eps x max(1, reach in m), and three iterations in a row did not
-///                  lower the smallest c so far: the iterate then moves by rounding only;
+///   stagnated      when c_j is at rounding_level(chain), and three iterations in a row did not lower the smallest
+///                  c so far: the iterate then moves by rounding only;
 ///   iteration_cap  when j is the allowed number of iterations;
 ///   singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
 ///   non_finite     when delta_mu^j is not finite.
 ///
-/// Plain double arithmetic: the reference for every faster solver. Owns the scratch of one thread.
+/// Plain double arithmetic, one sample at a time: the reference for BlockSolver. Owns the scratch of one thread.
 class DeformationSolver {
  public:
   /// The chain must outlive the solver.

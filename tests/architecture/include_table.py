@@ -25,6 +25,7 @@ LIBRARIES = {
     "Boost.Math": ("boost/math/*",),
     "Boost.Random": ("boost/random.hpp", "boost/random/*"),
     "Random123": ("Random123/*",),
+    "Highway": ("hwy/*",),
     "oneTBB": ("tbb/*", "oneapi/*"),
     "MPI": ("mpi.h",),
     "HDF5": ("hdf5.h", "hdf5_hl.h", "H5*.h"),

@@ -378,7 +378,6 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     SolverAndRun, BadStudies,
     testing::Values(
-        BadStudy{"Newton", "\"gauss-newton\"", "^\"newton\"", {"not available yet in this version", "gauss-newton"}},
         BadStudy{"UnknownMethod", "\"gauss-newton\"", "^\"gauss\"", {"solver.method is 'gauss'"}},
         BadStudy{"ToleranceZero", "1e-14", "^0.0", {"solver.tolerance is 0", "greater than zero"}},
         BadStudy{"ToleranceNegative", "1e-14", "^-1e-14", {"solver.tolerance is -1e-14"}},

@@ -117,6 +117,7 @@ TEST(Names, AreThoseOfTheStudyFile) {
   EXPECT_EQ(name(NotConverged::exclude), "exclude");
   EXPECT_EQ(name(NotConverged::include), "include");
   EXPECT_EQ(name(NotConverged::fail), "fail");
+  EXPECT_EQ(name(SolverOptions::Method::newton), "newton");
   EXPECT_EQ(name(SolverOptions::Method::gauss_newton), "gauss-newton");
 }
 

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/model/status.h"
+#include "models/chain/block_problem.h"
+#include "models/simd/math.h"
+
+namespace poesy::chain {
+
+/// What one sample's solve is about to do. See BlockKernel.
+enum class KernelPass {
+  published,  ///< Gauss-Newton with the published stopping rule
+  direct,     ///< Newton, given up at the first step that is not safe
+  follow,     ///< Gauss-Newton, with Newton steps once they are small and safe
+  rescue      ///< Newton wherever its matrix is positive, else half a Gauss-Newton step
+};
+
+/// Solves blocks of samples of a parallel chain for J(q)^T delta_mu(q) = 0 (Du et al. 2022, Eqs. 40-44), T::kLanes
+/// samples at a time, T being simd::Number or a SIMD batch. Samples are independent: each is iterated until it is done,
+/// those that are not done close ranks after every round, and no operation mixes lanes.
+///
+/// published: x = N^-1 f with f = J^T delta_mu and N = J^T J, stopping rule as in DeformationSolver.
+///
+/// Newton: x = M^-1 f with M the negative derivative of f, exact to fourth order in the residual's angle. Beyond N it
+/// holds how the columns of J turn (the bracket of an earlier column with a later one) and how the logarithm bends
+/// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-3 of the diagonal of N, and
+/// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
+/// methods mean the same root. A sample goes through up to three passes:
+///   direct   Newton from the start; refused at a step that is not safe or larger than 0.1;
+///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
+///            safe and below 1e-3: the root, if any, that Gauss-Newton finds;
+///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
+///   max_iterations:
+///            a root with positive derivative where Gauss-Newton finds none.
+/// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
+/// is carried along it to first order instead of being evaluated again.
+template <class T>
+class BlockKernel {
+ public:
+  BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+              const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
+
+  void solve();
+
+ private:
+  static constexpr std::size_t kLanes = T::kLanes;
+  static constexpr double kSafePivot = 1e-3;
+  static constexpr double kDirectStep = 0.1;
+  static constexpr double kFollowStep = 1e-3;
+  static constexpr std::uint32_t kDirectIterations = 12;
+  static constexpr std::uint32_t kFollowFactor = 8;
+
+  struct Motion {
+    T r[9];
+    T p[3];
+  };
+  struct Screw {
+    T w[3];
+    T v[3];
+  };
+  /// What a round says of its lanes, a bit each.
+  struct Verdict {
+    unsigned converged = 0;
+    unsigned stagnated = 0;
+    unsigned singular = 0;
+    unsigned non_finite = 0;
+    unsigned refused = 0;
+
+    bool solved(std::size_t lane) const { return ((converged | stagnated) >> lane & 1u) != 0; }
+    bool ended(std::size_t lane) const {
+      return ((converged | stagnated | singular | non_finite | refused) >> lane & 1u) != 0;
+    }
+    SolveStatus status(std::size_t lane) const {
+      const auto says = [lane](unsigned lanes) { return (lanes >> lane & 1u) != 0; };
+      if (says(non_finite)) return SolveStatus::non_finite;
+      if (says(converged)) return SolveStatus::converged;
+      if (says(stagnated)) return SolveStatus::stagnated;
+      return says(singular) ? SolveStatus::singular : SolveStatus::iteration_cap;
+    }
+  };
+
+  // block_kernel_passes.h: the loop over samples.
+  void judge(std::size_t at);
+  template <KernelPass pass>
+  std::size_t run(std::size_t count, std::uint32_t rounds);
+  void begin(std::size_t count, bool predicted);
+  void predict(std::size_t at);
+  void pad(std::size_t count);
+  void evaluate(std::size_t at);
+  typename T::MaskType finite_residual() const;
+  Verdict published_round(std::size_t at, std::uint32_t round, bool last_round);
+  template <KernelPass pass>
+  Verdict newton_round(std::size_t at);
+  void take_step(std::size_t at, const T* x);
+  void finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations);
+  template <KernelPass pass>
+  void move(std::size_t from, std::size_t to);
+
+  // block_kernel_geometry.h: residuals and columns.
+  Motion error_motion(const KernelPiece& piece, std::size_t at) const;
+  void vary_segments(std::size_t at);
+  void limb_pose(const KernelLimb& limb, std::size_t first_segment, Motion& pose);
+  void residuals();
+  static Screw log(const Motion& g);
+
+  // block_kernel_equations.h: matrices and steps.
+  void gradient();
+  void gauss_newton_matrix();
+  void newton_matrix();
+  template <class Entry>
+  T factor(Entry entry, double ratio);
+  typename T::MaskType contracts();
+  typename T::MaskType gauss_newton_step(T* x);
+  typename T::MaskType newton_step(T* x);
+  void carry_residual(const T* x, typename T::MaskType lanes);
+
+  const KernelChain chain_;
+  const KernelSamples samples_;
+  const KernelStart start_;
+  const KernelOptions options_;
+  const KernelOutcome outcome_;
+  const std::size_t capacity_;
+
+  // Per sample, in rows of capacity_.
+  double* value_;
+  double* q_;
+  double* previous_;      ///< published: residual of the last round
+  double* smallest_;      ///< published: smallest change so far
+  double* flat_;          ///< published: rounds since then
+  std::uint32_t* index_;  ///< which sample this is
+  std::uint32_t* left_;   ///< samples to solve, then those that a pass did not solve
+
+  // Of the lanes at hand.
+  Motion* segment_;
+  Motion* pose_;
+  Screw* column_;
+  Screw* mu_;
+  Screw* pull_;
+  T* joint_;
+  T* f_;
+  T* step_;
+  T* gauss_newton_;
+  T* n_;
+  T* m_;
+  T* work_;
+  std::uint32_t spent_ = 0;  ///< iterations of earlier passes
+};
+
+}  // namespace poesy::chain
+
+#include "models/chain/block_kernel_equations.h"
+#include "models/chain/block_kernel_geometry.h"
+#include "models/chain/block_kernel_passes.h"

@@ -1,0 +1,12 @@
+#include "models/chain/block_kernel.h"
+#include "models/chain/block_kernels.h"
+#include "models/simd/pack.h"
+
+namespace poesy::chain {
+
+void solve_block_neon(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                      const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
+  BlockKernel<simd::HWY_NAMESPACE::Pack>(chain, samples, start, options, outcome, scratch).solve();
+}
+
+}  // namespace poesy::chain

@@ -1,0 +1,276 @@
+#pragma once
+
+#include "models/chain/block_kernel_equations.h"
+
+namespace poesy::chain {
+
+template <class T>
+BlockKernel<T>::BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                            const KernelOptions& options, const KernelOutcome& outcome, double* scratch)
+    : chain_(chain),
+      samples_(samples),
+      start_(start),
+      options_(options),
+      outcome_(outcome),
+      capacity_(kernel_capacity(samples.count)) {
+  const auto take = [&scratch](std::size_t doubles) {
+    double* taken = scratch;
+    scratch += doubles;
+    return taken;
+  };
+  const auto take_lanes = [&take](std::size_t numbers) { return take(numbers * kMostLanes); };
+  segment_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.segments));
+  pose_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.limbs));
+  column_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
+  mu_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.pairs));
+  pull_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.limbs));
+  joint_ = reinterpret_cast<T*>(take_lanes(chain.joints));
+  f_ = reinterpret_cast<T*>(take_lanes(chain.joints));
+  step_ = reinterpret_cast<T*>(take_lanes(chain.joints));
+  gauss_newton_ = reinterpret_cast<T*>(take_lanes(chain.joints));
+  n_ = reinterpret_cast<T*>(take_lanes(chain.joints * chain.joints));
+  m_ = reinterpret_cast<T*>(take_lanes(chain.joints * chain.joints));
+  work_ = reinterpret_cast<T*>(take_lanes(chain.joints * chain.joints + chain.joints));
+  value_ = take(samples.varied * capacity_);
+  q_ = take(chain.joints * capacity_);
+  previous_ = take(6 * chain.pairs * capacity_);
+  smallest_ = take(capacity_);
+  flat_ = take(capacity_);
+  index_ = reinterpret_cast<std::uint32_t*>(take(capacity_));
+  left_ = index_ + capacity_;
+}
+
+template <class T>
+void BlockKernel<T>::solve() {
+  for (std::size_t s = 0; s < chain_.segments; ++s) {
+    const KernelPiece& piece = chain_.piece[chain_.segment[s].first_piece];
+    if (chain_.segment[s].pieces != 1 || piece.is_error) continue;
+    for (int n = 0; n < 9; ++n) segment_[s].r[n] = T(piece.constant[n]);
+    for (int n = 0; n < 3; ++n) segment_[s].p[n] = T(piece.constant[9 + n]);
+  }
+  for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
+  const std::uint32_t cap = options_.max_iterations;
+  if (options_.method == KernelMethod::gauss_newton) {
+    run<KernelPass::published>(samples_.count, cap);
+  } else {
+    std::size_t left = run<KernelPass::direct>(samples_.count, cap < kDirectIterations ? cap : kDirectIterations);
+    if (options_.method == KernelMethod::newton) {
+      left = run<KernelPass::follow>(left, kFollowFactor * cap);
+      run<KernelPass::rescue>(left, cap);
+    }
+  }
+  for (std::size_t at = 0; at < samples_.count; at += kLanes) judge(at);
+}
+
+/// Eqs. 45-50: mean of the angular and of the linear norms over the pairs, and the largest norm of both together.
+template <class T>
+void BlockKernel<T>::judge(std::size_t at) {
+  T angular(0.0), linear(0.0), largest(0.0);
+  for (std::size_t n = 0; n < chain_.pairs; ++n) {
+    T mu[6];
+    for (std::size_t k = 0; k < 6; ++k) mu[k] = T::load(outcome_.delta_mu + (6 * n + k) * outcome_.stride + at);
+    const T angular2 = kernel::dot3(mu, mu);
+    const T linear2 = kernel::dot3(mu + 3, mu + 3);
+    angular = angular + sqrt(angular2);
+    linear = linear + sqrt(linear2);
+    largest = max(largest, angular2 + linear2);
+  }
+  const T share(1.0 / static_cast<double>(chain_.pairs));
+  (angular * share).store(outcome_.responses + at);
+  (linear * share).store(outcome_.responses + outcome_.stride + at);
+  sqrt(largest).store(outcome_.responses + 2 * outcome_.stride + at);
+}
+
+/// Solves the samples named in left_[0 .. count); leaves there those that it did not solve, and says how many.
+template <class T>
+template <KernelPass pass>
+std::size_t BlockKernel<T>::run(std::size_t count, std::uint32_t rounds) {
+  constexpr bool published = pass == KernelPass::published;
+  constexpr bool last_pass = published || pass == KernelPass::rescue;
+  if (count == 0) return 0;
+  begin(count, pass == KernelPass::direct);
+  std::size_t left = 0;
+  std::size_t active = count;
+  // The published rule looks at the residual after the last step, too.
+  const std::uint32_t evaluations = published ? rounds + 1 : rounds;
+  for (std::uint32_t round = 0; round < evaluations && active > 0; ++round) {
+    const bool last_round = round + 1 == evaluations;
+    const std::uint32_t iterations = spent_ + round + (published ? 0 : 1);
+    std::size_t kept = 0;
+    pad(active);
+    for (std::size_t at = 0; at < active; at += kLanes) {
+      Verdict verdict;
+      if constexpr (published) {
+        verdict = published_round(at, round, last_round);
+      } else {
+        verdict = newton_round<pass>(at);
+      }
+      for (std::size_t lane = 0; lane < kLanes && at + lane < active; ++lane) {
+        if (!verdict.ended(lane) && !last_round) {
+          move<pass>(at + lane, kept++);
+        } else if (last_pass || verdict.solved(lane)) {
+          finish(at, lane, verdict.status(lane), iterations);
+        } else {
+          left_[left++] = index_[at + lane];
+        }
+      }
+    }
+    active = kept;
+  }
+  spent_ += rounds;
+  return left;
+}
+
+template <class T>
+void BlockKernel<T>::begin(std::size_t count, bool predicted) {
+  for (std::size_t b = 0; b < count; ++b) {
+    index_[b] = left_[b];
+    for (std::size_t v = 0; v < samples_.varied; ++v) {
+      value_[v * capacity_ + b] = samples_.values[v * samples_.stride + left_[b]];
+    }
+    smallest_[b] = 1e308;
+    flat_[b] = 0.0;
+  }
+  for (std::size_t j = 0; j < chain_.joints; ++j) {
+    for (std::size_t b = 0; b < count; ++b) q_[j * capacity_ + b] = chain_.joint[j].nominal;
+  }
+  if (!predicted || start_.coefficients == nullptr) return;
+  pad(count);
+  for (std::size_t at = 0; at < count; at += kLanes) predict(at);
+}
+
+/// The Chebyshev series of each joint, summed by Clenshaw's recurrence.
+template <class T>
+void BlockKernel<T>::predict(std::size_t at) {
+  const T x = T::load(value_ + at) * T(1.0 / start_.range);
+  const T twice = x + x;
+  const auto outside = abs(x) > T(1.0);
+  for (std::size_t j = 0; j < chain_.joints; ++j) {
+    const double* c = start_.coefficients + j * start_.terms;
+    T one(0.0), two(0.0);
+    for (std::size_t n = start_.terms; n-- > 1;) {
+      const T sum = madd(twice, one, T(c[n]) - two);
+      two = one;
+      one = sum;
+    }
+    const T q = madd(x, one, T(c[0]) - two);
+    select(outside, T(chain_.joint[j].nominal), q).store(q_ + j * capacity_ + at);
+  }
+}
+
+/// Fills the lanes behind the last sample with copies of it: they are solved and forgotten.
+template <class T>
+void BlockKernel<T>::pad(std::size_t count) {
+  const std::size_t rows = samples_.varied + chain_.joints + 6 * chain_.pairs + 2;
+  for (std::size_t b = count; b % kLanes != 0; ++b) {
+    // value_, q_, previous_, smallest_ and flat_ lie behind each other.
+    for (std::size_t row = 0; row < rows; ++row) value_[row * capacity_ + b] = value_[row * capacity_ + count - 1];
+  }
+}
+
+template <class T>
+void BlockKernel<T>::evaluate(std::size_t at) {
+  for (std::size_t j = 0; j < chain_.joints; ++j) joint_[j] = T::load(q_ + j * capacity_ + at);
+  vary_segments(at);
+  residuals();
+  gradient();
+  gauss_newton_matrix();
+}
+
+template <class T>
+typename T::MaskType BlockKernel<T>::finite_residual() const {
+  T sum(0.0);
+  for (std::size_t n = 0; n < chain_.pairs; ++n) {
+    for (int k = 0; k < 3; ++k) sum = sum + abs(mu_[n].w[k]) + abs(mu_[n].v[k]);
+  }
+  return sum < T(1e300);
+}
+
+template <class T>
+void BlockKernel<T>::take_step(std::size_t at, const T* x) {
+  for (std::size_t j = 0; j < chain_.joints; ++j) (joint_[j] + x[j]).store(q_ + j * capacity_ + at);
+}
+
+template <class T>
+auto BlockKernel<T>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
+  evaluate(at);
+  T change(0.0);
+  for (std::size_t n = 0; n < chain_.pairs; ++n) {
+    for (int k = 0; k < 3; ++k) {
+      double* w = previous_ + (6 * n + static_cast<std::size_t>(k)) * capacity_ + at;
+      double* v = w + 3 * capacity_;
+      change = max(change, max(abs(mu_[n].w[k] - T::load(w)), abs(mu_[n].v[k] - T::load(v))));
+      mu_[n].w[k].store(w);
+      mu_[n].v[k].store(v);
+    }
+  }
+  Verdict verdict;
+  verdict.non_finite = bits(!finite_residual());
+  if (round > 0) {
+    const T smallest = T::load(smallest_ + at);
+    const T flat = select(change < smallest, T(0.0), T::load(flat_ + at) + T(1.0));
+    min(change, smallest).store(smallest_ + at);
+    flat.store(flat_ + at);
+    verdict.converged = bits(change < T(options_.tolerance));
+    verdict.stagnated = bits((!(change > T(options_.rounding_level))) & (flat > T(2.5)));
+  }
+  if (last_round) return verdict;
+  verdict.singular = bits(!gauss_newton_step(step_));
+  take_step(at, step_);
+  return verdict;
+}
+
+template <class T>
+template <KernelPass pass>
+auto BlockKernel<T>::newton_round(std::size_t at) -> Verdict {
+  evaluate(at);
+  newton_matrix();
+  auto safe = finite_residual();
+  if constexpr (pass != KernelPass::rescue) safe = safe & contracts();
+  safe = safe & newton_step(step_);
+  T size(0.0);
+  for (std::size_t j = 0; j < chain_.joints; ++j) size = max(size, abs(step_[j]));
+  safe = safe & (size < T(pass == KernelPass::follow ? kFollowStep : kDirectStep));
+  const auto converged = safe & (size < T(options_.last_step));
+  Verdict verdict;
+  verdict.converged = bits(converged);
+  if constexpr (pass == KernelPass::direct) {
+    verdict.refused = bits(!safe);
+  } else if (any(!safe)) {
+    verdict.non_finite = bits(!finite_residual());
+    verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
+    const T damping(pass == KernelPass::rescue ? 0.5 : 1.0);
+    for (std::size_t j = 0; j < chain_.joints; ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
+  }
+  take_step(at, step_);
+  if (any(converged)) carry_residual(step_, converged);
+  return verdict;
+}
+
+template <class T>
+void BlockKernel<T>::finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations) {
+  const std::size_t sample = index_[at + lane];
+  const double* mu = reinterpret_cast<const double*>(mu_);
+  for (std::size_t n = 0; n < 6 * chain_.pairs; ++n)
+    outcome_.delta_mu[n * outcome_.stride + sample] = mu[n * kLanes + lane];
+  if (outcome_.displacements != nullptr) {
+    for (std::size_t j = 0; j < chain_.joints; ++j) {
+      outcome_.displacements[j * outcome_.stride + sample] = q_[j * capacity_ + at + lane];
+    }
+  }
+  outcome_.status[sample] = status;
+  outcome_.iterations[sample] = iterations;
+}
+
+/// Samples that go on close ranks.
+template <class T>
+template <KernelPass pass>
+void BlockKernel<T>::move(std::size_t from, std::size_t to) {
+  if (from == to) return;
+  index_[to] = index_[from];
+  const std::size_t needed = samples_.varied + chain_.joints;
+  const std::size_t rows = pass == KernelPass::published ? needed + 6 * chain_.pairs + 2 : needed;
+  for (std::size_t row = 0; row < rows; ++row) value_[row * capacity_ + to] = value_[row * capacity_ + from];
+}
+
+}  // namespace poesy::chain

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "models/chain/block_problem.h"
+
+namespace poesy::chain {
+
+// One per instruction set, each compiled in a translation unit of its own. See best_kernel().
+void solve_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                       const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
+void solve_block_avx2(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                      const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
+void solve_block_avx512(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                        const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
+void solve_block_neon(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                      const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
+
+}  // namespace poesy::chain

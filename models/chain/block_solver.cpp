@@ -1,0 +1,226 @@
+#include "models/chain/block_solver.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include "engine/base/contract.h"
+#include "models/chain/block_kernels.h"
+#include "models/chain/deformation_solver.h"
+#include "models/simd/isa.h"
+
+namespace poesy::chain {
+namespace {
+
+/// Nodes of the fit that predicts starts: one batch of the widest instruction set, twice.
+constexpr std::size_t kNodes = 16;
+/// A fit whose last coefficients are larger (rad, m) is not trusted: the displacements are not smooth over the range.
+constexpr double kTrustedTail = 1e-4;
+/// How often the range is halved to find a fit that is trusted.
+constexpr int kHalvings = 3;
+
+KernelSolve best_kernel() {
+  switch (simd::selected_isa()) {
+#ifdef POESY_KERNELS_X86
+    case simd::Isa::avx512:
+      return solve_block_avx512;
+    case simd::Isa::avx2:
+      return solve_block_avx2;
+#endif
+#ifdef POESY_KERNELS_ARM
+    case simd::Isa::neon:
+      return solve_block_neon;
+#endif
+    default:
+      return solve_block_plain;
+  }
+}
+
+std::array<double, 12> rows_of(const lie::Transform<double>& g) {
+  std::array<double, 12> rows{};
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    for (Eigen::Index c = 0; c < 3; ++c) rows[static_cast<std::size_t>(3 * r + c)] = g.R(r, c);
+    rows[static_cast<std::size_t>(9 + r)] = g.p[r];
+  }
+  return rows;
+}
+
+lie::Transform<double> transform_of(const KernelPiece& piece) {
+  lie::Transform<double> g;
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    for (Eigen::Index c = 0; c < 3; ++c) g.R(r, c) = piece.constant[3 * r + c];
+    g.p[r] = piece.constant[9 + r];
+  }
+  return g;
+}
+
+double* aligned(std::vector<double>& memory) {
+  const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
+  return memory.data() + (64 - address % 64) % 64 / sizeof(double);
+}
+
+}  // namespace
+
+BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& options)
+    : chain_(&chain),
+      options_{options.method == SolverOptions::Method::newton ? KernelMethod::newton : KernelMethod::gauss_newton,
+               options.tolerance, rounding_level(chain),
+               // Newton's error falls with the square of its steps. Rounding alone makes steps of about 1e-14.
+               std::max(std::sqrt(options.tolerance / 10.0), 1e-10),
+               static_cast<std::uint32_t>(options.max_iterations)},
+      kernel_(best_kernel()) {
+  std::size_t joint = 0;
+  for (const Limb& limb : chain.limbs) {
+    limbs_.push_back({joint, limb.passive_joints()});
+    joint += limb.passive_joints();
+  }
+  for (const LimbPair& pair : chain.pairs) pairs_.push_back({pair.k, pair.i});
+  coefficients_.resize(joint * kNodes);
+  node_displacements_.resize(joint * kernel_capacity(kNodes));
+}
+
+void BlockSolver::prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
+                          std::span<const VariedEntry> varied, double range) {
+  POESY_EXPECTS(displacements.size() == chain_->joints() && errors.size() == chain_->frames());
+  joints_.clear();
+  segments_.clear();
+  pieces_.clear();
+  first_piece_ = 0;
+  varied_ = varied.size();
+  std::size_t frame = 0;
+  std::size_t joint = 0;
+  for (const Limb& limb : chain_->limbs) {
+    for (std::size_t j = 0; j < limb.frames(); ++j, ++frame) {
+      add_frame(limb, j, frame, errors[frame], varied);
+      if (j == limb.joints.size()) break;
+      const Joint& next = limb.joints[j];
+      if (next.actuated) {
+        lie::Transform<double> motion;
+        move_joint(next.type, displacements[joint], motion);
+        add_piece(motion);
+      } else {
+        joints_.push_back({next.type == JointType::revolute, displacements[joint]});
+        close_segment();
+      }
+      ++joint;
+    }
+    ++frame;
+    close_segment();
+  }
+  start_ = {};
+  if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) predict_starts(range);
+}
+
+/// Constant motions that follow each other become one.
+void BlockSolver::add_piece(const lie::Transform<double>& motion) {
+  lie::Transform<double> product = motion;
+  if (pieces_.size() > first_piece_ && !pieces_.back().is_error) {
+    product = transform_of(pieces_.back()) * motion;
+    pieces_.pop_back();
+  }
+  KernelPiece piece{};
+  const std::array<double, 12> rows = rows_of(product);
+  std::copy(rows.begin(), rows.end(), piece.constant);
+  pieces_.push_back(piece);
+}
+
+void BlockSolver::add_frame(const Limb& limb, std::size_t j, std::size_t frame, const FrameError<double>& error,
+                            std::span<const VariedEntry> varied) {
+  KernelPiece piece{};
+  piece.is_error = true;
+  piece.inverted = j + 1 == limb.frames();
+  bool varies = false;
+  for (std::size_t c = 0; c < 6; ++c) {
+    piece.error[c] = error[static_cast<Eigen::Index>(c)];
+    piece.varied_row[c] = -1;
+  }
+  for (std::size_t v = 0; v < varied.size(); ++v) {
+    if (varied[v].frame != frame) continue;
+    piece.varied_row[varied[v].component] = static_cast<int>(v);
+    varies = true;
+  }
+  if (!varies) {
+    add_piece(frame_with_error(limb, j, error));
+  } else if (piece.inverted) {
+    add_piece(limb.home[j]);
+    pieces_.push_back(piece);
+  } else {
+    pieces_.push_back(piece);
+    add_piece(limb.home[j]);
+  }
+}
+
+void BlockSolver::close_segment() {
+  segments_.push_back({first_piece_, pieces_.size() - first_piece_});
+  first_piece_ = pieces_.size();
+}
+
+void BlockSolver::predict_starts(double range) {
+  for (int halving = 0; halving <= kHalvings; ++halving, range /= 2.0) {
+    if (fit_starts(range)) return;
+  }
+}
+
+/// Interpolates the displacements at Chebyshev nodes of the range, each solved from nominal displacements.
+bool BlockSolver::fit_starts(double range) {
+  std::array<double, kNodes> nodes;
+  for (std::size_t k = 0; k < kNodes; ++k) {
+    nodes[k] = range * std::cos(std::numbers::pi * (static_cast<double>(k) + 0.5) / kNodes);
+  }
+  std::fill(status_.begin(), status_.end(), SolveStatus::iteration_cap);
+  KernelOptions direct = options_;
+  direct.method = KernelMethod::newton_direct;
+  run(nodes, kNodes, {}, direct, node_displacements_.data());
+  for (std::size_t k = 0; k < kNodes; ++k) {
+    if (!solved(status_[k])) return false;
+  }
+  const std::size_t stride = kernel_capacity(kNodes);
+  double tail = 0.0;
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kNodes; ++k) {
+        sum += node_displacements_[j * stride + k] *
+               std::cos(std::numbers::pi * static_cast<double>(n) * (static_cast<double>(k) + 0.5) / kNodes);
+      }
+      const double coefficient = (n == 0 ? 1.0 : 2.0) / kNodes * sum;
+      coefficients_[j * kNodes + n] = coefficient;
+      if (n + 3 >= kNodes) tail = std::max(tail, std::abs(coefficient));
+    }
+  }
+  if (!(tail < kTrustedTail)) return false;
+  start_ = {coefficients_.data(), kNodes, range};
+  return true;
+}
+
+void BlockSolver::solve(std::span<const double> values, std::size_t count) {
+  run(values, count, start_, options_, nullptr);
+}
+
+void BlockSolver::run(std::span<const double> values, std::size_t count, const KernelStart& start,
+                      const KernelOptions& options, double* displacements) {
+  POESY_EXPECTS(values.size() == varied_ * count);
+  const KernelChain chain = kernel_chain();
+  const KernelSamples samples{values.data(), varied_, count, count};
+  const std::size_t stride = kernel_capacity(count);
+  // One alignment's worth more than needed, so that an aligned start fits.
+  scratch_.resize(std::max(scratch_.size(), kernel_scratch(chain, samples) + kMostLanes));
+  delta_mu_.assign(6 * chain.pairs * stride, 0.0);
+  responses_.resize(3 * stride);
+  status_.resize(stride);
+  iterations_.resize(stride);
+  count_ = count;
+  kernel_(chain, samples, start, options,
+          {delta_mu_.data(), responses_.data(), displacements, status_.data(), iterations_.data(), stride},
+          aligned(scratch_));
+}
+
+KernelChain BlockSolver::kernel_chain() const {
+  return {limbs_.data(),  limbs_.size(),    pairs_.data(),    pairs_.size(), joints_.data(),
+          joints_.size(), segments_.data(), segments_.size(), pieces_.data()};
+}
+
+}  // namespace poesy::chain

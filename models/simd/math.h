@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+
+namespace poesy::simd {
+
+/// c[0] + c[1] x + ... + c[n-1] x^(n-1)
+template <class T, std::size_t n>
+inline T polynomial(T x, const double (&c)[n]) {
+  T sum = c[n - 1];
+  for (std::size_t k = n - 1; k-- > 0;) sum = madd(sum, x, T(c[k]));
+  return sum;
+}
+
+template <class T>
+struct SinCos {
+  T sin, cos;
+};
+
+/// Sine and cosine, within 1 ulp for |x| < 100: reduction by pi/2 in two parts (Cody and Waite), then the polynomials
+/// of fdlibm (Sun Microsystems 1993) for |r| <= pi/4. No branch, so that a lane never depends on its neighbours.
+template <class T>
+inline SinCos<T> sin_cos(T x) {
+  constexpr double kTwoOverPi = 0.63661977236758134308;
+  constexpr double kHalfPiHigh = 1.57079632673412561417e+00;  // the first 33 bits of pi/2
+  constexpr double kHalfPiLow = 6.07710050650619224932e-11;   // the rest
+  static constexpr double kSin[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
+                                    -1.98412698298579493134e-04, 2.75573137070700676789e-06,
+                                    -2.50507602534068634195e-08, 1.58969099521155010221e-10};
+  static constexpr double kCos[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03,
+                                    2.48015872894767294178e-05, -2.75573143513906633035e-07,
+                                    2.08757232129817482790e-09, -1.13596475577881948265e-11};
+  const T n = nearest(x * T(kTwoOverPi));
+  const T r = nmadd(n, T(kHalfPiLow), nmadd(n, T(kHalfPiHigh), x));
+  const T z = r * r;
+  const T sine = madd(r * z, polynomial(z, kSin), r);
+  const T cosine = madd(z * z, polynomial(z, kCos), nmadd(T(0.5), z, T(1.0)));
+  // n mod 2 and n mod 4, as 0 or +-1 and as -2 .. 2.
+  const T odd = nmadd(T(2.0), nearest(T(0.5) * n), n);
+  const T quarter = nmadd(T(4.0), nearest(T(0.25) * n), n);
+  const auto swap = abs(odd) > T(0.5);
+  const auto sine_negative = (abs(quarter) > T(1.5)) | (quarter < T(-0.5));
+  const auto cosine_negative = (abs(quarter) > T(1.5)) | (quarter > T(0.5));
+  const T s = select(swap, cosine, sine);
+  const T c = select(swap, sine, cosine);
+  return {select(sine_negative, -s, s), select(cosine_negative, -c, c)};
+}
+
+}  // namespace poesy::simd

@@ -1,0 +1,69 @@
+#pragma once
+
+// A batch of numbers that is used like one number. Included only by translation units that are compiled for one
+// instruction set: every name lives in a namespace of that set, so that no inline function of one set can be linked
+// into another.
+#define HWY_COMPILE_ONLY_STATIC
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+namespace poesy::simd::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<double>;
+
+/// One truth value per lane.
+struct Mask {
+  hn::Mask<Tag> m;
+
+  friend Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
+  friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
+  friend Mask operator!(Mask a) { return {hn::Not(a.m)}; }
+  friend bool any(Mask a) { return !hn::AllFalse(Tag(), a.m); }
+  /// Bit n is lane n.
+  friend unsigned bits(Mask a) {
+    unsigned char bytes[8] = {};
+    hn::StoreMaskBits(Tag(), a.m, bytes);
+    return bytes[0];
+  }
+};
+
+/// Lanes of doubles. madd and nmadd round once; everything else is a single IEEE operation per lane, so that
+/// instruction sets with fused multiply-add agree in every bit.
+struct Pack {
+  using MaskType = Mask;
+  static constexpr std::size_t kLanes = hn::MaxLanes(Tag());
+
+  hn::Vec<Tag> v;
+
+  Pack() = default;
+  Pack(hn::Vec<Tag> lanes) : v(lanes) {}
+  Pack(double value) : v(hn::Set(Tag(), value)) {}
+
+  static Pack load(const double* from) { return hn::LoadU(Tag(), from); }
+  void store(double* to) const { hn::StoreU(v, Tag(), to); }
+
+  friend Pack operator+(Pack a, Pack b) { return hn::Add(a.v, b.v); }
+  friend Pack operator-(Pack a, Pack b) { return hn::Sub(a.v, b.v); }
+  friend Pack operator*(Pack a, Pack b) { return hn::Mul(a.v, b.v); }
+  friend Pack operator/(Pack a, Pack b) { return hn::Div(a.v, b.v); }
+  friend Pack operator-(Pack a) { return hn::Neg(a.v); }
+  friend Mask operator<(Pack a, Pack b) { return {hn::Lt(a.v, b.v)}; }
+  friend Mask operator>(Pack a, Pack b) { return {hn::Gt(a.v, b.v)}; }
+
+  /// a b + c
+  friend Pack madd(Pack a, Pack b, Pack c) { return hn::MulAdd(a.v, b.v, c.v); }
+  /// c - a b
+  friend Pack nmadd(Pack a, Pack b, Pack c) { return hn::NegMulAdd(a.v, b.v, c.v); }
+  friend Pack select(Mask mask, Pack yes, Pack no) { return hn::IfThenElse(mask.m, yes.v, no.v); }
+  friend Pack sqrt(Pack a) { return hn::Sqrt(a.v); }
+  friend Pack abs(Pack a) { return hn::Abs(a.v); }
+  friend Pack max(Pack a, Pack b) { return hn::Max(a.v, b.v); }
+  friend Pack min(Pack a, Pack b) { return hn::Min(a.v, b.v); }
+  /// To the nearest whole number, ties to even.
+  friend Pack nearest(Pack a) { return hn::Round(a.v); }
+};
+
+}  // namespace poesy::simd::HWY_NAMESPACE
