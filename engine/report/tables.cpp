@@ -56,12 +56,15 @@ double share_not_converged(const SensitivityResult& s, std::size_t factor) {
   return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
 }
 
-std::vector<std::size_t> ranking(const SensitivityResult& s, std::size_t response) {
+/// Factors by the spread that each gives the response at the size the study sets: index x sigma(error). Indices alone
+/// do not compare, for some are per m and some per rad.
+std::vector<std::size_t> ranking(const StoredResult& result, std::size_t response) {
+  const SensitivityResult& s = result.sensitivity;
   std::vector<std::size_t> order(s.factors);
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto key = [&](std::size_t p) {
-    const double index = s.global[response * s.factors + p];
-    return std::isnan(index) ? -1.0 : index;
+    const double spread = s.global[response * s.factors + p] * result.factor_sigma[p];
+    return std::isnan(spread) ? -1.0 : spread;
   };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) > key(b); });
   return order;
@@ -103,8 +106,9 @@ std::string default_ranking(const StoredResult& result) {
 std::string ranked_table(const StoredResult& result, std::string_view ranked_by) {
   const SensitivityResult& s = result.sensitivity;
   const std::vector<std::size_t> shown = shown_responses(result, response_named(result, ranked_by));
-  std::string text = fmt::format("Global sensitivity indices, ranked by {}, with {:.3g} % intervals\n", ranked_by,
-                                 100.0 * s.conf_level);
+  std::string text = fmt::format(
+      "Global sensitivity indices with {1:.3g} % intervals, ranked by the spread of {0} that each error causes\n",
+      ranked_by, 100.0 * s.conf_level);
   text += fmt::format("{:>4}  {:<16}", "rank", "error");
   for (const std::size_t r : shown) {
     text +=
@@ -112,7 +116,7 @@ std::string ranked_table(const StoredResult& result, std::string_view ranked_by)
   }
   text += "  not converged\n";
   std::size_t rank = 0;
-  for (const std::size_t p : ranking(s, shown.front())) {
+  for (const std::size_t p : ranking(result, shown.front())) {
     const Unit& factor_unit = display(result.factors[p]);
     text += fmt::format("{:>4}  {:<16}", ++rank, result.factors[p].name);
     for (const std::size_t r : shown) {

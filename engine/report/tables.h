@@ -11,8 +11,9 @@ namespace poesy {
 /// What was run, how long it took and how many solves did not converge, a few lines.
 std::string summary_text(const StoredResult& result);
 
-/// The factors of a sensitivity result, ranked by the global index of one response, with the intervals of all
-/// responses that have a dimension, in mm and deg. ranked_by is a response of the result.
+/// The factors of a sensitivity result, ranked by the spread that each gives one response at the size the study sets
+/// (global index x sigma), with the indices and intervals of all responses that have a dimension, in mm and deg.
+/// ranked_by is a response of the result.
 std::string ranked_table(const StoredResult& result, std::string_view ranked_by);
 
 /// The response a result is ranked by unless asked otherwise: the first length, else the first.

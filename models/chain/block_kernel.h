@@ -30,13 +30,41 @@ enum class KernelPass {
 /// methods mean the same root. A sample goes through up to three passes:
 ///   direct   Newton from the start; refused at a step that is not safe or larger than 0.1;
 ///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
-///            safe and below 1e-3: the root, if any, that Gauss-Newton finds;
+///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds;
 ///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
 ///   max_iterations:
 ///            a root with positive derivative where Gauss-Newton finds none.
 /// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is carried along it to first order instead of being evaluated again.
-template <class T>
+/// Three limbs, each paired with each other one, of equally many passive joints: known when the kernel is compiled, so
+/// that its loops unroll.
+template <std::size_t joints_per_limb>
+struct ThreeLimbs {
+  static constexpr bool kFixed = true;
+  /// No two limbs meet in two pairs, and all limbs meet: each off-diagonal block of N belongs to one pair.
+  static constexpr bool kEveryPairOnce = true;
+  static constexpr std::size_t kLimbs = 3;
+  static constexpr std::size_t kJoints = joints_per_limb;
+  static constexpr std::size_t kPairs = 3;
+
+  static bool fits(const KernelChain& chain) {
+    if (chain.limbs != kLimbs || chain.pairs != kPairs) return false;
+    unsigned met = 0;
+    for (std::size_t n = 0; n < kPairs; ++n) met |= 1u << (chain.pair[n].i + chain.pair[n].k);
+    for (std::size_t i = 0; i < kLimbs; ++i) {
+      if (chain.limb[i].joints != kJoints) return false;
+    }
+    return met == 0b1110;  // the pairs of three limbs, numbered by their sums 1, 2, 3
+  }
+};
+
+/// Any number of limbs, joints and pairs.
+struct AnyShape {
+  static constexpr bool kFixed = false;
+  static constexpr bool kEveryPairOnce = false;
+};
+
+template <class T, class Shape>
 class BlockKernel {
  public:
   BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
@@ -49,8 +77,27 @@ class BlockKernel {
   static constexpr double kSafePivot = 1e-3;
   static constexpr double kDirectStep = 0.1;
   static constexpr double kFollowStep = 1e-3;
+  static constexpr double kNearStep = 2e-3;
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;
+
+  std::size_t limbs() const {
+    if constexpr (Shape::kFixed) return Shape::kLimbs;
+    if constexpr (!Shape::kFixed) return chain_.limbs;
+  }
+  std::size_t pairs() const {
+    if constexpr (Shape::kFixed) return Shape::kPairs;
+    if constexpr (!Shape::kFixed) return chain_.pairs;
+  }
+  std::size_t joints() const {
+    if constexpr (Shape::kFixed) return Shape::kLimbs * Shape::kJoints;
+    if constexpr (!Shape::kFixed) return chain_.joints;
+  }
+  /// First passive joint of limb i, or one past the last joint.
+  std::size_t first_joint(std::size_t i) const {
+    if constexpr (Shape::kFixed) return i * Shape::kJoints;
+    if constexpr (!Shape::kFixed) return i == chain_.limbs ? chain_.joints : chain_.limb[i].first_joint;
+  }
 
   struct Motion {
     T r[9];
@@ -93,6 +140,7 @@ class BlockKernel {
   Verdict published_round(std::size_t at, std::uint32_t round, bool last_round);
   template <KernelPass pass>
   Verdict newton_round(std::size_t at);
+  T largest(const T* x) const;
   void take_step(std::size_t at, const T* x);
   void finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations);
   template <KernelPass pass>
@@ -101,7 +149,7 @@ class BlockKernel {
   // block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;
   void vary_segments(std::size_t at);
-  void limb_pose(const KernelLimb& limb, std::size_t first_segment, Motion& pose);
+  void limb_pose(std::size_t i, Motion& pose);
   void residuals();
   static Screw log(const Motion& g);
 
@@ -147,6 +195,17 @@ class BlockKernel {
   T* work_;
   std::uint32_t spent_ = 0;  ///< iterations of earlier passes
 };
+
+/// Solves a block with the kernel that fits the chain best.
+template <class T>
+void solve_block(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                 const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
+  if (ThreeLimbs<3>::fits(chain)) {
+    BlockKernel<T, ThreeLimbs<3>>(chain, samples, start, options, outcome, scratch).solve();
+  } else {
+    BlockKernel<T, AnyShape>(chain, samples, start, options, outcome, scratch).solve();
+  }
+}
 
 }  // namespace poesy::chain
 

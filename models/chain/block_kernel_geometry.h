@@ -102,8 +102,8 @@ inline constexpr double kAtanShort[] = {1.0,        -1.0 / 3.0,  1.0 / 5.0,  -1.
 }  // namespace kernel
 
 /// Delta g of Eq. 26, or its inverse.
-template <class T>
-auto BlockKernel<T>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
   T e[6];
   for (int n = 0; n < 6; ++n) {
     const int row = piece.varied_row[n];
@@ -142,8 +142,8 @@ auto BlockKernel<T>::error_motion(const KernelPiece& piece, std::size_t at) cons
   return g;
 }
 
-template <class T>
-void BlockKernel<T>::vary_segments(std::size_t at) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::vary_segments(std::size_t at) {
   for (std::size_t s = 0; s < chain_.segments; ++s) {
     const KernelSegment& segment = chain_.segment[s];
     if (segment.pieces == 1 && !chain_.piece[segment.first_piece].is_error) continue;
@@ -168,11 +168,12 @@ void BlockKernel<T>::vary_segments(std::size_t at) {
 }
 
 /// Eq. 28, with the spatial Jacobian columns of Eqs. 32-39 on the way. A joint touches two columns of R, or p.
-template <class T>
-void BlockKernel<T>::limb_pose(const KernelLimb& limb, std::size_t first_segment, Motion& pose) {
-  Motion g = segment_[first_segment];
-  for (std::size_t n = 0; n < limb.joints; ++n) {
-    const std::size_t j = limb.first_joint + n;
+template <class T, class Shape>
+void BlockKernel<T, Shape>::limb_pose(std::size_t i, Motion& pose) {
+  // Each limb before this one has a segment more than joints.
+  const Motion* segment = segment_ + i;
+  Motion g = segment[first_joint(i)];
+  for (std::size_t j = first_joint(i); j < first_joint(i + 1); ++j) {
     Screw& column = column_[j];
     const T axis[3] = {g.r[2], g.r[5], g.r[8]};
     const T q = joint_[j];
@@ -192,27 +193,23 @@ void BlockKernel<T>::limb_pose(const KernelLimb& limb, std::size_t first_segment
         g.p[k] = madd(q, axis[k], g.p[k]);
       }
     }
-    kernel::multiply(g, segment_[first_segment + n + 1], g);
+    kernel::multiply(g, segment[j + 1], g);
   }
   pose = g;
 }
 
-template <class T>
-void BlockKernel<T>::residuals() {
-  std::size_t segment = 0;
-  for (std::size_t i = 0; i < chain_.limbs; ++i) {
-    limb_pose(chain_.limb[i], segment, pose_[i]);
-    segment += chain_.limb[i].joints + 1;
-  }
-  for (std::size_t n = 0; n < chain_.pairs; ++n) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::residuals() {
+  for (std::size_t i = 0; i < limbs(); ++i) limb_pose(i, pose_[i]);
+  for (std::size_t n = 0; n < pairs(); ++n) {
     mu_[n] = log(kernel::divide(pose_[chain_.pair[n].k], pose_[chain_.pair[n].i]));
   }
 }
 
 /// Logarithm for rotations by less than a half turn. Angles come from tan(theta/2) = s / (1 + c), exact at small
 /// angles, where residuals live; beyond 37 degrees, from tan(theta/8).
-template <class T>
-auto BlockKernel<T>::log(const Motion& g) -> Screw {
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::log(const Motion& g) -> Screw {
   const T half(0.5);
   T a[3] = {half * (g.r[7] - g.r[5]), half * (g.r[2] - g.r[6]), half * (g.r[3] - g.r[1])};
   const T sine2 = kernel::dot3(a, a);

@@ -6,7 +6,7 @@ namespace poesy::chain {
 
 void solve_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
                        const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
-  BlockKernel<simd::Number>(chain, samples, start, options, outcome, scratch).solve();
+  solve_block<simd::Number>(chain, samples, start, options, outcome, scratch);
 }
 
 }  // namespace poesy::chain

@@ -4,9 +4,9 @@
 
 namespace poesy::chain {
 
-template <class T>
-BlockKernel<T>::BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
-                            const KernelOptions& options, const KernelOutcome& outcome, double* scratch)
+template <class T, class Shape>
+BlockKernel<T, Shape>::BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                                   const KernelOptions& options, const KernelOutcome& outcome, double* scratch)
     : chain_(chain),
       samples_(samples),
       start_(start),
@@ -40,8 +40,8 @@ BlockKernel<T>::BlockKernel(const KernelChain& chain, const KernelSamples& sampl
   left_ = index_ + capacity_;
 }
 
-template <class T>
-void BlockKernel<T>::solve() {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::solve() {
   for (std::size_t s = 0; s < chain_.segments; ++s) {
     const KernelPiece& piece = chain_.piece[chain_.segment[s].first_piece];
     if (chain_.segment[s].pieces != 1 || piece.is_error) continue;
@@ -63,10 +63,10 @@ void BlockKernel<T>::solve() {
 }
 
 /// Eqs. 45-50: mean of the angular and of the linear norms over the pairs, and the largest norm of both together.
-template <class T>
-void BlockKernel<T>::judge(std::size_t at) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::judge(std::size_t at) {
   T angular(0.0), linear(0.0), largest(0.0);
-  for (std::size_t n = 0; n < chain_.pairs; ++n) {
+  for (std::size_t n = 0; n < pairs(); ++n) {
     T mu[6];
     for (std::size_t k = 0; k < 6; ++k) mu[k] = T::load(outcome_.delta_mu + (6 * n + k) * outcome_.stride + at);
     const T angular2 = kernel::dot3(mu, mu);
@@ -75,16 +75,16 @@ void BlockKernel<T>::judge(std::size_t at) {
     linear = linear + sqrt(linear2);
     largest = max(largest, angular2 + linear2);
   }
-  const T share(1.0 / static_cast<double>(chain_.pairs));
+  const T share(1.0 / static_cast<double>(pairs()));
   (angular * share).store(outcome_.responses + at);
   (linear * share).store(outcome_.responses + outcome_.stride + at);
   sqrt(largest).store(outcome_.responses + 2 * outcome_.stride + at);
 }
 
 /// Solves the samples named in left_[0 .. count); leaves there those that it did not solve, and says how many.
-template <class T>
+template <class T, class Shape>
 template <KernelPass pass>
-std::size_t BlockKernel<T>::run(std::size_t count, std::uint32_t rounds) {
+std::size_t BlockKernel<T, Shape>::run(std::size_t count, std::uint32_t rounds) {
   constexpr bool published = pass == KernelPass::published;
   constexpr bool last_pass = published || pass == KernelPass::rescue;
   if (count == 0) return 0;
@@ -121,8 +121,8 @@ std::size_t BlockKernel<T>::run(std::size_t count, std::uint32_t rounds) {
   return left;
 }
 
-template <class T>
-void BlockKernel<T>::begin(std::size_t count, bool predicted) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::begin(std::size_t count, bool predicted) {
   for (std::size_t b = 0; b < count; ++b) {
     index_[b] = left_[b];
     for (std::size_t v = 0; v < samples_.varied; ++v) {
@@ -131,21 +131,23 @@ void BlockKernel<T>::begin(std::size_t count, bool predicted) {
     smallest_[b] = 1e308;
     flat_[b] = 0.0;
   }
-  for (std::size_t j = 0; j < chain_.joints; ++j) {
+  if (predicted && start_.coefficients != nullptr) {
+    pad(count);
+    for (std::size_t at = 0; at < count; at += kLanes) predict(at);
+    return;
+  }
+  for (std::size_t j = 0; j < joints(); ++j) {
     for (std::size_t b = 0; b < count; ++b) q_[j * capacity_ + b] = chain_.joint[j].nominal;
   }
-  if (!predicted || start_.coefficients == nullptr) return;
-  pad(count);
-  for (std::size_t at = 0; at < count; at += kLanes) predict(at);
 }
 
 /// The Chebyshev series of each joint, summed by Clenshaw's recurrence.
-template <class T>
-void BlockKernel<T>::predict(std::size_t at) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::predict(std::size_t at) {
   const T x = T::load(value_ + at) * T(1.0 / start_.range);
   const T twice = x + x;
   const auto outside = abs(x) > T(1.0);
-  for (std::size_t j = 0; j < chain_.joints; ++j) {
+  for (std::size_t j = 0; j < joints(); ++j) {
     const double* c = start_.coefficients + j * start_.terms;
     T one(0.0), two(0.0);
     for (std::size_t n = start_.terms; n-- > 1;) {
@@ -159,43 +161,50 @@ void BlockKernel<T>::predict(std::size_t at) {
 }
 
 /// Fills the lanes behind the last sample with copies of it: they are solved and forgotten.
-template <class T>
-void BlockKernel<T>::pad(std::size_t count) {
-  const std::size_t rows = samples_.varied + chain_.joints + 6 * chain_.pairs + 2;
+template <class T, class Shape>
+void BlockKernel<T, Shape>::pad(std::size_t count) {
+  const std::size_t rows = samples_.varied + joints() + 6 * pairs() + 2;
   for (std::size_t b = count; b % kLanes != 0; ++b) {
     // value_, q_, previous_, smallest_ and flat_ lie behind each other.
     for (std::size_t row = 0; row < rows; ++row) value_[row * capacity_ + b] = value_[row * capacity_ + count - 1];
   }
 }
 
-template <class T>
-void BlockKernel<T>::evaluate(std::size_t at) {
-  for (std::size_t j = 0; j < chain_.joints; ++j) joint_[j] = T::load(q_ + j * capacity_ + at);
+template <class T, class Shape>
+void BlockKernel<T, Shape>::evaluate(std::size_t at) {
+  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(q_ + j * capacity_ + at);
   vary_segments(at);
   residuals();
   gradient();
   gauss_newton_matrix();
 }
 
-template <class T>
-typename T::MaskType BlockKernel<T>::finite_residual() const {
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::finite_residual() const {
   T sum(0.0);
-  for (std::size_t n = 0; n < chain_.pairs; ++n) {
+  for (std::size_t n = 0; n < pairs(); ++n) {
     for (int k = 0; k < 3; ++k) sum = sum + abs(mu_[n].w[k]) + abs(mu_[n].v[k]);
   }
   return sum < T(1e300);
 }
 
-template <class T>
-void BlockKernel<T>::take_step(std::size_t at, const T* x) {
-  for (std::size_t j = 0; j < chain_.joints; ++j) (joint_[j] + x[j]).store(q_ + j * capacity_ + at);
+template <class T, class Shape>
+T BlockKernel<T, Shape>::largest(const T* x) const {
+  T size(0.0);
+  for (std::size_t j = 0; j < joints(); ++j) size = max(size, abs(x[j]));
+  return size;
 }
 
-template <class T>
-auto BlockKernel<T>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::take_step(std::size_t at, const T* x) {
+  for (std::size_t j = 0; j < joints(); ++j) (joint_[j] + x[j]).store(q_ + j * capacity_ + at);
+}
+
+template <class T, class Shape>
+auto BlockKernel<T, Shape>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
   evaluate(at);
   T change(0.0);
-  for (std::size_t n = 0; n < chain_.pairs; ++n) {
+  for (std::size_t n = 0; n < pairs(); ++n) {
     for (int k = 0; k < 3; ++k) {
       double* w = previous_ + (6 * n + static_cast<std::size_t>(k)) * capacity_ + at;
       double* v = w + 3 * capacity_;
@@ -220,17 +229,28 @@ auto BlockKernel<T>::published_round(std::size_t at, std::uint32_t round, bool l
   return verdict;
 }
 
-template <class T>
+template <class T, class Shape>
 template <KernelPass pass>
-auto BlockKernel<T>::newton_round(std::size_t at) -> Verdict {
+auto BlockKernel<T, Shape>::newton_round(std::size_t at) -> Verdict {
   evaluate(at);
+  if constexpr (pass == KernelPass::follow) {
+    // Far from a root, Newton's equations would be solved in vain.
+    const auto regular = gauss_newton_step(gauss_newton_);
+    if (!any(largest(gauss_newton_) < T(kNearStep))) {
+      take_step(at, gauss_newton_);
+      Verdict verdict;
+      verdict.non_finite = bits(!finite_residual());
+      verdict.singular = bits(!regular);
+      return verdict;
+    }
+  }
   newton_matrix();
   auto safe = finite_residual();
   if constexpr (pass != KernelPass::rescue) safe = safe & contracts();
   safe = safe & newton_step(step_);
-  T size(0.0);
-  for (std::size_t j = 0; j < chain_.joints; ++j) size = max(size, abs(step_[j]));
+  const T size = largest(step_);
   safe = safe & (size < T(pass == KernelPass::follow ? kFollowStep : kDirectStep));
+  if constexpr (pass == KernelPass::follow) safe = safe & (largest(gauss_newton_) < T(kNearStep));
   const auto converged = safe & (size < T(options_.last_step));
   Verdict verdict;
   verdict.converged = bits(converged);
@@ -240,21 +260,20 @@ auto BlockKernel<T>::newton_round(std::size_t at) -> Verdict {
     verdict.non_finite = bits(!finite_residual());
     verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
     const T damping(pass == KernelPass::rescue ? 0.5 : 1.0);
-    for (std::size_t j = 0; j < chain_.joints; ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
+    for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
   }
   take_step(at, step_);
   if (any(converged)) carry_residual(step_, converged);
   return verdict;
 }
 
-template <class T>
-void BlockKernel<T>::finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations) {
+template <class T, class Shape>
+void BlockKernel<T, Shape>::finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations) {
   const std::size_t sample = index_[at + lane];
   const double* mu = reinterpret_cast<const double*>(mu_);
-  for (std::size_t n = 0; n < 6 * chain_.pairs; ++n)
-    outcome_.delta_mu[n * outcome_.stride + sample] = mu[n * kLanes + lane];
+  for (std::size_t n = 0; n < 6 * pairs(); ++n) outcome_.delta_mu[n * outcome_.stride + sample] = mu[n * kLanes + lane];
   if (outcome_.displacements != nullptr) {
-    for (std::size_t j = 0; j < chain_.joints; ++j) {
+    for (std::size_t j = 0; j < joints(); ++j) {
       outcome_.displacements[j * outcome_.stride + sample] = q_[j * capacity_ + at + lane];
     }
   }
@@ -263,13 +282,13 @@ void BlockKernel<T>::finish(std::size_t at, std::size_t lane, SolveStatus status
 }
 
 /// Samples that go on close ranks.
-template <class T>
+template <class T, class Shape>
 template <KernelPass pass>
-void BlockKernel<T>::move(std::size_t from, std::size_t to) {
+void BlockKernel<T, Shape>::move(std::size_t from, std::size_t to) {
   if (from == to) return;
   index_[to] = index_[from];
-  const std::size_t needed = samples_.varied + chain_.joints;
-  const std::size_t rows = pass == KernelPass::published ? needed + 6 * chain_.pairs + 2 : needed;
+  const std::size_t needed = samples_.varied + joints();
+  const std::size_t rows = pass == KernelPass::published ? needed + 6 * pairs() + 2 : needed;
   for (std::size_t row = 0; row < rows; ++row) value_[row * capacity_ + to] = value_[row * capacity_ + from];
 }
 

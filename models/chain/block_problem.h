@@ -34,6 +34,7 @@ struct KernelSegment {
 struct KernelLimb {
   std::size_t first_joint;  ///< among passive joints
   std::size_t joints;       ///< passive ones; the limb has joints + 1 segments
+  double meetings;          ///< pairs it takes part in
 };
 
 struct KernelPair {
@@ -87,7 +88,7 @@ struct KernelOptions {
 /// Rows as in KernelSamples, for all samples. The stride is at least kernel_capacity(count): entries behind the last
 /// sample are overwritten.
 struct KernelOutcome {
-  double* delta_mu;       ///< [6 pairs x stride], zero on entry
+  double* delta_mu;       ///< [6 pairs x stride]
   double* responses;      ///< [3 x stride]: angular, linear, max
   double* displacements;  ///< [joints x stride], of passive joints; or null
   SolveStatus* status;

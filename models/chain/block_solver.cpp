@@ -74,10 +74,19 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
       kernel_(best_kernel()) {
   std::size_t joint = 0;
   for (const Limb& limb : chain.limbs) {
-    limbs_.push_back({joint, limb.passive_joints()});
+    limbs_.push_back({joint, limb.passive_joints(), 0.0});
     joint += limb.passive_joints();
   }
-  for (const LimbPair& pair : chain.pairs) pairs_.push_back({pair.k, pair.i});
+  for (const LimbPair& pair : chain.pairs) {
+    pairs_.push_back({pair.k, pair.i});
+    limbs_[pair.k].meetings += 1.0;
+    limbs_[pair.i].meetings += 1.0;
+  }
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      cosines_.push_back(std::cos(std::numbers::pi * static_cast<double>(n) * (static_cast<double>(k) + 0.5) / kNodes));
+    }
+  }
   coefficients_.resize(joint * kNodes);
   node_displacements_.resize(joint * kernel_capacity(kNodes));
 }
@@ -168,7 +177,7 @@ void BlockSolver::predict_starts(double range) {
 bool BlockSolver::fit_starts(double range) {
   std::array<double, kNodes> nodes;
   for (std::size_t k = 0; k < kNodes; ++k) {
-    nodes[k] = range * std::cos(std::numbers::pi * (static_cast<double>(k) + 0.5) / kNodes);
+    nodes[k] = range * cosines_[kNodes + k];
   }
   std::fill(status_.begin(), status_.end(), SolveStatus::iteration_cap);
   KernelOptions direct = options_;
@@ -183,8 +192,7 @@ bool BlockSolver::fit_starts(double range) {
     for (std::size_t n = 0; n < kNodes; ++n) {
       double sum = 0.0;
       for (std::size_t k = 0; k < kNodes; ++k) {
-        sum += node_displacements_[j * stride + k] *
-               std::cos(std::numbers::pi * static_cast<double>(n) * (static_cast<double>(k) + 0.5) / kNodes);
+        sum += node_displacements_[j * stride + k] * cosines_[n * kNodes + k];
       }
       const double coefficient = (n == 0 ? 1.0 : 2.0) / kNodes * sum;
       coefficients_[j * kNodes + n] = coefficient;
@@ -208,7 +216,7 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   const std::size_t stride = kernel_capacity(count);
   // One alignment's worth more than needed, so that an aligned start fits.
   scratch_.resize(std::max(scratch_.size(), kernel_scratch(chain, samples) + kMostLanes));
-  delta_mu_.assign(6 * chain.pairs * stride, 0.0);
+  delta_mu_.resize(6 * chain.pairs * stride);
   responses_.resize(3 * stride);
   status_.resize(stride);
   iterations_.resize(stride);

@@ -61,6 +61,7 @@ class BlockSolver {
   std::size_t first_piece_ = 0;
   std::size_t varied_ = 0;
   KernelStart start_{};
+  std::vector<double> cosines_;  ///< Chebyshev polynomial n at node k
   std::vector<double> coefficients_;
   std::vector<double> node_displacements_;
   std::vector<double> scratch_;
