@@ -28,12 +28,12 @@ enum class KernelPass {
 /// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-3 of the diagonal of N, and
 /// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
 /// methods mean the same root. A sample goes through up to three passes:
-///   direct   Newton from the start; refused at a step that is not safe or larger than 0.1;
+///   direct   Newton from the start; refused at a step that is not safe or larger than 0.4;
 ///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
-///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds;
+///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds. Given up
+///            where the displacements come back to those of an earlier iteration;
 ///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
-///   max_iterations:
-///            a root with positive derivative where Gauss-Newton finds none.
+///            max_iterations: a root with positive derivative where Gauss-Newton finds none.
 /// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is carried along it to first order instead of being evaluated again.
 /// Three limbs, each paired with each other one, of equally many passive joints: known when the kernel is compiled, so
@@ -75,9 +75,12 @@ class BlockKernel {
  private:
   static constexpr std::size_t kLanes = T::kLanes;
   static constexpr double kSafePivot = 1e-3;
-  static constexpr double kDirectStep = 0.1;
+  static constexpr double kDirectStep = 0.4;
   static constexpr double kFollowStep = 1e-3;
   static constexpr double kNearStep = 2e-3;
+  static constexpr double kRestingStep = 1e-12;
+  static constexpr double kSamePlace = 1e-9;
+  static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;
 
@@ -139,7 +142,8 @@ class BlockKernel {
   typename T::MaskType finite_residual() const;
   Verdict published_round(std::size_t at, std::uint32_t round, bool last_round);
   template <KernelPass pass>
-  Verdict newton_round(std::size_t at);
+  Verdict newton_round(std::size_t at, std::uint32_t round);
+  typename T::MaskType cycles(std::size_t at, std::uint32_t round);
   T largest(const T* x) const;
   void take_step(std::size_t at, const T* x);
   void finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations);
@@ -174,7 +178,7 @@ class BlockKernel {
   // Per sample, in rows of capacity_.
   double* value_;
   double* q_;
-  double* previous_;      ///< published: residual of the last round
+  double* memory_;        ///< published: residual of the last round; follow: displacements of an earlier one
   double* smallest_;      ///< published: smallest change so far
   double* flat_;          ///< published: rounds since then
   std::uint32_t* index_;  ///< which sample this is

@@ -33,7 +33,7 @@ BlockKernel<T, Shape>::BlockKernel(const KernelChain& chain, const KernelSamples
   work_ = reinterpret_cast<T*>(take_lanes(chain.joints * chain.joints + chain.joints));
   value_ = take(samples.varied * capacity_);
   q_ = take(chain.joints * capacity_);
-  previous_ = take(6 * chain.pairs * capacity_);
+  memory_ = take(kernel_memory(chain) * capacity_);
   smallest_ = take(capacity_);
   flat_ = take(capacity_);
   index_ = reinterpret_cast<std::uint32_t*>(take(capacity_));
@@ -103,7 +103,7 @@ std::size_t BlockKernel<T, Shape>::run(std::size_t count, std::uint32_t rounds) 
       if constexpr (published) {
         verdict = published_round(at, round, last_round);
       } else {
-        verdict = newton_round<pass>(at);
+        verdict = newton_round<pass>(at, round);
       }
       for (std::size_t lane = 0; lane < kLanes && at + lane < active; ++lane) {
         if (!verdict.ended(lane) && !last_round) {
@@ -131,7 +131,7 @@ void BlockKernel<T, Shape>::begin(std::size_t count, bool predicted) {
     smallest_[b] = 1e308;
     flat_[b] = 0.0;
   }
-  if (predicted && start_.coefficients != nullptr) {
+  if (predicted && start_.fits > 0) {
     pad(count);
     for (std::size_t at = 0; at < count; at += kLanes) predict(at);
     return;
@@ -141,31 +141,37 @@ void BlockKernel<T, Shape>::begin(std::size_t count, bool predicted) {
   }
 }
 
-/// The Chebyshev series of each joint, summed by Clenshaw's recurrence.
+/// The Chebyshev series of the fit that a sample lies in, summed by Clenshaw's recurrence.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::predict(std::size_t at) {
-  const T x = T::load(value_ + at) * T(1.0 / start_.range);
-  const T twice = x + x;
-  const auto outside = abs(x) > T(1.0);
-  for (std::size_t j = 0; j < joints(); ++j) {
-    const double* c = start_.coefficients + j * start_.terms;
-    T one(0.0), two(0.0);
-    for (std::size_t n = start_.terms; n-- > 1;) {
-      const T sum = madd(twice, one, T(c[n]) - two);
-      two = one;
-      one = sum;
+  const T value = T::load(value_ + at);
+  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T(chain_.joint[j].nominal);
+  for (std::size_t n = 0; n < start_.fits; ++n) {
+    const KernelFit& fit = start_.fit[n];
+    const T x = (value - T(fit.center)) * T(1.0 / fit.half_width);
+    const auto inside = !(abs(x) > T(1.0));
+    if (!any(inside)) continue;
+    const T twice = x + x;
+    for (std::size_t j = 0; j < joints(); ++j) {
+      const double* c = fit.coefficients + j * kStartTerms;
+      T one(0.0), two(0.0);
+      for (std::size_t k = kStartTerms; k-- > 1;) {
+        const T sum = madd(twice, one, T(c[k]) - two);
+        two = one;
+        one = sum;
+      }
+      joint_[j] = select(inside, madd(x, one, T(c[0]) - two), joint_[j]);
     }
-    const T q = madd(x, one, T(c[0]) - two);
-    select(outside, T(chain_.joint[j].nominal), q).store(q_ + j * capacity_ + at);
   }
+  for (std::size_t j = 0; j < joints(); ++j) joint_[j].store(q_ + j * capacity_ + at);
 }
 
 /// Fills the lanes behind the last sample with copies of it: they are solved and forgotten.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::pad(std::size_t count) {
-  const std::size_t rows = samples_.varied + joints() + 6 * pairs() + 2;
+  const std::size_t rows = samples_.varied + joints() + kernel_memory(chain_) + 2;
   for (std::size_t b = count; b % kLanes != 0; ++b) {
-    // value_, q_, previous_, smallest_ and flat_ lie behind each other.
+    // value_, q_, memory_, smallest_ and flat_ lie behind each other.
     for (std::size_t row = 0; row < rows; ++row) value_[row * capacity_ + b] = value_[row * capacity_ + count - 1];
   }
 }
@@ -206,7 +212,7 @@ auto BlockKernel<T, Shape>::published_round(std::size_t at, std::uint32_t round,
   T change(0.0);
   for (std::size_t n = 0; n < pairs(); ++n) {
     for (int k = 0; k < 3; ++k) {
-      double* w = previous_ + (6 * n + static_cast<std::size_t>(k)) * capacity_ + at;
+      double* w = memory_ + (6 * n + static_cast<std::size_t>(k)) * capacity_ + at;
       double* v = w + 3 * capacity_;
       change = max(change, max(abs(mu_[n].w[k] - T::load(w)), abs(mu_[n].v[k] - T::load(v))));
       mu_[n].w[k].store(w);
@@ -231,40 +237,59 @@ auto BlockKernel<T, Shape>::published_round(std::size_t at, std::uint32_t round,
 
 template <class T, class Shape>
 template <KernelPass pass>
-auto BlockKernel<T, Shape>::newton_round(std::size_t at) -> Verdict {
+auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) -> Verdict {
   evaluate(at);
+  Verdict verdict;
+  auto near = T(0.0) < T(1.0);
   if constexpr (pass == KernelPass::follow) {
-    // Far from a root, Newton's equations would be solved in vain.
-    const auto regular = gauss_newton_step(gauss_newton_);
-    if (!any(largest(gauss_newton_) < T(kNearStep))) {
+    verdict.singular = bits(!gauss_newton_step(gauss_newton_));
+    verdict.non_finite = bits(!finite_residual());
+    verdict.refused = bits(cycles(at, round));
+    const T size = largest(gauss_newton_);
+    verdict.stagnated = bits(size < T(kRestingStep));
+    near = size < T(kNearStep);
+    if (!any(near)) {
+      // Far from a root, Newton's equations would be solved in vain.
       take_step(at, gauss_newton_);
-      Verdict verdict;
-      verdict.non_finite = bits(!finite_residual());
-      verdict.singular = bits(!regular);
       return verdict;
     }
   }
   newton_matrix();
-  auto safe = finite_residual();
+  auto safe = near & finite_residual();
   if constexpr (pass != KernelPass::rescue) safe = safe & contracts();
   safe = safe & newton_step(step_);
   const T size = largest(step_);
   safe = safe & (size < T(pass == KernelPass::follow ? kFollowStep : kDirectStep));
-  if constexpr (pass == KernelPass::follow) safe = safe & (largest(gauss_newton_) < T(kNearStep));
   const auto converged = safe & (size < T(options_.last_step));
-  Verdict verdict;
   verdict.converged = bits(converged);
   if constexpr (pass == KernelPass::direct) {
     verdict.refused = bits(!safe);
   } else if (any(!safe)) {
-    verdict.non_finite = bits(!finite_residual());
-    verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
-    const T damping(pass == KernelPass::rescue ? 0.5 : 1.0);
+    T damping(1.0);
+    if constexpr (pass == KernelPass::rescue) {
+      damping = T(0.5);
+      verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
+      verdict.non_finite = bits(!finite_residual());
+    }
     for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
   }
   take_step(at, step_);
   if (any(converged)) carry_residual(step_, converged);
   return verdict;
+}
+
+/// Lanes that are back where they were at the last power of two of rounds: Gauss-Newton goes round for ever.
+template <class T, class Shape>
+typename T::MaskType BlockKernel<T, Shape>::cycles(std::size_t at, std::uint32_t round) {
+  const bool remember = (round & (round - 1)) == 0;
+  T distance(0.0);
+  for (std::size_t j = 0; j < joints(); ++j) {
+    double* then = memory_ + j * capacity_ + at;
+    if (round > kFirstMemory) distance = max(distance, abs(joint_[j] - T::load(then)));
+    if (remember) joint_[j].store(then);
+  }
+  if (round <= kFirstMemory) return T(1.0) < T(0.0);
+  return distance < T(kSamePlace);
 }
 
 template <class T, class Shape>
@@ -288,7 +313,8 @@ void BlockKernel<T, Shape>::move(std::size_t from, std::size_t to) {
   if (from == to) return;
   index_[to] = index_[from];
   const std::size_t needed = samples_.varied + joints();
-  const std::size_t rows = pass == KernelPass::published ? needed + 6 * pairs() + 2 : needed;
+  const bool remembers = pass == KernelPass::published || pass == KernelPass::follow;
+  const std::size_t rows = remembers ? needed + kernel_memory(chain_) + 2 : needed;
   for (std::size_t row = 0; row < rows; ++row) value_[row * capacity_ + to] = value_[row * capacity_ + from];
 }
 

@@ -63,12 +63,19 @@ struct KernelSamples {
   std::size_t count;
 };
 
-/// Where solves start: a Chebyshev series of each passive joint's displacement in value / range of the one varied
-/// error. Outside the range, and without coefficients, solves start from nominal displacements.
+/// /// Where solves start whose one varied error lies within half_width of center: a Chebyshev series of each passive
+/// joint's displacement in (value - center) / half_width, [joints x kStartTerms].
+struct KernelFit {
+  double center;
+  double half_width;
+  const double* coefficients;
+};
+inline constexpr std::size_t kStartTerms = 16;
+
+/// Fits for ranges of the error. Outside of all of them solves start from nominal displacements.
 struct KernelStart {
-  const double* coefficients;  ///< [joints x terms], or null
-  std::size_t terms;
-  double range;
+  const KernelFit* fit;
+  std::size_t fits;
 };
 
 enum class KernelMethod {
@@ -102,9 +109,14 @@ inline constexpr std::size_t kMostLanes = 8;
 /// Samples that fit into rows of scratch, with room for the lanes behind the last one.
 static constexpr std::size_t kernel_capacity(std::size_t count) { return (count / kMostLanes + 2) * kMostLanes; }
 
+/// /// Rows that a pass may keep of earlier rounds: residuals, or displacements.
+static constexpr std::size_t kernel_memory(const KernelChain& chain) {
+  return 6 * chain.pairs > chain.joints ? 6 * chain.pairs : chain.joints;
+}
+
 /// Doubles of scratch that a solve needs, for any instruction set.
 static constexpr std::size_t kernel_scratch(const KernelChain& chain, const KernelSamples& samples) {
-  const std::size_t rows = samples.varied + chain.joints + 6 * chain.pairs + 2 + 1;
+  const std::size_t rows = samples.varied + chain.joints + kernel_memory(chain) + 2 + 1;
   const std::size_t motions = 12 * (chain.segments + chain.limbs);
   const std::size_t screws = 6 * (chain.joints + chain.pairs + chain.limbs);
   const std::size_t equations = 3 * chain.joints * chain.joints + 5 * chain.joints;

@@ -15,12 +15,13 @@
 namespace poesy::chain {
 namespace {
 
-/// Nodes of the fit that predicts starts: one batch of the widest instruction set, twice.
-constexpr std::size_t kNodes = 16;
-/// A fit whose last coefficients are larger (rad, m) is not trusted: the displacements are not smooth over the range.
+/// A fit whose last coefficients (rad, m) are below this puts nearly every start within one step of its root.
+constexpr double kGoodTail = 1e-6;
+/// A fit whose last coefficients are larger is not used: the displacements are not smooth over its range.
 constexpr double kTrustedTail = 1e-4;
-/// How often the range is halved to find a fit that is trusted.
-constexpr int kHalvings = 3;
+/// How often a range may be halved for better fits.
+constexpr int kSplits = 2;
+constexpr std::size_t kMostFits = (std::size_t{2} << kSplits) - 1;
 
 KernelSolve best_kernel() {
   switch (simd::selected_isa()) {
@@ -82,13 +83,14 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
     limbs_[pair.k].meetings += 1.0;
     limbs_[pair.i].meetings += 1.0;
   }
-  for (std::size_t n = 0; n < kNodes; ++n) {
-    for (std::size_t k = 0; k < kNodes; ++k) {
-      cosines_.push_back(std::cos(std::numbers::pi * static_cast<double>(n) * (static_cast<double>(k) + 0.5) / kNodes));
+  for (std::size_t n = 0; n < kStartTerms; ++n) {
+    for (std::size_t k = 0; k < kStartTerms; ++k) {
+      cosines_.push_back(
+          std::cos(std::numbers::pi * static_cast<double>(n) * (static_cast<double>(k) + 0.5) / kStartTerms));
     }
   }
-  coefficients_.resize(joint * kNodes);
-  node_displacements_.resize(joint * kernel_capacity(kNodes));
+  coefficients_.resize(kMostFits * joint * kStartTerms);
+  node_displacements_.resize(joint * kernel_capacity(kStartTerms));
 }
 
 void BlockSolver::prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
@@ -119,8 +121,11 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
     ++frame;
     close_segment();
   }
-  start_ = {};
-  if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) predict_starts(range);
+  fits_.clear();
+  fits_made_ = 0;
+  if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) {
+    predict_starts(0.0, range, kSplits);
+  }
 }
 
 /// Constant motions that follow each other become one.
@@ -167,49 +172,53 @@ void BlockSolver::close_segment() {
   first_piece_ = pieces_.size();
 }
 
-void BlockSolver::predict_starts(double range) {
-  for (int halving = 0; halving <= kHalvings; ++halving, range /= 2.0) {
-    if (fit_starts(range)) return;
-  }
+/// Fits a range of the varied error; where the fit is not as good as it should be, fits its halves.
+void BlockSolver::predict_starts(double center, double half_width, int splits_left) {
+  const double tail = fit_starts(center, half_width);
+  if (tail < kGoodTail || (splits_left == 0 && tail < kTrustedTail)) return;
+  // The halves' nodes start from this fit, if it is any good; their own fits replace it.
+  const bool useful = tail < kTrustedTail;
+  if (!useful) fits_.pop_back();
+  if (splits_left == 0) return;
+  const std::size_t parent = fits_.size();
+  predict_starts(center - half_width / 2.0, half_width / 2.0, splits_left - 1);
+  predict_starts(center + half_width / 2.0, half_width / 2.0, splits_left - 1);
+  if (useful) fits_.erase(fits_.begin() + static_cast<std::ptrdiff_t>(parent) - 1);
 }
 
-/// Interpolates the displacements at Chebyshev nodes of the range, each solved from nominal displacements.
-bool BlockSolver::fit_starts(double range) {
-  std::array<double, kNodes> nodes;
-  for (std::size_t k = 0; k < kNodes; ++k) {
-    nodes[k] = range * cosines_[kNodes + k];
-  }
+/// Interpolates the displacements at Chebyshev nodes. Returns the largest of the last coefficients (rad, m): infinite
+/// where a node is not solved.
+double BlockSolver::fit_starts(double center, double half_width) {
+  std::array<double, kStartTerms> nodes;
+  for (std::size_t k = 0; k < kStartTerms; ++k) nodes[k] = center + half_width * cosines_[kStartTerms + k];
   std::fill(status_.begin(), status_.end(), SolveStatus::iteration_cap);
   KernelOptions direct = options_;
   direct.method = KernelMethod::newton_direct;
-  run(nodes, kNodes, {}, direct, node_displacements_.data());
-  for (std::size_t k = 0; k < kNodes; ++k) {
-    if (!solved(status_[k])) return false;
+  run(nodes, kStartTerms, direct, node_displacements_.data());
+  const std::size_t stride = kernel_capacity(kStartTerms);
+  double* coefficients = coefficients_.data() + fits_made_++ * joints_.size() * kStartTerms;
+  fits_.push_back({center, half_width, coefficients});
+  if (!std::all_of(status_.begin(), status_.begin() + kStartTerms, solved)) {
+    return std::numeric_limits<double>::infinity();
   }
-  const std::size_t stride = kernel_capacity(kNodes);
   double tail = 0.0;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
-    for (std::size_t n = 0; n < kNodes; ++n) {
+    for (std::size_t n = 0; n < kStartTerms; ++n) {
       double sum = 0.0;
-      for (std::size_t k = 0; k < kNodes; ++k) {
-        sum += node_displacements_[j * stride + k] * cosines_[n * kNodes + k];
+      for (std::size_t k = 0; k < kStartTerms; ++k) {
+        sum += node_displacements_[j * stride + k] * cosines_[n * kStartTerms + k];
       }
-      const double coefficient = (n == 0 ? 1.0 : 2.0) / kNodes * sum;
-      coefficients_[j * kNodes + n] = coefficient;
-      if (n + 3 >= kNodes) tail = std::max(tail, std::abs(coefficient));
+      coefficients[j * kStartTerms + n] = (n == 0 ? 1.0 : 2.0) / kStartTerms * sum;
+      if (n + 3 >= kStartTerms) tail = std::max(tail, std::abs(coefficients[j * kStartTerms + n]));
     }
   }
-  if (!(tail < kTrustedTail)) return false;
-  start_ = {coefficients_.data(), kNodes, range};
-  return true;
+  return tail;
 }
 
-void BlockSolver::solve(std::span<const double> values, std::size_t count) {
-  run(values, count, start_, options_, nullptr);
-}
+void BlockSolver::solve(std::span<const double> values, std::size_t count) { run(values, count, options_, nullptr); }
 
-void BlockSolver::run(std::span<const double> values, std::size_t count, const KernelStart& start,
-                      const KernelOptions& options, double* displacements) {
+void BlockSolver::run(std::span<const double> values, std::size_t count, const KernelOptions& options,
+                      double* displacements) {
   POESY_EXPECTS(values.size() == varied_ * count);
   const KernelChain chain = kernel_chain();
   const KernelSamples samples{values.data(), varied_, count, count};
@@ -221,7 +230,7 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   status_.resize(stride);
   iterations_.resize(stride);
   count_ = count;
-  kernel_(chain, samples, start, options,
+  kernel_(chain, samples, {fits_.data(), fits_.size()}, options,
           {delta_mu_.data(), responses_.data(), displacements, status_.data(), iterations_.data(), stride},
           aligned(scratch_));
 }

@@ -44,10 +44,9 @@ class BlockSolver {
   void add_frame(const Limb& limb, std::size_t j, std::size_t frame, const FrameError<double>& error,
                  std::span<const VariedEntry> varied);
   void close_segment();
-  void predict_starts(double range);
-  bool fit_starts(double range);
-  void run(std::span<const double> values, std::size_t count, const KernelStart& start, const KernelOptions& options,
-           double* displacements);
+  void predict_starts(double center, double half_width, int splits_left);
+  double fit_starts(double center, double half_width);
+  void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);
   KernelChain kernel_chain() const;
 
   const ParallelChain* chain_;
@@ -60,9 +59,10 @@ class BlockSolver {
   std::vector<KernelPiece> pieces_;
   std::size_t first_piece_ = 0;
   std::size_t varied_ = 0;
-  KernelStart start_{};
   std::vector<double> cosines_;  ///< Chebyshev polynomial n at node k
-  std::vector<double> coefficients_;
+  std::vector<KernelFit> fits_;
+  std::size_t fits_made_ = 0;
+  std::vector<double> coefficients_;  ///< of all fits that may be, one behind the other
   std::vector<double> node_displacements_;
   std::vector<double> scratch_;
   std::vector<double> delta_mu_;
