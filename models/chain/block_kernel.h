@@ -180,7 +180,7 @@ class BlockKernel {
   double* q_;
   double* memory_;        ///< published: residual of the last round; follow: displacements of an earlier one
   double* smallest_;      ///< published: smallest change so far
-  double* flat_;          ///< published: rounds since then
+  double* flat_;          ///< published: rounds since then; direct: -1 where the start is a fit's
   std::uint32_t* index_;  ///< which sample this is
   std::uint32_t* left_;   ///< samples to solve, then those that a pass did not solve
 

@@ -167,18 +167,23 @@ typename T::MaskType BlockKernel<T, Shape>::newton_step(T* __restrict x) {
   T* __restrict inverse = work_;
   T margin(1.0);
   for (std::size_t a = 0; a < size; ++a) x[a] = f_[a];
+#pragma GCC unroll 9
   for (std::size_t k = 0; k < size; ++k) {
     const T pivot = m[k * size + k];
     margin = min(margin, nmadd(T(kSafePivot), n_[k * size + k], pivot));
     inverse[k] = T(1.0) / pivot;
+#pragma GCC unroll 9
     for (std::size_t a = k + 1; a < size; ++a) {
       const T factor = m[a * size + k] * inverse[k];
+#pragma GCC unroll 9
       for (std::size_t b = k + 1; b < size; ++b) m[a * size + b] = nmadd(factor, m[k * size + b], m[a * size + b]);
       x[a] = nmadd(factor, x[k], x[a]);
     }
   }
+#pragma GCC unroll 9
   for (std::size_t a = size; a-- > 0;) {
     T value = x[a];
+#pragma GCC unroll 9
     for (std::size_t b = a + 1; b < size; ++b) value = nmadd(m[a * size + b], x[b], value);
     x[a] = value * inverse[a];
   }

@@ -151,6 +151,7 @@ void BlockKernel<T, Shape>::predict(std::size_t at) {
     const T x = (value - T(fit.center)) * T(1.0 / fit.half_width);
     const auto inside = !(abs(x) > T(1.0));
     if (!any(inside)) continue;
+    select(inside, T(-1.0), T::load(flat_ + at)).store(flat_ + at);
     const T twice = x + x;
     for (std::size_t j = 0; j < joints(); ++j) {
       const double* c = fit.coefficients + j * kStartTerms;
@@ -256,7 +257,13 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
   }
   newton_matrix();
   auto safe = near & finite_residual();
-  if constexpr (pass != KernelPass::rescue) safe = safe & contracts();
+  if constexpr (pass == KernelPass::direct) {
+    // A first step from a fit is small, on the branch of the fit's nodes, which were all safe.
+    const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
+    if (any(!fitted)) safe = safe & (fitted | contracts());
+  } else if constexpr (pass == KernelPass::follow) {
+    safe = safe & contracts();
+  }
   safe = safe & newton_step(step_);
   const T size = largest(step_);
   safe = safe & (size < T(pass == KernelPass::follow ? kFollowStep : kDirectStep));
