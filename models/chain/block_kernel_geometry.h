@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/chain/block_kernel.h"
+#include "models/chain/block_kernel_class.h"
 
 namespace poesy::chain {
 

@@ -1,0 +1,203 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/model/status.h"
+#include "models/chain/block_problem.h"
+#include "models/simd/math.h"
+
+namespace poesy::chain {
+
+/// What one sample's solve is about to do. See BlockKernel.
+enum class KernelPass {
+  published,  ///< Gauss-Newton with the published stopping rule
+  direct,     ///< Newton, given up at the first step that is not safe
+  follow,     ///< Gauss-Newton, with Newton steps once they are small and safe
+  rescue      ///< Newton wherever its matrix is positive, else half a Gauss-Newton step
+};
+
+/// Solves blocks of samples of a parallel chain for J(q)^T delta_mu(q) = 0 (Du et al. 2022, Eqs. 40-44), T::kLanes
+/// samples at a time, T being simd::Number or a SIMD batch. Samples are independent: each is iterated until it is done,
+/// those that are not done close ranks after every round, and no operation mixes lanes.
+///
+/// published: x = N^-1 f with f = J^T delta_mu and N = J^T J, stopping rule as in DeformationSolver.
+///
+/// Newton: x = M^-1 f with M the negative derivative of f, exact to fourth order in the residual's angle. Beyond N it
+/// holds how the columns of J turn (the bracket of an earlier column with a later one) and how the logarithm bends
+/// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-3 of the diagonal of N, and
+/// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
+/// methods mean the same root. A sample goes through up to three passes:
+///   direct   Newton from the start; refused at a step that is not safe or larger than 0.4;
+///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
+///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds. Given up
+///            where the displacements come back to those of an earlier iteration;
+///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
+///            max_iterations: a root with positive derivative where Gauss-Newton finds none.
+/// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
+/// is carried along it to first order instead of being evaluated again.
+/// Three limbs, each paired with each other one, of equally many passive joints: known when the kernel is compiled, so
+/// that its loops unroll.
+template <std::size_t joints_per_limb>
+struct ThreeLimbs {
+  static constexpr bool kFixed = true;
+  /// No two limbs meet in two pairs, and all limbs meet: each off-diagonal block of N belongs to one pair.
+  static constexpr bool kEveryPairOnce = true;
+  static constexpr std::size_t kLimbs = 3;
+  static constexpr std::size_t kJoints = joints_per_limb;
+  static constexpr std::size_t kPairs = 3;
+
+  static bool fits(const KernelChain& chain) {
+    if (chain.limbs != kLimbs || chain.pairs != kPairs) return false;
+    unsigned met = 0;
+    for (std::size_t n = 0; n < kPairs; ++n) met |= 1u << (chain.pair[n].i + chain.pair[n].k);
+    for (std::size_t i = 0; i < kLimbs; ++i) {
+      if (chain.limb[i].joints != kJoints) return false;
+    }
+    return met == 0b1110;  // the pairs of three limbs, numbered by their sums 1, 2, 3
+  }
+};
+
+/// Any number of limbs, joints and pairs.
+struct AnyShape {
+  static constexpr bool kFixed = false;
+  static constexpr bool kEveryPairOnce = false;
+};
+
+template <class T, class Shape>
+class BlockKernel {
+ public:
+  BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+              const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
+
+  void solve();
+
+ private:
+  static constexpr std::size_t kLanes = T::kLanes;
+  static constexpr double kSafePivot = 1e-3;
+  static constexpr double kDirectStep = 0.4;
+  static constexpr double kFollowStep = 1e-3;
+  static constexpr double kNearStep = 2e-3;
+  static constexpr double kRestingStep = 1e-12;
+  static constexpr double kSamePlace = 1e-9;
+  static constexpr std::uint32_t kFirstMemory = 16;
+  static constexpr std::uint32_t kDirectIterations = 12;
+  static constexpr std::uint32_t kFollowFactor = 8;
+
+  std::size_t limbs() const {
+    if constexpr (Shape::kFixed) return Shape::kLimbs;
+    if constexpr (!Shape::kFixed) return chain_.limbs;
+  }
+  std::size_t pairs() const {
+    if constexpr (Shape::kFixed) return Shape::kPairs;
+    if constexpr (!Shape::kFixed) return chain_.pairs;
+  }
+  std::size_t joints() const {
+    if constexpr (Shape::kFixed) return Shape::kLimbs * Shape::kJoints;
+    if constexpr (!Shape::kFixed) return chain_.joints;
+  }
+  /// First passive joint of limb i, or one past the last joint.
+  std::size_t first_joint(std::size_t i) const {
+    if constexpr (Shape::kFixed) return i * Shape::kJoints;
+    if constexpr (!Shape::kFixed) return i == chain_.limbs ? chain_.joints : chain_.limb[i].first_joint;
+  }
+
+  struct Motion {
+    T r[9];
+    T p[3];
+  };
+  struct Screw {
+    T w[3];
+    T v[3];
+  };
+  /// What a round says of its lanes, a bit each.
+  struct Verdict {
+    unsigned converged = 0;
+    unsigned stagnated = 0;
+    unsigned singular = 0;
+    unsigned non_finite = 0;
+    unsigned refused = 0;
+
+    bool solved(std::size_t lane) const { return ((converged | stagnated) >> lane & 1u) != 0; }
+    bool ended(std::size_t lane) const {
+      return ((converged | stagnated | singular | non_finite | refused) >> lane & 1u) != 0;
+    }
+    SolveStatus status(std::size_t lane) const {
+      const auto says = [lane](unsigned lanes) { return (lanes >> lane & 1u) != 0; };
+      if (says(non_finite)) return SolveStatus::non_finite;
+      if (says(converged)) return SolveStatus::converged;
+      if (says(stagnated)) return SolveStatus::stagnated;
+      return says(singular) ? SolveStatus::singular : SolveStatus::iteration_cap;
+    }
+  };
+
+  // block_kernel_passes.h: the loop over samples.
+  void judge(std::size_t at);
+  template <KernelPass pass>
+  std::size_t run(std::size_t count, std::uint32_t rounds);
+  void begin(std::size_t count, bool predicted);
+  void predict(std::size_t at);
+  void pad(std::size_t count);
+  void evaluate(std::size_t at);
+  typename T::MaskType finite_residual() const;
+  Verdict published_round(std::size_t at, std::uint32_t round, bool last_round);
+  template <KernelPass pass>
+  Verdict newton_round(std::size_t at, std::uint32_t round);
+  typename T::MaskType cycles(std::size_t at, std::uint32_t round);
+  T largest(const T* x) const;
+  void take_step(std::size_t at, const T* x);
+  void finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations);
+  template <KernelPass pass>
+  void move(std::size_t from, std::size_t to);
+
+  // block_kernel_geometry.h: residuals and columns.
+  Motion error_motion(const KernelPiece& piece, std::size_t at) const;
+  void vary_segments(std::size_t at);
+  void limb_pose(std::size_t i, Motion& pose);
+  void residuals();
+  static Screw log(const Motion& g);
+
+  // block_kernel_equations.h: matrices and steps.
+  void gradient();
+  void gauss_newton_matrix();
+  void newton_matrix();
+  template <class Entry>
+  T factor(Entry entry, double ratio);
+  typename T::MaskType contracts();
+  typename T::MaskType gauss_newton_step(T* x);
+  typename T::MaskType newton_step(T* x);
+  void carry_residual(const T* x, typename T::MaskType lanes);
+
+  const KernelChain chain_;
+  const KernelSamples samples_;
+  const KernelStart start_;
+  const KernelOptions options_;
+  const KernelOutcome outcome_;
+  const std::size_t capacity_;
+
+  // Per sample, in rows of capacity_.
+  double* value_;
+  double* q_;
+  double* memory_;        ///< published: residual of the last round; follow: displacements of an earlier one
+  double* smallest_;      ///< published: smallest change so far
+  double* flat_;          ///< published: rounds since then; direct: -1 where the start is a fit's
+  std::uint32_t* index_;  ///< which sample this is
+  std::uint32_t* left_;   ///< samples to solve, then those that a pass did not solve
+
+  // Of the lanes at hand.
+  Motion* segment_;
+  Motion* pose_;
+  Screw* column_;
+  Screw* mu_;
+  Screw* pull_;
+  T* joint_;
+  T* f_;
+  T* step_;
+  T* gauss_newton_;
+  T* n_;
+  T* m_;
+  T* work_;
+  std::uint32_t spent_ = 0;  ///< iterations of earlier passes
+};
+
+}  // namespace poesy::chain
