@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+
+#include "engine/random/stream.h"
+#include "engine/study/plan.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 
@@ -24,6 +28,36 @@ inline Study published_study(std::size_t poses, std::size_t samples) {
   study.analysis.samples = samples;
   study.analysis.background = Background{model.find_set("benign")->factors, 1e-3, degree};
   return study;
+}
+
+inline constexpr std::size_t kPublishedPoses = 158;
+inline constexpr std::size_t kPublishedSamples = 1000;
+
+/// Every step-th pose of a set, the first one included.
+inline PoseSet every(std::size_t step, const PoseSet& poses) {
+  std::vector<double> values;
+  for (std::size_t m = 0; m < poses.size(); m += step) {
+    const auto pose = poses[PoseIndex(m)];
+    values.insert(values.end(), pose.begin(), pose.end());
+  }
+  return {poses.coordinates(), std::move(values)};
+}
+
+/// Walks through a plan's units with a stride that is prime to the published table's length: a few units already
+/// hold many factors and poses.
+inline WorkUnit scattered_unit(const Plan& plan, std::size_t n) { return plan.unit(n * 1597 % plan.units()); }
+
+/// Samples of all factors of a study's model at one pose, from the engine's streams, scaled. [F x count], row-major.
+inline std::vector<double> samples_of_all_errors(const Study& study, double scale, PoseIndex pose, std::size_t count) {
+  const std::vector<Distribution>& distributions = study.errors.by_factor;
+  std::vector<double> values(distributions.size() * count);
+  for (std::size_t f = 0; f < distributions.size(); ++f) {
+    const std::span row = std::span(values).subspan(f * count, count);
+    fill_uniforms({study.seed, Purpose::error_samples, FactorIndex(f), pose}, SampleIndex(0), row);
+    distributions[f].transform(row);
+    for (double& value : row) value *= scale;
+  }
+  return values;
 }
 
 }  // namespace poesy::bench

@@ -1,33 +1,105 @@
 #include <benchmark/benchmark.h>
 
+#include <mutex>
+
+#include "bench/instruction_sets.h"
 #include "bench/published_study.h"
+#include "bench/reference_model.h"
 #include "engine/run/evaluate_unit.h"
 
 namespace {
 
 using namespace poesy;
 
-/// One thread solving units spread over the published study.
-void solver(benchmark::State& state) {
-  const Study study = bench::published_study(158, Plan::kUnitSamples);
+void report(benchmark::State& state, const SolveCounts& counts) {
+  const auto solves = static_cast<double>(counts.total());
+  const auto average = [](double value) { return benchmark::Counter(value, benchmark::Counter::kAvgThreads); };
+  state.counters["solves/s"] = benchmark::Counter(solves, benchmark::Counter::kIsRate);
+  state.counters["iterations/solve"] = average(static_cast<double>(counts.iterations) / solves);
+  state.counters["not_converged"] = average(static_cast<double>(counts.not_converged()) / solves);
+}
+
+/// One thread solving units spread over the published study, sampling included.
+void units(benchmark::State& state, SolverOptions::Method method, const std::string& isa) {
+  Study study = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  study.solver.method = method;
   const auto model = build_model(study.mechanism);
+  const bench::ReferenceModel reference(*model);
   const Plan plan(study, select_poses(study.poses, *model));
-  UnitEvaluator evaluate(plan, *model);
-  std::uint64_t solves = 0;
-  std::uint64_t iterations = 0;
-  std::size_t u = 0;
-  for (auto _ : state) {
-    WorkUnit unit = plan.unit(u);
-    unit.count = 100;
-    const UnitStats stats = evaluate(unit);
-    solves += stats.solves.total();
-    iterations += stats.solves.iterations;
-    u = (u + 1597) % plan.units();  // a stride prime to the table's length visits every factor and pose
+  const bool is_reference = isa == "scalar";
+  if (!is_reference) bench::choose_instruction_set(isa);
+  UnitEvaluator evaluate(plan, is_reference ? static_cast<const Model&>(reference) : *model);
+  SolveCounts counts;
+  std::size_t n = 0;
+  for (auto _ : state) counts.merge(evaluate(bench::scattered_unit(plan, n++)).solves);
+  report(state, counts);
+}
+
+/// All errors varied at once, in blocks of 1000 samples at pose after pose. Only the solver is timed.
+void all_errors(benchmark::State& state, const std::string& isa, double scale) {
+  constexpr std::size_t kBlocks = 8;  // as many as there are different samples
+  constexpr std::size_t kCount = 1000;
+  const Study study = bench::published_study(bench::kPublishedPoses, kCount);
+  const auto model = build_model(study.mechanism);
+  const PoseSet poses = select_poses(study.poses, *model);
+  std::unique_ptr<Evaluator> evaluator;
+  {
+    static std::mutex environment;
+    const std::lock_guard lock(environment);
+    bench::choose_instruction_set(isa);
+    evaluator = model->evaluator(study.solver);
   }
-  state.counters["solves/s"] = benchmark::Counter(static_cast<double>(solves), benchmark::Counter::kIsRate);
-  state.counters["iterations/solve"] = static_cast<double>(iterations) / static_cast<double>(solves);
+  const std::size_t factors = model->description().factors.size();
+  std::vector<FactorIndex> varied;
+  for (std::size_t f = 0; f < factors; ++f) varied.emplace_back(f);
+  const auto thread = static_cast<std::size_t>(state.thread_index());
+  std::vector<std::vector<double>> blocks;
+  for (std::size_t n = 0; n < kBlocks; ++n) {
+    blocks.push_back(bench::samples_of_all_errors(study, scale, PoseIndex(kBlocks * thread + n), kCount));
+  }
+  const std::vector<double> zeros(factors, 0.0);
+  std::vector<double> responses(model->description().responses.size() * kCount);
+  std::vector<SolveStatus> status(kCount);
+  std::vector<std::uint32_t> iterations(kCount);
+  SolveCounts counts;
+  std::size_t n = 79 * thread;
+  for (auto _ : state) {
+    evaluator->evaluate({poses[PoseIndex(n % poses.size())], zeros, varied, blocks[n % kBlocks], kCount},
+                        {responses, status, iterations, {}});
+    for (std::size_t b = 0; b < kCount; ++b) counts.add(status[b], iterations[b]);
+    ++n;
+  }
+  report(state, counts);
+}
+
+template <class Case>
+auto add(const std::string& name, Case run) {
+  return benchmark::RegisterBenchmark(name.c_str(), run)
+      ->UseRealTime()
+      ->MeasureProcessCPUTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+void add_all() {
+  using Method = SolverOptions::Method;
+  add("units/reference/scalar", [](benchmark::State& state) { units(state, Method::gauss_newton, "scalar"); });
+  for (const std::string& isa : bench::instruction_sets()) {
+    add("units/gauss-newton/" + isa, [=](benchmark::State& state) { units(state, Method::gauss_newton, isa); });
+    add("units/newton/" + isa, [=](benchmark::State& state) { units(state, Method::newton, isa); });
+    add("all_errors/1_mm_1_deg/" + isa, [=](benchmark::State& state) {
+      all_errors(state, isa, 1.0);
+    })->ThreadRange(1, 2);
+    add("all_errors/0.1_mm_0.1_deg/" + isa, [=](benchmark::State& state) {
+      all_errors(state, isa, 0.1);
+    })->ThreadRange(1, 2);
+  }
 }
 
 }  // namespace
 
-BENCHMARK(solver)->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+int main(int argc, char** argv) {
+  add_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+}
