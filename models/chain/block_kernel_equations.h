@@ -180,7 +180,6 @@ typename T::MaskType BlockKernel<T, Shape>::newton_step(T* __restrict x) {
       x[a] = nmadd(factor, x[k], x[a]);
     }
   }
-#pragma GCC unroll 9
   for (std::size_t a = size; a-- > 0;) {
     T value = x[a];
     for (std::size_t b = a + 1; b < size; ++b) value = nmadd(m[a * size + b], x[b], value);

@@ -97,7 +97,7 @@ samples = 1000
 conf_level = 0.95
 
 [solver]
-method = "gauss-newton"
+method = "newton"
 tolerance = 1e-15
 max_iterations = 50
 not_converged = "exclude"
