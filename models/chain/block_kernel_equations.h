@@ -109,14 +109,18 @@ T BlockKernel<T, Shape>::factor(Entry entry, double ratio) {
   T* __restrict l = work_;
   T* __restrict inverse = work_ + size * size;
   T margin(1.0);
+#pragma GCC unroll 9
   for (std::size_t a = 0; a < size; ++a) {
+#pragma GCC unroll 9
     for (std::size_t b = 0; b < a; ++b) {
       T sum = entry(a, b);
+#pragma GCC unroll 9
       for (std::size_t k = 0; k < b; ++k) sum = nmadd(l[a * size + k], l[k * size + b], sum);
       l[a * size + b] = sum;
     }
     const T diagonal = entry(a, a);
     T pivot = diagonal;
+#pragma GCC unroll 9
     for (std::size_t k = 0; k < a; ++k) {
       const T scaled = l[a * size + k] * inverse[k];
       pivot = nmadd(l[a * size + k], scaled, pivot);

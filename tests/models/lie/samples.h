@@ -1,6 +1,7 @@
 #pragma once
 
 #include <numbers>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ struct Regime {
   std::string name;
   double angle;
 };
+
+inline void PrintTo(const Regime& regime, std::ostream* out) { *out << regime.name; }
 
 inline std::vector<Regime> regimes() {
   const double pi = std::numbers::pi;
