@@ -25,7 +25,7 @@ enum class KernelPass {
 ///
 /// Newton: x = M^-1 f with M the negative derivative of f, exact to fourth order in the residual's angle. Beyond N it
 /// holds how the columns of J turn (the bracket of an earlier column with a later one) and how the logarithm bends
-/// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-3 of the diagonal of N, and
+/// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-5 of the diagonal of N, and
 /// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
 /// methods mean the same root. A sample goes through up to three passes:
 ///   direct   Newton from the start; refused at a step that is not safe or larger than 0.4;
@@ -33,7 +33,8 @@ enum class KernelPass {
 ///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds. Given up
 ///            where the displacements come back to those of an earlier iteration;
 ///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
-///            max_iterations: a root with positive derivative where Gauss-Newton finds none.
+///            max_iterations: a root with positive derivative where Gauss-Newton finds none. Roots more than 0.5
+///            (rad, m) away from nominal displacements are other ways to assemble the chain, and do not count.
 /// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is carried along it to first order instead of being evaluated again.
 /// Three limbs, each paired with each other one, of equally many passive joints: known when the kernel is compiled, so
@@ -74,11 +75,12 @@ class BlockKernel {
 
  private:
   static constexpr std::size_t kLanes = T::kLanes;
-  static constexpr double kSafePivot = 1e-3;
+  static constexpr double kSafePivot = 1e-5;
   static constexpr double kDirectStep = 0.4;
   static constexpr double kFollowStep = 1e-3;
   static constexpr double kNearStep = 2e-3;
   static constexpr double kRestingStep = 1e-12;
+  static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;

@@ -267,7 +267,12 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
   safe = safe & newton_step(step_);
   const T size = largest(step_);
   safe = safe & (size < T(pass == KernelPass::follow ? kFollowStep : kDirectStep));
-  const auto converged = safe & (size < T(options_.last_step));
+  auto converged = safe & (size < T(options_.last_step));
+  if constexpr (pass == KernelPass::rescue) {
+    T away(0.0);
+    for (std::size_t j = 0; j < joints(); ++j) away = max(away, abs(joint_[j] - T(chain_.joint[j].nominal)));
+    converged = converged & (away < T(kSameBranch));
+  }
   verdict.converged = bits(converged);
   if constexpr (pass == KernelPass::direct) {
     verdict.refused = bits(!safe);
