@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include "bench/counting_number.h"
+#include "bench/instruction_sets.h"
+#include "bench/published_study.h"
+#include "engine/run/evaluate_unit.h"
+#include "models/chain/block_kernel.h"
+#include "models/chain/block_kernels.h"
+
+// The kernel "plain" of this program counts. The linker finds it here and leaves the library's own alone, so that
+// everything around the kernel is what the other programs run, too.
+namespace poesy::chain {
+
+void solve_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
+                       const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
+  solve_block<bench::CountingNumber>(chain, samples, start, options, outcome, scratch);
+}
+
+}  // namespace poesy::chain
+
+namespace {
+
+using namespace poesy;
+
+void print(const char* name, const SolveCounts& counts) {
+  const auto solves = static_cast<double>(counts.total());
+  const auto iterations = static_cast<double>(counts.iterations);
+  const bench::OperationCounts& did = bench::operation_counts;
+  const auto total = static_cast<double>(did.total());
+  const auto share = [total](std::uint64_t operations) { return static_cast<double>(operations) / total; };
+  fmt::print(R"({{"case": "{}", "operations_per_solve": {:.0f}, "operations_per_iteration": {:.0f}, )"
+             R"("iterations_per_solve": {:.3f}, "share_in_multiply_adds": {:.3f}, "share_of_divisions": {:.4f}}})"
+             "\n",
+             name, total / solves, total / iterations, iterations / solves, 2.0 * share(did.multiply_adds),
+             share(did.divisions + did.roots));
+}
+
+/// Everything that a solve of the published study costs, its share of the prediction of starts included.
+void count_units(const char* name, SolverOptions::Method method, std::size_t units) {
+  Study study = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  study.solver.method = method;
+  const auto model = build_model(study.mechanism);
+  const Plan plan(study, select_poses(study.poses, *model));
+  UnitEvaluator evaluate(plan, *model);
+  SolveCounts counts;
+  bench::operation_counts = {};
+  for (std::size_t n = 0; n < units; ++n) counts.merge(evaluate(bench::scattered_unit(plan, n)).solves);
+  print(name, counts);
+}
+
+void count_all_errors(const char* name, double scale) {
+  constexpr std::size_t kCount = 100;
+  const Study study = bench::published_study(bench::kPublishedPoses, kCount);
+  const auto model = build_model(study.mechanism);
+  const PoseSet poses = select_poses(study.poses, *model);
+  const auto evaluator = model->evaluator(study.solver);
+  const std::vector<double> zeros(study.model().factors.size(), 0.0);
+  std::vector<FactorIndex> varied;
+  for (std::size_t f = 0; f < zeros.size(); ++f) varied.emplace_back(f);
+  std::vector<double> responses(study.model().responses.size() * kCount);
+  std::vector<SolveStatus> status(kCount);
+  std::vector<std::uint32_t> iterations(kCount);
+  SolveCounts counts;
+  bench::operation_counts = {};
+  for (std::size_t m = 0; m < poses.size(); ++m) {
+    const std::vector<double> values = bench::samples_of_all_errors(study, scale, PoseIndex(m), kCount);
+    evaluator->evaluate({poses[PoseIndex(m)], zeros, varied, values, kCount}, {responses, status, iterations, {}});
+    for (std::size_t b = 0; b < kCount; ++b) counts.add(status[b], iterations[b]);
+  }
+  print(name, counts);
+}
+
+}  // namespace
+
+/// Counts the floating-point operations of solves, one sample at a time; one JSON object a line.
+int main() {
+  bench::choose_instruction_set("plain");
+  count_units("gauss-newton", SolverOptions::Method::gauss_newton, 50);
+  count_units("newton", SolverOptions::Method::newton, 200);
+  count_all_errors("all_errors/1_mm_1_deg", 1.0);
+  count_all_errors("all_errors/0.1_mm_0.1_deg", 0.1);
+}

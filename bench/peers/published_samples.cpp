@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include "bench/published_study.h"
+
+namespace {
+
+using namespace poesy;
+
+/// A CSV file being written.
+class Table {
+ public:
+  Table(const std::filesystem::path& path, const char* header) : file_(std::fopen(path.c_str(), "w")) {
+    if (file_ == nullptr) throw std::runtime_error("cannot write " + path.string());
+    fmt::print(file_, "{}\n", header);
+  }
+  Table(const Table&) = delete;
+  Table& operator=(const Table&) = delete;
+  ~Table() { std::fclose(file_); }
+
+  template <class... Cells>
+  void row(const char* format, const Cells&... cells) {
+    fmt::print(file_, fmt::runtime(format), cells...);
+  }
+
+ private:
+  std::FILE* file_;
+};
+
+void write_background(const std::filesystem::path& path, const Study& study) {
+  Table table(path, "factor,value");
+  const std::vector<double> errors = background_errors(study);
+  for (std::size_t f = 0; f < errors.size(); ++f) {
+    if (errors[f] != 0.0) table.row("{},{:.17g}\n", study.model().factors[f].name, errors[f]);
+  }
+}
+
+/// The first samples of cells spread over the published study, and what Gauss-Newton makes of them here.
+void write_samples(const std::filesystem::path& folder, const Study& study, std::size_t cells) {
+  const auto model = build_model(study.mechanism);
+  const Plan plan(study, select_poses(study.poses, *model));
+  const auto evaluator = model->evaluator(study.solver);
+  Table samples(folder / "samples.csv", "z,beta,gamma,factor,value");
+  Table answers(folder / "answers.csv", "solved,iterations,angular_deformation,linear_deformation");
+  const std::size_t count = plan.samples();
+  std::vector<double> values(count);
+  std::vector<double> responses(study.model().responses.size() * count);
+  std::vector<SolveStatus> status(count);
+  std::vector<std::uint32_t> iterations(count);
+  for (std::size_t n = 0; n < cells; ++n) {
+    const WorkUnit unit = bench::scattered_unit(plan, n);
+    const FactorIndex factor = plan.factors()[unit.slot];
+    const auto pose = plan.poses()[unit.pose];
+    fill_uniforms({plan.seed(), Purpose::error_samples, factor, unit.pose}, unit.first, values);
+    plan.distributions()[unit.slot].transform(values);
+    evaluator->evaluate({pose, plan.background(), std::span(&factor, 1), values, count},
+                        {responses, status, iterations, {}});
+    for (std::size_t b = 0; b < count; ++b) {
+      samples.row("{:.17g},{:.17g},{:.17g},{},{:.17g}\n", pose[0], pose[1], pose[2],
+                  study.model().factors[factor.value].name, values[b]);
+      answers.row("{},{},{:.17g},{:.17g}\n", solved(status[b]) ? 1 : 0, iterations[b], responses[b],
+                  responses[count + b]);
+    }
+  }
+}
+
+}  // namespace
+
+/// published_samples FOLDER CELLS SAMPLES: part of the published study as CSV, for solvers written in other languages.
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    fmt::print(stderr, "usage: published_samples FOLDER CELLS SAMPLES (of each cell, at most 1000)\n");
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  const auto samples = static_cast<std::size_t>(std::strtoull(argv[3], nullptr, 10));
+  Study study = bench::published_study(bench::kPublishedPoses, samples);
+  study.solver.method = SolverOptions::Method::gauss_newton;
+  std::filesystem::create_directories(folder);
+  write_background(folder / "background.csv", study);
+  write_samples(folder, study, static_cast<std::size_t>(std::strtoull(argv[2], nullptr, 10)));
+}
