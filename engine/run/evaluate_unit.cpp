@@ -43,11 +43,14 @@ UnitStats UnitEvaluator::operator()(const WorkUnit& unit) {
                         expected_range(plan_->distributions()[unit.slot])},
                        {outcome, std::span(status_).first(unit.count), std::span(iterations_).first(unit.count), {}});
   UnitStats stats;
-  stats.responses.resize(responses_);
+  kept_.clear();
   for (std::size_t b = 0; b < unit.count; ++b) {
     stats.solves.add(status_[b], iterations_[b]);
-    if (!counts(status_[b], plan_->not_converged())) continue;
-    for (std::size_t r = 0; r < responses_; ++r) stats.responses[r].add(outcome[r * unit.count + b]);
+    if (counts(status_[b], plan_->not_converged())) kept_.push_back(b);
+  }
+  for (std::size_t r = 0; r < responses_; ++r) {
+    for (std::size_t n = 0; n < kept_.size(); ++n) values_[n] = outcome[r * unit.count + kept_[n]];
+    stats.responses.push_back(Moments::of(std::span(values_).first(kept_.size())));
   }
   return stats;
 }

@@ -33,6 +33,7 @@ class UnitEvaluator {
   std::vector<double> outcome_;
   std::vector<SolveStatus> status_;
   std::vector<std::uint32_t> iterations_;
+  std::vector<std::size_t> kept_;  ///< samples that count
 };
 
 }  // namespace poesy

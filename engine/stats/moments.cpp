@@ -1,7 +1,9 @@
 #include "engine/stats/moments.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace poesy {
 
@@ -16,6 +18,37 @@ void Moments::add(double value) {
   m4_ += square * step * step * (n * n - 3.0 * n + 3.0) + 6.0 * step * step * m2_ - 4.0 * step * m3_;
   m3_ += square * step * (n - 2.0) - 3.0 * step * m2_;
   m2_ += square;
+}
+
+Moments Moments::of(std::span<const double> values) {
+  Moments moments;
+  if (values.empty()) return moments;
+  const auto n = static_cast<double>(values.size());
+  // Eight sums each, so that an addition need not wait for the one before.
+  constexpr std::size_t kSums = 8;
+  std::array<double, kSums> sum{};
+  for (std::size_t k = 0; k < values.size(); ++k) sum[k % kSums] += values[k];
+  const double mean = std::accumulate(sum.begin(), sum.end(), 0.0) / n;
+  std::array<double, kSums> s1{}, s2{}, s3{}, s4{};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double d = values[k] - mean;
+    const double square = d * d;
+    s1[k % kSums] += d;
+    s2[k % kSums] += square;
+    s3[k % kSums] += square * d;
+    s4[k % kSums] += square * square;
+  }
+  // The mean was rounded by shift; the moments about the mean follow from those about the rounded one.
+  const double shift = std::accumulate(s1.begin(), s1.end(), 0.0) / n;
+  const double m2 = std::accumulate(s2.begin(), s2.end(), 0.0);
+  const double m3 = std::accumulate(s3.begin(), s3.end(), 0.0);
+  const double m4 = std::accumulate(s4.begin(), s4.end(), 0.0);
+  moments.count_ = values.size();
+  moments.mean_ = mean + shift;
+  moments.m2_ = m2 - n * shift * shift;
+  moments.m3_ = m3 - 3.0 * shift * m2 + 2.0 * n * shift * shift * shift;
+  moments.m4_ = m4 - 4.0 * shift * m3 + 6.0 * shift * shift * m2 - 3.0 * n * shift * shift * shift * shift;
+  return moments;
 }
 
 void Moments::merge(const Moments& other) {

@@ -65,7 +65,12 @@ void BlockKernel<T, Shape>::newton_matrix() {
   const T* __restrict symmetric = n_;
   const Screw* __restrict column = column_;
   const Screw* __restrict mu = mu_;
-  for (std::size_t n = 0; n < size * size; ++n) matrix[n] = symmetric[n];
+  // Where each entry is changed once, it is read from N and written to M; else M starts as a copy.
+  const T* __restrict source = symmetric;
+  if constexpr (!Shape::kEveryPairOnce) {
+    for (std::size_t n = 0; n < size * size; ++n) matrix[n] = symmetric[n];
+    source = matrix;
+  }
   for (std::size_t b_limb = 0; b_limb < limbs(); ++b_limb) {
     for (std::size_t b = first_joint(b_limb); b < first_joint(b_limb + 1); ++b) {
       Screw own;
@@ -76,23 +81,25 @@ void BlockKernel<T, Shape>::newton_matrix() {
         // d delta_mu / d q_b = -sign_b (1 + ad^2/12) column_b - ad/2 column_b, with sign + in limb i and - in limb k;
         // row a takes it with -sign_a.
         const Screw once = kernel::bracket(mu[n], column[b]);
-        const Screw twice = kernel::bracket(mu[n], once);
         const T half(is_i ? 0.5 : -0.5);
         const T twelfth(1.0 / 12.0);
-        Screw bend;
+        Screw inner;
         for (int k = 0; k < 3; ++k) {
-          bend.w[k] = madd(half, once.w[k], twelfth * twice.w[k]);
-          bend.v[k] = madd(half, once.v[k], twelfth * twice.v[k]);
+          inner.w[k] = madd(twelfth, once.w[k], half * column[b].w[k]);
+          inner.v[k] = madd(twelfth, once.v[k], half * column[b].v[k]);
+        }
+        const Screw bend = kernel::bracket(mu[n], inner);
+        for (int k = 0; k < 3; ++k) {
           own.w[k] = own.w[k] + bend.w[k];
           own.v[k] = own.v[k] + bend.v[k];
         }
         const std::size_t other = is_i ? chain_.pair[n].k : chain_.pair[n].i;
         for (std::size_t a = first_joint(other); a < first_joint(other + 1); ++a) {
-          matrix[a * size + b] = matrix[a * size + b] - kernel::dot(column[a], bend);
+          matrix[a * size + b] = source[a * size + b] - kernel::dot(column[a], bend);
         }
       }
       for (std::size_t a = first_joint(b_limb); a < first_joint(b_limb + 1); ++a) {
-        T entry = matrix[a * size + b] + kernel::dot(column[a], own);
+        T entry = source[a * size + b] + kernel::dot(column[a], own);
         if (a > b) entry = entry - kernel::dot(kernel::bracket(column[b], column[a]), pull_[b_limb]);
         matrix[a * size + b] = entry;
       }

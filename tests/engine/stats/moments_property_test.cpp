@@ -42,6 +42,26 @@ void expect_same_bits(const Moments& a, const Moments& b) {
   EXPECT_EQ(bits(a.kurtosis()), bits(b.kurtosis()));
 }
 
+TEST(MomentsOf, ABlockIsItsNumbersOneByOne) {
+  std::vector<double> values = skewed_values(1003);
+  for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 64u, 1003u}) {
+    const auto block = std::span<const double>(values).first(count);
+    const Moments whole = Moments::of(block);
+    EXPECT_EQ(whole.count(), count);
+    if (count == 1) continue;
+    expect_same(whole, moments_of(block), 1e-12);
+  }
+  for (double& value : values) value += 1e6;
+  expect_same(Moments::of(values), moments_of(values), 1e-9);
+}
+
+TEST(MomentsOf, NothingAndConstants) {
+  expect_same_bits(Moments::of({}), Moments{});
+  const std::vector<double> same(100, 0.1);
+  EXPECT_NEAR(Moments::of(same).mean(), 0.1, 1e-17);
+  EXPECT_LE(Moments::of(same).variance(), 1e-33);
+}
+
 TEST(MomentsMerge, AnySplitGivesTheWhole) {
   const std::vector<double> values = skewed_values(500);
   const Moments whole = moments_of(values);
