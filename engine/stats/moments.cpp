@@ -1,5 +1,6 @@
 #include "engine/stats/moments.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -45,7 +46,7 @@ Moments Moments::of(std::span<const double> values) {
   const double m4 = std::accumulate(s4.begin(), s4.end(), 0.0);
   moments.count_ = values.size();
   moments.mean_ = mean + shift;
-  moments.m2_ = m2 - n * shift * shift;
+  moments.m2_ = std::max(0.0, m2 - n * shift * shift);  // rounding may not leave less than nothing
   moments.m3_ = m3 - 3.0 * shift * m2 + 2.0 * n * shift * shift * shift;
   moments.m4_ = m4 - 4.0 * shift * m3 + 6.0 * shift * shift * m2 - 3.0 * n * shift * shift * shift * shift;
   return moments;

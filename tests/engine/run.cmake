@@ -1,1 +1,2 @@
 poesy_test(run_test LABELS determinism SOURCES engine/run/runner_test.cpp LINKS poesy_run)
+poesy_test(allocation_test LABELS property SOURCES engine/run/allocation_test.cpp LINKS poesy_run poesy_models)

@@ -60,6 +60,7 @@ TEST(MomentsOf, NothingAndConstants) {
   const std::vector<double> same(100, 0.1);
   EXPECT_NEAR(Moments::of(same).mean(), 0.1, 1e-17);
   EXPECT_LE(Moments::of(same).variance(), 1e-33);
+  EXPECT_GE(Moments::of(same).variance(), 0.0);
 }
 
 TEST(MomentsMerge, AnySplitGivesTheWhole) {
