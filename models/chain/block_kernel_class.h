@@ -28,7 +28,7 @@ enum class KernelPass {
 /// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-5 of the diagonal of N, and
 /// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
 /// methods mean the same root. A sample goes through up to three passes:
-///   direct   Newton from the start; refused at a step that is not safe or larger than 0.4;
+///   direct   Newton from the start; refused at a step that is not safe or larger than the options allow;
 ///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
 ///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds. Given up
 ///            where the displacements come back to those of an earlier iteration;
@@ -76,7 +76,6 @@ class BlockKernel {
  private:
   static constexpr std::size_t kLanes = T::kLanes;
   static constexpr double kSafePivot = 1e-5;
-  static constexpr double kDirectStep = 0.4;
   static constexpr double kFollowStep = 1e-3;
   static constexpr double kNearStep = 2e-3;
   static constexpr double kRestingStep = 1e-12;

@@ -266,7 +266,7 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
   }
   safe = safe & newton_step(step_);
   const T size = largest(step_);
-  safe = safe & (size < T(pass == KernelPass::follow ? kFollowStep : kDirectStep));
+  safe = safe & (size < T(pass == KernelPass::follow ? kFollowStep : options_.largest_step));
   auto converged = safe & (size < T(options_.last_step));
   if constexpr (pass == KernelPass::rescue) {
     T away(0.0);

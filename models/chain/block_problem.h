@@ -89,6 +89,7 @@ struct KernelOptions {
   double tolerance;       ///< on the change of the residual
   double rounding_level;  ///< below which a change may be rounding
   double last_step;       ///< a safe Newton step below this is the last one
+  double largest_step;    ///< that Newton may take from a start
   std::uint32_t max_iterations;
 };
 

@@ -15,6 +15,10 @@
 namespace poesy::chain {
 namespace {
 
+/// Largest Newton step (rad, m) from a start. From further away Newton may come to another root than Gauss-Newton.
+constexpr double kLargestStep = 0.15;
+/// The same for the nodes of a fit, whose roots must lie on one smooth branch to be used.
+constexpr double kLargestNodeStep = 0.4;
 /// A fit whose last coefficients (rad, m) are below this puts nearly every start within one step of its root.
 constexpr double kGoodTail = 1e-6;
 /// A fit whose last coefficients are larger is not used: the displacements are not smooth over its range.
@@ -70,7 +74,7 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
       options_{options.method == SolverOptions::Method::newton ? KernelMethod::newton : KernelMethod::gauss_newton,
                options.tolerance, rounding_level(chain),
                // Newton's error falls with the square of its steps. Rounding alone makes steps of about 1e-14.
-               std::max(std::sqrt(options.tolerance / 10.0), 1e-10),
+               std::max(std::sqrt(options.tolerance / 10.0), 1e-10), kLargestStep,
                static_cast<std::uint32_t>(options.max_iterations)},
       kernel_(best_kernel()) {
   std::size_t joint = 0;
@@ -194,6 +198,7 @@ double BlockSolver::fit_starts(double center, double half_width) {
   std::fill(status_.begin(), status_.end(), SolveStatus::iteration_cap);
   KernelOptions direct = options_;
   direct.method = KernelMethod::newton_direct;
+  direct.largest_step = kLargestNodeStep;
   run(nodes, kStartTerms, direct, node_displacements_.data());
   const std::size_t stride = kernel_capacity(kStartTerms);
   double* coefficients = coefficients_.data() + fits_made_++ * joints_.size() * kStartTerms;
