@@ -1,0 +1,110 @@
+// Nothing is allocated in the hot loop. Every operator new of this program counts.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <random>
+#include <vector>
+
+#include "bench/published_study.h"
+#include "engine/run/evaluate_unit.h"
+#include "tests/models/chain/block_samples.h"
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  // aligned_alloc wants whole multiples of the alignment.
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size, alignof(std::max_align_t)); }
+void* operator new[](std::size_t size) { return counted(size, alignof(std::max_align_t)); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace poesy {
+namespace {
+
+template <class Work>
+std::size_t allocations_of(const Work& work) {
+  const std::size_t before = allocations;
+  work();
+  return allocations - before;
+}
+
+TEST(Allocation, IsCounted) {
+  std::unique_ptr<double> kept;
+  EXPECT_EQ(allocations_of([&] { kept = std::make_unique<double>(1.0); }), 1u);
+}
+
+std::vector<chain::BlockSamples> blocks(std::size_t count) {
+  std::mt19937_64 engine(61);
+  std::vector<chain::BlockSamples> all;
+  for (std::size_t factor = 0; factor < 71; factor += 5) {
+    all.push_back(chain::single_error_samples(chain::random_pose(engine), factor, 0.1, count, engine));
+    all.back().range = 4.0 * chain::unit_of(all.back().varied[0]);
+  }
+  all.push_back(chain::all_error_samples(chain::random_pose(engine), 0.5, count, engine));
+  return all;
+}
+
+TEST(Allocation, NoneInAWarmBlockSolver) {
+  const std::vector<chain::BlockSamples> all = blocks(1000);
+  for (const SolverOptions& options : {SolverOptions{}, chain::gauss_newton()}) {
+    chain::BlockSolver solver(all[0].chain, options);
+    const auto solve_all = [&] {
+      for (const chain::BlockSamples& samples : all) {
+        chain::prepare(solver, samples);
+        solver.solve(samples.values, samples.count);
+      }
+    };
+    EXPECT_GT(allocations_of(solve_all), 0u);
+    EXPECT_EQ(allocations_of(solve_all), 0u);
+  }
+}
+
+std::size_t allocations_per_unit(std::size_t samples) {
+  const Study study = bench::published_study(4, samples);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  const Plan plan(study, select_poses(study.poses, *model));
+  UnitEvaluator evaluate(plan, *model);
+  const auto evaluate_all = [&] {
+    for (std::size_t u = 0; u < plan.units(); ++u) evaluate(plan.unit(u));
+  };
+  evaluate_all();
+  const std::size_t warm = allocations_of(evaluate_all);
+  EXPECT_EQ(warm % plan.units(), 0u) << "every unit allocates alike";
+  return warm / plan.units();
+}
+
+TEST(Allocation, NonePerSampleInAUnit) {
+  // The pose's nominal displacements, and the three moments that are handed on.
+  EXPECT_LE(allocations_per_unit(Plan::kUnitSamples), 4u);
+  EXPECT_EQ(allocations_per_unit(10), allocations_per_unit(Plan::kUnitSamples));
+}
+
+}  // namespace
+}  // namespace poesy
