@@ -101,8 +101,8 @@ struct SampleBlock {
   std::span<const FactorIndex> varied;  ///< [V], no repetition
   std::span<const double> values;       ///< [V x B], row-major: all samples of the first varied factor first
   std::size_t count;                    ///< B
-  /// With one varied factor: values beyond +-range are rare, and a model may prepare for those inside. 0: nothing is known.
-  /// What a sample gives may depend on this to rounding, and does not depend on the other samples.
+  /// With one varied factor: values beyond +-range are rare, and a model may prepare for those inside. 0: nothing is
+  /// known. What a sample gives may depend on this to rounding, and does not depend on the other samples.
   double range = 0.0;
 };
 
