@@ -43,6 +43,7 @@ UnitStats UnitEvaluator::operator()(const WorkUnit& unit) {
                         expected_range(plan_->distributions()[unit.slot])},
                        {outcome, std::span(status_).first(unit.count), std::span(iterations_).first(unit.count), {}});
   UnitStats stats;
+  stats.responses.reserve(responses_);
   kept_.clear();
   for (std::size_t b = 0; b < unit.count; ++b) {
     stats.solves.add(status_[b], iterations_[b]);

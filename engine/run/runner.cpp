@@ -7,9 +7,10 @@
 
 #include <algorithm>
 #include <thread>
-#include <utility>
+#include <type_traits>
 
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/handover.h"
 #include "engine/run/sensitivity.h"
 
 namespace poesy {
@@ -25,34 +26,39 @@ bool stopped(const RunOptions& options) {
 /// in the order of n. A few outputs per thread are in flight at any time. Returns false when stopped.
 template <class MakeWorker, class Work, class Finish>
 bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish) {
+  using Worker = std::invoke_result_t<MakeWorker>;
+  using Output = std::invoke_result_t<Work, Worker&, std::size_t>;
   const std::size_t threads = resolved_threads(options.threads);
+  const std::size_t in_flight = 4 * threads;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));
-  using Worker = decltype(make_worker());
-  using Output = decltype(work(std::declval<Worker&>(), std::size_t{0}));
   tbb::enumerable_thread_specific<Worker> workers(make_worker);
-  struct Item {
-    std::size_t n;
-    Output output;
-  };
+  // The pipeline finishes in order with at most in_flight numbers under way, so no two of those share a slot.
+  std::vector<Output> outputs(in_flight);
   std::size_t next = 0;
   std::size_t finished = 0;
-  const auto source = tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
-                                                          [&](tbb::flow_control& control) -> std::size_t {
-                                                            if (next == count || stopped(options)) {
-                                                              control.stop();
-                                                              return 0;
-                                                            }
-                                                            return next++;
-                                                          });
-  const auto body = tbb::make_filter<std::size_t, Item>(tbb::filter_mode::parallel, [&](std::size_t n) -> Item {
-    return {n, work(workers.local(), n)};
+  const handover::Task start([&](tbb::flow_control& control) -> std::size_t {
+    if (next == count || stopped(options)) {
+      control.stop();
+      return 0;
+    }
+    return next++;
   });
-  const auto sink = tbb::make_filter<Item, void>(tbb::filter_mode::serial_in_order, [&](Item item) {
-    finish(item.n, item.output);
+  const handover::Task solve([&](std::size_t n) {
+    outputs[n % in_flight] = work(workers.local(), n);
+    return n;
+  });
+  const handover::Task collect([&](std::size_t n) {
+    finish(n, outputs[n % in_flight]);
     ++finished;
   });
-  arena.execute([&] { tbb::parallel_pipeline(4 * threads, source & body & sink); });
+  arena.execute([&] {
+    tbb::parallel_pipeline(in_flight,
+                           tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, start) &
+                               tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, solve) &
+                               tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, collect));
+  });
+  handover::receive();
   return finished == count;
 }
 
