@@ -240,11 +240,12 @@ template <class T, class Shape>
 template <KernelPass pass>
 auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) -> Verdict {
   evaluate(at);
+  const auto finite = finite_residual();
   Verdict verdict;
   auto near = T(0.0) < T(1.0);
   if constexpr (pass == KernelPass::follow) {
     verdict.singular = bits(!gauss_newton_step(gauss_newton_));
-    verdict.non_finite = bits(!finite_residual());
+    verdict.non_finite = bits(!finite);
     verdict.refused = bits(cycles(at, round));
     const T size = largest(gauss_newton_);
     verdict.stagnated = bits(size < T(kRestingStep));
@@ -256,7 +257,7 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
     }
   }
   newton_matrix();
-  auto safe = near & finite_residual();
+  auto safe = near & finite;
   if constexpr (pass == KernelPass::direct) {
     // A first step from a fit is small, on the branch of the fit's nodes, which were all safe.
     const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
@@ -281,7 +282,7 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
     if constexpr (pass == KernelPass::rescue) {
       damping = T(0.5);
       verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
-      verdict.non_finite = bits(!finite_residual());
+      verdict.non_finite = bits(!finite);
     }
     for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
   }
