@@ -33,7 +33,7 @@ class Table {
 
 void write_background(const std::filesystem::path& path, const Study& study) {
   Table table(path, "factor,value");
-  const std::vector<double> errors = background_errors(study);
+  const std::vector<double> errors = background_errors(study.analysis.background, study.model());
   for (std::size_t f = 0; f < errors.size(); ++f) {
     if (errors[f] != 0.0) table.row("{},{:.17g}\n", study.model().factors[f].name, errors[f]);
   }

@@ -19,8 +19,11 @@ ProgressPrinter::ProgressPrinter(bool quiet)
       start_(Clock::now()),
       next_(start_ + (terminal_ ? Clock::duration(kLive) : Clock::duration(kPlain))) {}
 
-ProgressPrinter::~ProgressPrinter() {
+ProgressPrinter::~ProgressPrinter() { finish(); }
+
+void ProgressPrinter::finish() {
   if (line_open_) std::fputs("\r\033[K", stderr);
+  line_open_ = false;
 }
 
 void ProgressPrinter::operator()(const Progress& progress) {

@@ -15,6 +15,8 @@ class ProgressPrinter {
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
   void operator()(const Progress& progress);
+  /// Takes the live line away, so that other lines may follow.
+  void finish();
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -9,8 +9,11 @@
 #include "engine/app/facts.h"
 #include "engine/app/interrupt.h"
 #include "engine/app/progress.h"
+#include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
+#include "engine/run/cases.h"
+#include "engine/run/identification.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"
 
@@ -30,39 +33,100 @@ std::string default_result(const std::string& study) {
   return std::filesystem::path(study).filename().replace_extension(".h5").string();
 }
 
+/// A study that is ready to run.
+struct Job {
+  const Study& study;
+  const Model& model;
+  PoseSet poses;
+  std::string path;
+  RunOptions options;
+  std::chrono::steady_clock::time_point start;
+
+  RunFacts facts(const SolveCounts& solves) const { return run_facts(start, options.threads, solves.total()); }
+};
+
+// Each runs a study of its kind and writes the result: how its solves ended, or nothing when it was interrupted.
+
+std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
+  const Plan plan(job.study, job.poses);
+  const auto result = run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
+  if (!result) return std::nullopt;
+  write_sensitivity(job.path, job.study, job.poses, *result, job.facts(result->total()));
+  return result->total();
+}
+
+std::optional<SolveCounts> run_identification_study(const Job& job) {
+  const auto result = identify(job.study.analysis, job.model.description(), [&](const ErrorTable& errors) {
+    return run_evaluation(job.model, job.study.solver, job.poses, errors, Pairing::every_pose_with_every_row,
+                          job.options);
+  });
+  if (!result) return std::nullopt;
+  write_identification(job.path, job.study, job.poses, *result, job.facts(result->solves));
+  return result->solves;
+}
+
+std::optional<SolveCounts> run_cases_study(const Job& job) {
+  auto evaluation = run_evaluation(job.model, job.study.solver, job.poses, case_table(job.study.analysis.cases),
+                                   Pairing::every_pose_with_every_row, job.options);
+  if (!evaluation) return std::nullopt;
+  const SolveCounts solves = evaluation->total();
+  write_cases(job.path, job.study, job.poses, case_result(std::move(*evaluation), job.study.not_converged),
+              job.facts(solves));
+  return solves;
+}
+
+std::optional<SolveCounts> run_study(const Job& job) {
+  switch (job.study.analysis.kind) {
+    case Analysis::Kind::sensitivity:
+      return run_sensitivity_study(job);
+    case Analysis::Kind::identification:
+      return run_identification_study(job);
+    case Analysis::Kind::evaluate:
+      return run_cases_study(job);
+    case Analysis::Kind::monte_carlo:
+      break;
+  }
+  throw InputError({.file = job.path}, "no monte-carlo yet", "wait");
+}
+
+/// Says what came out; the exit code.
+int finish(const Job& job, const std::string& study_path, const SolveCounts& solves) {
+  const std::uint64_t failed = solves.not_converged();
+  const RunFacts facts = job.facts(solves);
+  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, facts.solves,
+                         facts.wall_seconds, facts.threads, failed)
+                 .c_str(),
+             stdout);
+  if (job.study.not_converged != NotConverged::fail || failed == 0) return kDone;
+  std::fputs(fmt::format("poesy: {}: {} samples did not converge and the study allows none; the result is kept in {}\n",
+                         study_path, failed, job.path)
+                 .c_str(),
+             stderr);
+  return kTooManyNotConverged;
+}
+
 int run(const Options& options) {
   Study study = read_study(options.study, registry(), StudyUse::run);
   if (options.seed) study.seed = *options.seed;
   const std::string path = options.result.empty() ? default_result(options.study) : options.result;
   check_result_path(path);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const Plan plan(study, select_poses(study.poses, *model));
-  const auto start = std::chrono::steady_clock::now();
-  const std::size_t threads = resolved_threads(options.threads);
-  std::optional<SensitivityResult> result;
-  {
-    ProgressPrinter printer(options.quiet);
-    result = run_sensitivity(plan, *model, study.analysis.conf_level,
-                             {threads, [&](const Progress& progress) { printer(progress); }, &catch_interrupts()});
-  }
-  if (!result) {
+  PoseSet poses = select_poses(study.poses, *model);
+  ProgressPrinter printer(options.quiet);
+  const Job job{
+      study,
+      *model,
+      std::move(poses),
+      path,
+      {resolved_threads(options.threads), [&](const Progress& progress) { printer(progress); }, &catch_interrupts()},
+      std::chrono::steady_clock::now()};
+  const std::optional<SolveCounts> solves = run_study(job);
+  printer.finish();
+  if (!solves) {
     std::fputs("poesy: interrupted; nothing was written, run the study again\n", stderr);
     return kInterrupted;
   }
-  const RunFacts facts = run_facts(start, threads, plan.solves());
-  write_sensitivity(path, study, plan.poses(), *result, facts);
-  const std::uint64_t failed = result->total().not_converged();
-  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", path, facts.solves,
-                         facts.wall_seconds, threads, failed)
-                 .c_str(),
-             stdout);
-  if (study.not_converged != NotConverged::fail || failed == 0) return kDone;
-  std::fputs(fmt::format("poesy: {}: {} samples did not converge and the study allows none; the result is kept, "
-                         "see /solver/not_converged in {}\n",
-                         options.study, failed, path)
-                 .c_str(),
-             stderr);
-  return kTooManyNotConverged;
+  return finish(job, options.study, *solves);
 }
 
 }  // namespace

@@ -33,8 +33,7 @@ int show(const Options& options) {
   const std::string response = response_of(options, result);
   std::fputs(summary_text(result).c_str(), stdout);
   std::fputs("\n", stdout);
-  std::fputs((result.kind == "sensitivity" ? ranked_table(result, response) : evaluation_table(result)).c_str(),
-             stdout);
+  std::fputs(result_tables(result, response).c_str(), stdout);
   return kDone;
 }
 

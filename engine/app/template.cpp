@@ -9,11 +9,17 @@
 namespace poesy::app {
 namespace {
 
-int print_template(const std::string& model, const std::string& kind) {
-  if (kind != name(Analysis::Kind::sensitivity)) {
-    throw InputError({}, "no template of kind '" + kind + "'", "this version has: sensitivity");
+Analysis::Kind kind_named(const std::string& word) {
+  std::string known;
+  for (const Analysis::Kind kind : kKinds) {
+    if (name(kind) == word) return kind;
+    known += (known.empty() ? "" : ", ") + std::string(name(kind));
   }
-  std::fputs(template_text(find_model(model)).c_str(), stdout);
+  throw InputError({}, "no template of kind '" + word + "'", "there are: " + known);
+}
+
+int print_template(const std::string& model, const std::string& kind) {
+  std::fputs(template_text(find_model(model), kind_named(kind)).c_str(), stdout);
   return kDone;
 }
 
@@ -24,7 +30,8 @@ void add_template(CLI::App& program, Action& action) {
   auto kind = std::make_shared<std::string>("sensitivity");
   CLI::App* command = program.add_subcommand("template", "print a complete, commented study file");
   command->add_option("model", *model, "mechanism")->required()->type_name("MODEL");
-  command->add_option("kind", *kind, "kind of study; default: sensitivity")->type_name("KIND");
+  command->add_option("kind", *kind, "kind of study: sensitivity, identification, evaluate or monte-carlo")
+      ->type_name("KIND");
   command->footer("Example: poesy template 2upr-rpu > study.toml");
   command->callback([model, kind, &action] { action = [model, kind] { return print_template(*model, *kind); }; });
 }

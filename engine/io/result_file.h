@@ -19,6 +19,14 @@ void write_sensitivity(const std::string& path, const Study& study, const PoseSe
 void write_evaluation(const std::string& path, const Study& study, const PoseSet& poses, const ErrorTable& errors,
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts);
 
+/// Writes the result of an evaluate study's cases, in the same way.
+void write_cases(const std::string& path, const Study& study, const PoseSet& poses, const CaseResult& result,
+                 const RunFacts& facts);
+
+/// Writes the result of an identification, in the same way.
+void write_identification(const std::string& path, const Study& study, const PoseSet& poses,
+                          const IdentificationResult& result, const RunFacts& facts);
+
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
 /// folder does not exist or something other than a plain file stands there, FileError when the folder cannot be
 /// written.
@@ -30,10 +38,10 @@ struct NamedUnit {
   std::string unit;  ///< "m", "rad" or "1"
 };
 
-/// What a result file of either kind says, read back. Members that the file does not have are empty.
+/// What a result file of any kind says, read back. Members that the file does not have are empty.
 /// Where a model has details, evaluation.detail holds their components in the order of `details`.
 struct StoredResult {
-  std::string kind;  ///< "sensitivity" or "evaluate"
+  std::string kind;  ///< "sensitivity", "identification", "evaluate" or "monte-carlo"
   std::string title;
   std::string model;
   std::string study_text;
@@ -49,7 +57,11 @@ struct StoredResult {
   std::vector<Detail> details;
   std::vector<std::string> joints;
   Pairing pairing = Pairing::every_pose_with_every_row;
-  std::vector<double> errors;  ///< [S x P], or [M x P] row by row; SI
+  std::vector<double> errors;      ///< [S x P], or [M x P] row by row; SI
+  std::vector<std::string> cases;  ///< names of the evaluation's samples, where they are cases
+  CaseResult case_result;          ///< its sums over the poses; its `evaluation` is empty, see above
+  IdentificationResult identification;
+  std::vector<ErrorSize> groups;  ///< of the identification
   RunFacts facts;
 };
 
@@ -80,7 +92,14 @@ Verification verify_result(const std::string& path);
 ///
 ///     evaluate.csv              pose, sample | responses, details, status (position in kStatusNames), iterations
 ///     joint_displacements.csv   pose | joints
-///     errors.csv                sample (or pose, row by row) | factors
+///     errors.csv                sample (or pose, row by row, or case) | factors
+///     cases.csv                 case | poses that count, mean and max of each response; where samples are cases
+///
+/// Tables of an identification: poses.csv, groups.csv (group | sizes), and with a column for each group
+///
+///     identification.csv   factor | verdicts of the single and of both stages, over all groups and for each
+///     single_below.csv     factor | poses; like it: single_max, not_solved, coupled_below, coupled_reduced
+///     couplings.csv        coupling | group, first and second factor (rows of identification.csv, from 0), poses
 ///
 /// Returns the paths of the files written. Throws FileError.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);

@@ -91,22 +91,44 @@ NotConverged read_not_converged(const StudySection& section) {
   return kPolicies[value->word(words)];
 }
 
+/// Values of one response at one pose that a result keeps, and what they stand for.
+struct Breadth {
+  double count;
+  std::string_view what;
+};
+
+Breadth breadth(const Analysis& analysis) {
+  const double factors = static_cast<double>(analysis.factors.size());
+  switch (analysis.kind) {
+    case Analysis::Kind::sensitivity:
+      return {factors, "factors"};
+    case Analysis::Kind::identification:
+      return {factors * static_cast<double>(analysis.groups.size()), "factors times groups"};
+    case Analysis::Kind::evaluate:
+      return {static_cast<double>(analysis.cases.size()), "cases"};
+    case Analysis::Kind::monte_carlo:
+      break;
+  }
+  return {static_cast<double>(analysis.quantiles.size()), "quantiles"};
+}
+
 /// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.size() : study.poses.count);
-  const double cells = poses * static_cast<double>(study.analysis.factors.size());
+  const Breadth at_pose = breadth(study.analysis);
+  const double cells = poses * at_pose.count;
   const double solves = cells * static_cast<double>(study.analysis.samples);
   if (cells > static_cast<double>(kMostCells)) {
-    throw InputError(
-        root.section("poses").place(),
-        "poses times factors is " + shortest(cells) + ", but a result holds at most " + std::to_string(kMostCells),
-        "ask for fewer poses or factors");
+    throw InputError(root.section("poses").place(),
+                     "poses times " + std::string(at_pose.what) + " is " + shortest(cells) +
+                         ", but a result holds at most " + std::to_string(kMostCells),
+                     "ask for fewer poses or " + std::string(at_pose.what));
   }
   if (solves > static_cast<double>(kMostSolves)) {
     throw InputError(root.section("analysis").place(),
-                     "poses times factors times samples is " + shortest(solves) + ", but at most " +
-                         std::to_string(kMostSolves) + " can be solved",
+                     "poses times " + std::string(at_pose.what) + " times samples is " + shortest(solves) +
+                         ", but at most " + std::to_string(kMostSolves) + " can be solved",
                      "ask for fewer samples");
   }
 }

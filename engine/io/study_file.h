@@ -23,7 +23,7 @@ Study read_study(const std::string& path, const Catalog& catalog, StudyUse use);
 /// The study with every default filled in, as TOML that reads back to the same study.
 std::string resolved_text(const Study& study);
 
-/// A complete, commented study of this mechanism that runs as it is.
-std::string template_text(const CatalogEntry& entry);
+/// A complete, commented study of this kind and mechanism that runs as it is.
+std::string template_text(const CatalogEntry& entry, Analysis::Kind kind);
 
 }  // namespace poesy

@@ -105,36 +105,174 @@ std::optional<Background> read_background(const StudySection& analysis, const Mo
   return background;
 }
 
-void check_case(const StudySection& section, const ModelDescription& model) {
-  section.allow({"name", "errors"});
-  if (const auto value = section.find("name")) static_cast<void>(value->text());
-  const StudySection errors = section.section("errors");
-  std::vector<std::string_view> known = names(model.factors);
-  known.insert(known.end(), {"linear", "angular"});
-  errors.allow(known, "factor");
-  for (const std::string& key : errors.keys()) {
-    const auto factor = model.find_factor(key);
-    const Dimension by_key = key == "linear" ? Dimension::length : Dimension::angle;
-    static_cast<void>(errors.find(key)->quantity(factor ? model.factors[factor->value].dimension : by_key));
+void set_case_errors(const StudyValue& value, std::string_view key, const ModelDescription& model,
+                     std::vector<double>& errors) {
+  if (const auto factor = model.find_factor(key)) {
+    errors[factor->value] = value.quantity(model.factors[factor->value].dimension);
+    return;
+  }
+  const Dimension dimension = key == "linear" ? Dimension::length : Dimension::angle;
+  const double size = value.quantity(dimension);
+  for (std::size_t f = 0; f < errors.size(); ++f) {
+    if (model.factors[f].dimension == dimension) errors[f] = size;
   }
 }
 
-Analysis::Kind read_kind(const StudySection& section, const ModelDescription& model, StudyUse use) {
-  using Kind = Analysis::Kind;
-  constexpr std::array kKinds{Kind::sensitivity, Kind::identification, Kind::evaluate, Kind::monte_carlo};
+/// The errors of a case: `linear` and `angular` for all, then factor sets, then single factors, each over the last.
+std::vector<double> read_case_errors(const StudySection& section, const ModelDescription& model,
+                                     std::vector<double> errors) {
+  std::vector<std::string_view> known = names(model.factors);
+  const std::vector<std::string_view> sets = names(model.factor_sets);
+  known.insert(known.end(), sets.begin(), sets.end());
+  known.insert(known.end(), {"linear", "angular"});
+  section.allow(known, "factor");
+  for (const std::string_view key : {"linear", "angular"}) {
+    if (const auto value = section.find(key)) set_case_errors(*value, key, model, errors);
+  }
+  for (const FactorSet& set : model.factor_sets) {
+    if (!section.find(set.name)) continue;
+    const StudySection sizes = section.section(set.name);
+    sizes.allow({"linear", "angular"});
+    std::vector<double> all = errors;
+    for (const std::string& key : sizes.keys()) set_case_errors(*sizes.find(key), key, model, all);
+    for (const FactorIndex factor : set.factors) errors[factor.value] = all[factor.value];
+  }
+  for (const Factor& factor : model.factors) {
+    if (const auto value = section.find(factor.name)) set_case_errors(*value, factor.name, model, errors);
+  }
+  return errors;
+}
+
+/// The text of `name`, which no other of its kind may have.
+template <class Named>
+std::string read_name(const StudySection& section, const std::vector<Named>& others, const std::string& usual) {
+  const auto value = section.find("name");
+  const std::string name = value ? value->text() : usual;
+  if (value && (name.empty() || name.find_first_of(",;\"\n\r\t") != std::string::npos)) {
+    value->fail("is '" + printable(name) + "'",
+                "a name is plain text without commas and quotes, for it stands in tables");
+  }
+  for (const Named& other : others) {
+    if (other.name != name) continue;
+    if (value) value->fail("is '" + printable(name) + "', which another one has", "give each a name of its own");
+    throw InputError(section.place(), "it has no name, and '" + name + "' is taken", "write name = \"...\"");
+  }
+  return name;
+}
+
+std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescription& model,
+                                  const std::vector<double>& background, StudyUse use) {
+  std::vector<ErrorCase> cases;
+  if (const auto value = analysis.find("cases")) {
+    for (const StudyValue& one : value->list()) {
+      const StudySection section = one.section();
+      section.allow({"name", "errors"});
+      const std::string name = read_name(section, cases, "case " + std::to_string(cases.size() + 1));
+      const StudySection errors =
+          section.require("errors", "write e.g. errors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }").section();
+      if (errors.empty()) {
+        throw InputError(errors.place(), "case '" + printable(name) + "' gives no error",
+                         "write e.g. errors = { linear = \"0.1 mm\" }; zero is an error too");
+      }
+      cases.push_back({name, read_case_errors(errors, model, background)});
+    }
+  }
+  if (cases.empty() && use == StudyUse::run) {
+    throw InputError(analysis.place(), "kind = \"evaluate\" needs at least one case",
+                     "write [[analysis.cases]] with name and errors, or use 'poesy evaluate' for a table of errors");
+  }
+  return cases;
+}
+
+std::vector<ErrorSize> read_groups(const StudySection& analysis) {
+  std::vector<ErrorSize> groups;
+  if (const auto value = analysis.find("groups")) {
+    for (const StudyValue& one : value->list()) {
+      const StudySection section = one.section();
+      section.allow({"name", "linear", "angular"});
+      const std::string name = read_name(section, groups, "group " + std::to_string(groups.size() + 1));
+      const auto size = [&](std::string_view key, Dimension dimension) {
+        return section.require(key, "a group sets both").positive_quantity(dimension);
+      };
+      groups.push_back({name, size("linear", Dimension::length), size("angular", Dimension::angle)});
+    }
+    if (groups.empty()) value->fail("is empty", "leave it out for one group of 1 mm and 1 deg");
+  }
+  if (groups.empty()) {
+    groups.push_back({"group 1", display_unit(Dimension::length).si, display_unit(Dimension::angle).si});
+  }
+  return groups;
+}
+
+/// A share between 0 and 1, both excluded.
+double read_share(const StudyValue& value, std::string_view example) {
+  const double share = value.number();
+  if (!(share > 0.0 && share < 1.0)) {
+    value.fail("is " + shortest(share), "it must lie between 0 and 1, e.g. " + std::string(example));
+  }
+  return share;
+}
+
+std::vector<double> read_quantiles(const StudyValue& value) {
+  std::vector<double> quantiles;
+  for (const StudyValue& one : value.list()) {
+    quantiles.push_back(read_share(one, "0.95"));
+    if (quantiles.size() > 1 && !(quantiles[quantiles.size() - 2] < quantiles.back())) {
+      one.fail("is " + shortest(quantiles.back()) + ", not above the one before it", "write them in ascending order");
+    }
+  }
+  if (quantiles.empty()) value.fail("is empty", "leave it out for 0.05, 0.5 and 0.95");
+  return quantiles;
+}
+
+ToleranceReference read_reference(const StudyValue& value, const Analysis& analysis, const ModelDescription& model) {
+  const StudySection section = value.section();
+  section.allow({"factor", "tolerance"});
+  const StudyValue factor = section.require("factor", "name the error from which tolerances are counted");
+  ToleranceReference reference{factor_named(factor, model), 0.0};
+  if (std::ranges::find(analysis.factors, reference.factor) == analysis.factors.end()) {
+    factor.fail("is '" + model.factors[reference.factor.value].name + "', which this study does not vary",
+                "name one of its factors");
+  }
+  const Dimension dimension = model.factors[reference.factor.value].dimension;
+  const auto tolerance = section.find("tolerance");
+  reference.tolerance = tolerance ? tolerance->positive_quantity(dimension) : display_unit(dimension).si;
+  return reference;
+}
+
+Analysis::Kind read_kind(const StudySection& section) {
   std::vector<std::string_view> words;
-  for (const Kind kind : kKinds) words.push_back(name(kind));
+  for (const Analysis::Kind kind : kKinds) words.push_back(name(kind));
   const auto value = section.find("kind");
-  const Kind kind = value ? kKinds[value->word(words)] : Kind::sensitivity;
-  if (use == StudyUse::run && kind != Kind::sensitivity) {
-    value->fail("is \"" + std::string(name(kind)) + "\", which is not available yet in this version",
-                "use \"sensitivity\"");
+  return value ? kKinds[value->word(words)] : Analysis::Kind::sensitivity;
+}
+
+/// Throws for a key that another kind of study has, but not this one.
+void refuse_keys_of_other_kinds(const StudySection& section, Analysis::Kind kind) {
+  using Kind = Analysis::Kind;
+  struct Key {
+    std::string_view name;
+    std::initializer_list<Kind> kinds;
+  };
+  static const std::array kKeys{Key{"factors", {Kind::sensitivity, Kind::monte_carlo, Kind::identification}},
+                                Key{"samples", {Kind::sensitivity, Kind::monte_carlo}},
+                                Key{"conf_level", {Kind::sensitivity, Kind::monte_carlo}},
+                                Key{"background", {Kind::sensitivity, Kind::monte_carlo, Kind::evaluate}},
+                                Key{"reference", {Kind::sensitivity}},
+                                Key{"quantiles", {Kind::monte_carlo}},
+                                Key{"groups", {Kind::identification}},
+                                Key{"pose_share", {Kind::identification}},
+                                Key{"cases", {Kind::evaluate}}};
+  for (const Key& key : kKeys) {
+    if (std::ranges::find(key.kinds, kind) != key.kinds.end()) continue;
+    section.refuse(key.name, "kind = \"" + std::string(name(kind)) + "\"");
   }
-  if (kind != Kind::evaluate) section.refuse("cases", "kind = \"" + std::string(name(kind)) + "\"");
-  if (const auto cases = section.find("cases")) {
-    for (const StudyValue& one : cases->list()) check_case(one.section(), model);
-  }
-  return kind;
+}
+
+/// The factor set that a study of this kind takes when it names none.
+std::vector<FactorIndex> usual_factors(Analysis::Kind kind, const ModelDescription& model) {
+  const FactorSet* set = model.find_set("deforming");
+  return kind == Analysis::Kind::sensitivity && set != nullptr ? set->factors : all_factors(model);
 }
 
 }  // namespace
@@ -156,26 +294,29 @@ ErrorModel read_error_model(const StudySection& root, const ModelDescription& mo
 }
 
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use) {
+  using Kind = Analysis::Kind;
   const StudySection section = root.section("analysis");
-  section.allow({"kind", "factors", "samples", "conf_level", "background", "cases"});
+  section.allow({"kind", "factors", "samples", "conf_level", "background", "reference", "quantiles", "groups",
+                 "pose_share", "cases"});
   Analysis analysis;
-  analysis.kind = read_kind(section, model, use);
-  if (const auto value = section.find("factors")) {
-    analysis.factors = read_factors(*value, model);
-  } else {
-    const FactorSet* usual = model.find_set("deforming");
-    analysis.factors = usual != nullptr ? usual->factors : all_factors(model);
+  analysis.kind = read_kind(section);
+  refuse_keys_of_other_kinds(section, analysis.kind);
+  if (analysis.kind != Kind::evaluate) {
+    const auto value = section.find("factors");
+    analysis.factors = value ? read_factors(*value, model) : usual_factors(analysis.kind, model);
   }
   if (const auto value = section.find("samples")) {
     analysis.samples = static_cast<std::size_t>(value->whole_number(2, kMostSolves));
   }
-  if (const auto value = section.find("conf_level")) {
-    analysis.conf_level = value->number();
-    if (!(analysis.conf_level > 0.0 && analysis.conf_level < 1.0)) {
-      value->fail("is " + shortest(analysis.conf_level), "it must lie between 0 and 1, e.g. 0.95");
-    }
-  }
+  if (const auto value = section.find("conf_level")) analysis.conf_level = read_share(*value, "0.95");
   analysis.background = read_background(section, model);
+  if (const auto value = section.find("reference")) analysis.reference = read_reference(*value, analysis, model);
+  if (const auto value = section.find("quantiles")) analysis.quantiles = read_quantiles(*value);
+  if (const auto value = section.find("pose_share")) analysis.pose_share = read_share(*value, "0.95");
+  if (analysis.kind == Kind::identification) analysis.groups = read_groups(section);
+  if (analysis.kind == Kind::evaluate) {
+    analysis.cases = read_cases(section, model, background_errors(analysis.background, model), use);
+  }
   return analysis;
 }
 

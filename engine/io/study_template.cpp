@@ -18,13 +18,13 @@ std::string comment(std::string_view text) {
   return out + "\n";
 }
 
-std::string head(const ModelDescription& model) {
+std::string head(const ModelDescription& model, Analysis::Kind kind) {
   return comment(model.name + ": " + model.title) +
          "# Run this study with: poesy run STUDY.toml\n"
          "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec.\n"
          "# A key behind a '#' shows a default or an alternative.\n" +
          fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}  # optional, free text\n",
-                     quoted("Sensitivity of " + model.name));
+                     quoted(std::string(name(kind)) + " of " + model.name));
 }
 
 std::string mechanism_section(const ModelDescription& model) {
@@ -88,21 +88,88 @@ std::string sets_comment(const ModelDescription& model) {
   return text;
 }
 
-std::string analysis_section(const ModelDescription& model) {
-  const bool has_benign = model.find_set("benign") != nullptr;
-  const std::string_view held = has_benign ? "benign" : "all";
-  std::string text = "\n[analysis]\nkind = \"sensitivity\"  # the default\n";
-  text += "# The errors that vary, one at a time: a factor set, or a list of names such as [";
+std::string factors_text(const ModelDescription& model, std::string_view what, std::string_view usual) {
+  std::string text = fmt::format("# {}: a factor set, or a list of names such as [", what);
   text += model.factors.empty() ? "]" : quoted(model.factors.front().name) + "]";
-  text += ". Factor sets:\n" + sets_comment(model);
-  text +=
-      fmt::format("factors = \"{}\"  # the default\n", model.find_set("deforming") != nullptr ? "deforming" : "all");
-  text += "samples = 1000  # for each varied error at each pose, at least 2; the default\n";
-  text += "conf_level = 0.95  # of the intervals, between 0 and 1; the default\n";
+  return text + ". Factor sets:\n" + sets_comment(model) + fmt::format("factors = \"{}\"  # the default\n", usual);
+}
+
+std::string samples_text(std::string_view of_what) {
+  return fmt::format(
+      "samples = 1000  # {}, at least 2; the default\n"
+      "conf_level = 0.95  # of the intervals, between 0 and 1; the default\n",
+      of_what);
+}
+
+std::string background_text(const ModelDescription& model) {
+  const bool has_benign = model.find_set("benign") != nullptr;
+  return fmt::format("{}background = {{ factors = \"{}\", linear = \"1 mm\", angular = \"1 deg\" }}\n",
+                     has_benign ? "" : "# ", has_benign ? "benign" : "all");
+}
+
+std::string sensitivity_keys(const ModelDescription& model) {
+  const std::string_view usual = model.find_set("deforming") != nullptr ? "deforming" : "all";
+  std::string text = factors_text(model, "The errors that vary, one at a time", usual);
+  text += samples_text("for each varied error at each pose");
   text += "# Optional: errors held constant while the others vary one at a time. Default: none.\n";
-  text += fmt::format("{}background = {{ factors = \"{}\", linear = \"1 mm\", angular = \"1 deg\" }}\n",
-                      has_benign ? "" : "# ", held);
-  return text;
+  text += background_text(model);
+  text += "# Optional: the error from which tolerances of equal effect are counted, and its own tolerance.\n";
+  text += "# Default: the error of smallest effect, at 1 mm or 1 deg.\n";
+  if (model.factors.empty()) return text;
+  const Factor& factor = model.factors.front();
+  return text + fmt::format("# reference = {{ factor = {}, tolerance = {} }}\n", quoted(factor.name),
+                            factor.dimension == Dimension::length ? "\"1 mm\"" : "\"1 deg\"");
+}
+
+std::string monte_carlo_keys(const ModelDescription& model) {
+  return factors_text(model, "The errors that vary, all together", "all") + samples_text("at each pose") +
+         "quantiles = [0.05, 0.5, 0.95]  # shares of the samples that lie below; the default\n"
+         "# Optional: errors held constant while the others vary. Default: none.\n"
+         "# background = { factors = \"all\", linear = \"1 mm\", angular = \"1 deg\" }\n";
+}
+
+std::string identification_keys(const ModelDescription& model) {
+  return factors_text(model, "The errors that are tried, each alone and with those of its frame", "all") +
+         "# A verdict asks for this share of the poses; the default.\n"
+         "pose_share = 0.95\n"
+         "# The sizes at which errors are set; each group gives verdicts of its own. Default: one group, 1 mm, 1 deg.\n"
+         "groups = [\n"
+         "  { name = \"group 1\", linear = \"5 mm\", angular = \"0.005 rad\" },\n"
+         "  { name = \"group 2\", linear = \"1 mm\", angular = \"1 deg\" },\n"
+         "]\n";
+}
+
+std::string evaluate_keys(const ModelDescription& model) {
+  std::string text =
+      "# Optional: errors that every case has, unless it sets them. Default: none.\n"
+      "# background = { factors = \"all\", linear = \"0.1 mm\", angular = \"0.1 deg\" }\n"
+      "\n# Fixed errors, each case with a name. What is not set is zero. `linear` and `angular` set all lengths and "
+      "all\n"
+      "# angles; a factor set does so for its own, a factor for itself: the narrower wins.\n"
+      "[[analysis.cases]]\nname = \"group 1\"\nerrors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }\n";
+  if (model.factors.empty()) return text;
+  const Factor& factor = model.factors.front();
+  return text + fmt::format(
+                    "\n[[analysis.cases]]\nname = \"one error\"\nerrors = {{ {} = {} }}\n"
+                    "# errors = {{ {} = {{ linear = \"0.1 mm\", angular = \"0.1 deg\" }} }}\n",
+                    factor.name, factor.dimension == Dimension::length ? "\"0.1 mm\"" : "\"0.1 deg\"",
+                    quoted(model.factor_sets.empty() ? factor.name : model.factor_sets.back().name));
+}
+
+std::string analysis_section(const ModelDescription& model, Analysis::Kind kind) {
+  std::string text = fmt::format("\n[analysis]\nkind = {}{}\n", quoted(name(kind)),
+                                 kind == Analysis::Kind::sensitivity ? "  # the default" : "");
+  switch (kind) {
+    case Analysis::Kind::sensitivity:
+      return text + sensitivity_keys(model);
+    case Analysis::Kind::monte_carlo:
+      return text + monte_carlo_keys(model);
+    case Analysis::Kind::identification:
+      return text + identification_keys(model);
+    case Analysis::Kind::evaluate:
+      break;
+  }
+  return text + evaluate_keys(model);
 }
 
 std::string solver_and_run_sections() {
@@ -119,10 +186,10 @@ std::string solver_and_run_sections() {
 
 }  // namespace
 
-std::string template_text(const CatalogEntry& entry) {
+std::string template_text(const CatalogEntry& entry, Analysis::Kind kind) {
   const ModelDescription& model = entry.description;
-  return head(model) + mechanism_section(model) + poses_section(model) + errors_section(model) +
-         analysis_section(model) + solver_and_run_sections();
+  return head(model, kind) + mechanism_section(model) + poses_section(model) + errors_section(model) +
+         analysis_section(model, kind) + solver_and_run_sections();
 }
 
 }  // namespace poesy

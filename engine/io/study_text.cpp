@@ -86,16 +86,51 @@ std::string errors_text(const Study& study) {
                      distribution_text(angular, Dimension::angle), overrides);
 }
 
+std::string background_text(const Background& background, const ModelDescription& model) {
+  return fmt::format("\n[analysis.background]\nfactors = {}\nlinear = {}\nangular = {}\n",
+                     factors_text(background.factors, model), exact_value(background.linear, Dimension::length),
+                     exact_value(background.angular, Dimension::angle));
+}
+
+std::string reference_text(const ToleranceReference& reference, const ModelDescription& model) {
+  const Factor& factor = model.factors[reference.factor.value];
+  return fmt::format("reference = {{ factor = {}, tolerance = {} }}\n", quoted(factor.name),
+                     exact_value(reference.tolerance, factor.dimension));
+}
+
+std::string group_text(const ErrorSize& group) {
+  return fmt::format("\n[[analysis.groups]]\nname = {}\nlinear = {}\nangular = {}\n", quoted(group.name),
+                     exact_value(group.linear, Dimension::length), exact_value(group.angular, Dimension::angle));
+}
+
+/// Every error by name.
+std::string case_text(const ErrorCase& one, const ModelDescription& model) {
+  std::string text = fmt::format("\n[[analysis.cases]]\nname = {}\n\n[analysis.cases.errors]\n", quoted(one.name));
+  for (std::size_t f = 0; f < one.errors.size(); ++f) {
+    text += model.factors[f].name + " = " + exact_value(one.errors[f], model.factors[f].dimension) + "\n";
+  }
+  return text;
+}
+
 std::string analysis_text(const Study& study) {
+  using Kind = Analysis::Kind;
   const Analysis& analysis = study.analysis;
-  std::string text =
-      fmt::format("[analysis]\nkind = {}\nfactors = {}\nsamples = {}\nconf_level = {}\n", quoted(name(analysis.kind)),
-                  factors_text(analysis.factors, study.model()), analysis.samples, shortest(analysis.conf_level));
-  if (!analysis.background) return text;
-  return text + fmt::format("\n[analysis.background]\nfactors = {}\nlinear = {}\nangular = {}\n",
-                            factors_text(analysis.background->factors, study.model()),
-                            exact_value(analysis.background->linear, Dimension::length),
-                            exact_value(analysis.background->angular, Dimension::angle));
+  std::string text = fmt::format("[analysis]\nkind = {}\n", quoted(name(analysis.kind)));
+  if (analysis.kind != Kind::evaluate) text += "factors = " + factors_text(analysis.factors, study.model()) + "\n";
+  if (analysis.kind == Kind::sensitivity || analysis.kind == Kind::monte_carlo) {
+    text += fmt::format("samples = {}\nconf_level = {}\n", analysis.samples, shortest(analysis.conf_level));
+  }
+  if (analysis.reference) text += reference_text(*analysis.reference, study.model());
+  if (analysis.kind == Kind::monte_carlo) {
+    text += "quantiles = [";
+    for (const double quantile : analysis.quantiles) text += (text.back() == '[' ? "" : ", ") + shortest(quantile);
+    text += "]\n";
+  }
+  if (analysis.kind == Kind::identification) text += "pose_share = " + shortest(analysis.pose_share) + "\n";
+  for (const ErrorSize& group : analysis.groups) text += group_text(group);
+  if (analysis.background) text += background_text(*analysis.background, study.model());
+  for (const ErrorCase& one : analysis.cases) text += case_text(one, study.model());
+  return text;
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct Factor {
   std::string name;     ///< "delta_1_0_x"
   Dimension dimension;  ///< length (m) or angle (rad)
   std::size_t limb;     ///< counts from 1, as in the literature
+  std::size_t frame;    ///< of the limb, to which the error belongs; those of one frame may work together
   std::string description;
 };
 
@@ -60,6 +61,12 @@ struct GeometryParameter {
   std::string description;
 };
 
+/// The response that tells whether anything is deformed at all.
+struct DeformationMeasure {
+  std::size_t response;  ///< position among the responses
+  double rounding;       ///< a value up to this cannot be told from zero, SI
+};
+
 /// How a per-sample solve is done.
 struct SolverOptions {
   enum class Method {
@@ -84,6 +91,7 @@ struct ModelDescription {
   std::vector<Factor> factors;
   std::vector<FactorSet> factor_sets;
   std::vector<Response> responses;
+  std::optional<DeformationMeasure> deformation;  ///< none where errors only move the platform
   std::vector<Detail> details;
   std::vector<std::string> joints;  ///< names of all joint displacements, "q_1_1"
   std::vector<double> pose_lower;   ///< a workspace inside reach, [pose coordinates], SI

@@ -8,17 +8,10 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/report/display.h"
+
 namespace poesy {
 namespace {
-
-Dimension dimension_of(std::string_view si_name) {
-  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
-    if (si_unit(dimension) == si_name) return dimension;
-  }
-  return Dimension::number;
-}
-
-const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
 
 std::string count_text(std::uint64_t count) {
   std::string digits = std::to_string(count);
@@ -76,10 +69,25 @@ std::size_t response_named(const StoredResult& result, std::string_view name) {
   return static_cast<std::size_t>(found - result.responses.begin());
 }
 
+SolveCounts all_solves(const StoredResult& result) {
+  if (result.kind == "sensitivity") return result.sensitivity.total();
+  if (result.kind == "identification") return result.identification.solves;
+  return result.evaluation.total();
+}
+
 }  // namespace
 
+Dimension dimension_of(std::string_view si_name) {
+  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+    if (si_unit(dimension) == si_name) return dimension;
+  }
+  return Dimension::number;
+}
+
+const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
+
 std::string summary_text(const StoredResult& result) {
-  const SolveCounts solves = result.kind == "sensitivity" ? result.sensitivity.total() : result.evaluation.total();
+  const SolveCounts solves = all_solves(result);
   const double share = solves.total() == 0
                            ? 0.0
                            : 100.0 * static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
@@ -157,6 +165,12 @@ std::string evaluation_table(const StoredResult& result) {
                         lowest / unit.si, highest / unit.si);
   }
   return text;
+}
+
+std::string result_tables(const StoredResult& result, std::string_view ranked_by) {
+  if (result.kind == "sensitivity") return ranked_table(result, ranked_by);
+  if (result.kind == "identification") return identification_table(result);
+  return result.cases.empty() ? evaluation_table(result) : cases_table(result);
 }
 
 std::string models_text(const Catalog& catalog) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,16 @@ std::string default_ranking(const StoredResult& result);
 
 /// Per response of an `evaluate` result, the mean and the extremes over all solved samples, and where they are.
 std::string evaluation_table(const StoredResult& result);
+
+/// Per case of an `evaluate` study, mean and maximum of each response over the poses that count.
+std::string cases_table(const StoredResult& result);
+
+/// The errors that deform, limb by limb as far as their order goes, with the counts of poses behind the verdicts, and
+/// the couplings.
+std::string identification_table(const StoredResult& result);
+
+/// The tables that suit the result's kind. ranked_by is a response of the result.
+std::string result_tables(const StoredResult& result, std::string_view ranked_by);
 
 /// All mechanisms, a line each.
 std::string models_text(const Catalog& catalog);

@@ -3,13 +3,10 @@
 #include <algorithm>
 
 #include "engine/random/stream.h"
+#include "engine/run/counts.h"
 
 namespace poesy {
 namespace {
-
-bool counts(SolveStatus status, NotConverged policy) {
-  return solved(status) || (policy == NotConverged::include && usable(status));
-}
 
 /// Largest error to expect: one draw in 16 000 of a normal lies beyond four standard deviations.
 double expected_range(const Distribution& distribution) {

@@ -10,7 +10,7 @@ namespace poesy {
 Plan::Plan(const Study& study, PoseSet poses)
     : poses_(std::move(poses)),
       factors_(study.analysis.factors),
-      background_(background_errors(study)),
+      background_(background_errors(study.analysis.background, study.model())),
       samples_(study.analysis.samples),
       units_per_cell_((samples_ + kUnitSamples - 1) / kUnitSamples),
       seed_(study.seed),

@@ -95,13 +95,12 @@ std::string_view name(SolverOptions::Method method) {
   return "gauss-newton";
 }
 
-std::vector<double> background_errors(const Study& study) {
-  std::vector<double> errors(study.model().factors.size(), 0.0);
-  if (!study.analysis.background) return errors;
-  const Background& background = *study.analysis.background;
-  for (const FactorIndex factor : background.factors) {
-    const bool is_length = study.model().factors[factor.value].dimension == Dimension::length;
-    errors[factor.value] = is_length ? background.linear : background.angular;
+std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model) {
+  std::vector<double> errors(model.factors.size(), 0.0);
+  if (!background) return errors;
+  for (const FactorIndex factor : background->factors) {
+    const bool is_length = model.factors[factor.value].dimension == Dimension::length;
+    errors[factor.value] = is_length ? background->linear : background->angular;
   }
   return errors;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -52,14 +53,43 @@ struct Background {
   double angular = 0.0;  ///< rad, for factors that are angles
 };
 
+/// A fixed set of errors with a name.
+struct ErrorCase {
+  std::string name;
+  std::vector<double> errors;  ///< [F], SI
+};
+
+/// The sizes at which identification sets errors.
+struct ErrorSize {
+  std::string name;
+  double linear;   ///< m
+  double angular;  ///< rad
+};
+
+/// The error from which equal-effect tolerances are counted, and its own tolerance.
+struct ToleranceReference {
+  FactorIndex factor;
+  double tolerance;  ///< SI
+};
+
 struct Analysis {
-  enum class Kind { sensitivity, identification, evaluate, monte_carlo };
+  enum class Kind {
+    sensitivity,     ///< the effect of each error on its own
+    identification,  ///< which errors deform the mechanism at all
+    evaluate,        ///< named cases of fixed errors
+    monte_carlo      ///< all errors vary together
+  };
 
   Kind kind = Kind::sensitivity;
-  std::vector<FactorIndex> factors;
-  std::size_t samples = 1000;
-  double conf_level = 0.95;
-  std::optional<Background> background;
+  std::vector<FactorIndex> factors;                ///< that vary, or that are tried; empty for evaluate
+  std::size_t samples = 1000;                      ///< sensitivity, Monte Carlo: at each pose
+  double conf_level = 0.95;                        ///< sensitivity, Monte Carlo
+  std::optional<Background> background;            ///< not for identification
+  std::optional<ToleranceReference> reference;     ///< sensitivity
+  std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< Monte Carlo: shares of samples below, ascending
+  std::vector<ErrorSize> groups;                   ///< identification
+  double pose_share = 0.95;                        ///< identification: of the poses that a verdict asks for
+  std::vector<ErrorCase> cases;                    ///< evaluate
 };
 
 enum class NotConverged {
@@ -85,11 +115,13 @@ struct Study {
 /// Names as written in a study file.
 std::string_view name(PoseSelection::Select select);
 std::string_view name(Analysis::Kind kind);
+inline constexpr std::array kKinds{Analysis::Kind::sensitivity, Analysis::Kind::identification,
+                                   Analysis::Kind::evaluate, Analysis::Kind::monte_carlo};
 std::string_view name(NotConverged policy);
 std::string_view name(SolverOptions::Method method);
 
-/// The constant errors of a study, [F]: the background's value where it applies, else zero.
-std::vector<double> background_errors(const Study& study);
+/// The constant errors, [F]: the background's value where it applies, else zero.
+std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);
 
 /// Builds the study's mechanism. Throws InputError at the mechanism's place when the geometry is impossible.
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism);

@@ -4,6 +4,7 @@
 
 #include "engine/base/contract.h"
 #include "models/chain/block_solver.h"
+#include "models/chain/deformation_solver.h"
 
 namespace poesy::chain {
 namespace {
@@ -68,6 +69,8 @@ std::vector<Response> deformation_responses() {
           {"deformation_max", Dimension::number,
            "largest norm of a residual screw, rad and m mixed (Du et al. 2022, Eq. 45)"}};
 }
+
+DeformationMeasure deformation_measure(const ParallelChain& chain) { return {kResponses - 1, rounding_level(chain)}; }
 
 std::vector<Detail> deformation_details(const ParallelChain& chain) {
   std::vector<Detail> details;

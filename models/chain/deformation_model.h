@@ -29,6 +29,9 @@ struct DeformationModel {
 /// angular_deformation (Du et al. 2022, Eq. 49), linear_deformation (Eq. 50), deformation_max (Eq. 45).
 std::vector<Response> deformation_responses();
 
+/// deformation_max, and the rounding of its solves (see rounding_level()).
+DeformationMeasure deformation_measure(const ParallelChain& chain);
+
 /// One detail per pair of limbs, delta_mu_ki = [omega; v] (Eqs. 30, 46), named with limbs counted from 1.
 std::vector<Detail> deformation_details(const ParallelChain& chain);
 

@@ -53,7 +53,7 @@ Factor factor(const Entry& entry) {
                             : entry.frame == 4 ? "frame 4 and the platform"
                                                : "frames " + frame + " and " + std::to_string(entry.frame + 1);
   return {kind + "_" + limb + "_" + frame + "_" + axis, is_linear(entry) ? Dimension::length : Dimension::angle,
-          entry.limb + 1, motion + axis + " between " + where + " of limb " + limb};
+          entry.limb + 1, entry.frame, motion + axis + " between " + where + " of limb " + limb};
 }
 
 template <class Belongs>

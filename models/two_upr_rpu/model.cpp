@@ -16,7 +16,7 @@ namespace {
 /// How far a limb's platform pose may be from the wanted one, in m and rad, before its loop counts as open.
 constexpr double kClosure = 1e-9;
 
-ModelDescription describe() {
+ModelDescription describe(const Geometry& geometry) {
   const Geometry published;
   ModelDescription description;
   description.name = "2upr-rpu";
@@ -33,6 +33,7 @@ ModelDescription describe() {
   description.factors = factors();
   description.factor_sets = factor_sets();
   description.responses = chain::deformation_responses();
+  description.deformation = chain::deformation_measure(parallel_chain(geometry));
   description.details = chain::deformation_details(parallel_chain(published));
   for (int limb = 1; limb <= 3; ++limb) {
     for (int joint = 1; joint <= 4; ++joint) {
@@ -62,7 +63,7 @@ class TwoUprRpu final : public Model {
  public:
   explicit TwoUprRpu(const Geometry& geometry)
       : geometry_(geometry),
-        description_(describe()),
+        description_(describe(geometry)),
         deformation_{parallel_chain(geometry), error_slots(), [geometry](std::span<const double> pose) {
                        const auto q = two_upr_rpu::joint_displacements(geometry, pose_from(pose));
                        return std::vector<double>(q.begin(), q.end());
@@ -128,6 +129,6 @@ std::unique_ptr<Model> build(std::span<const double> values) {
 
 }  // namespace
 
-CatalogEntry catalog_entry() { return {describe(), build}; }
+CatalogEntry catalog_entry() { return {describe({}), build}; }
 
 }  // namespace poesy::two_upr_rpu

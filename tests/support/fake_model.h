@@ -91,14 +91,15 @@ inline ModelDescription FakeModel::describe() {
   model.pose_coordinates = {{"z", Dimension::length, "height"},
                             {"beta", Dimension::angle, "first tilt"},
                             {"gamma", Dimension::angle, "second tilt"}};
-  model.factors = {{"delta_1", Dimension::length, 1, "a position error"},
-                   {"epsilon_1", Dimension::angle, 1, "an angular error"},
-                   {"delta_2", Dimension::length, 2, "an error without effect"}};
+  model.factors = {{"delta_1", Dimension::length, 1, 0, "a position error"},
+                   {"epsilon_1", Dimension::angle, 1, 0, "an angular error"},
+                   {"delta_2", Dimension::length, 2, 0, "an error without effect"}};
   model.factor_sets = {{"all", "every error", {FactorIndex(0), FactorIndex(1), FactorIndex(2)}},
                        {"deforming", "errors with an effect", {FactorIndex(0), FactorIndex(1)}},
                        {"benign", "errors without effect", {FactorIndex(2)}}};
   model.responses = {{"angular_deformation", Dimension::angle, "first response"},
                      {"linear_deformation", Dimension::length, "second response"}};
+  model.deformation = DeformationMeasure{1, 1e-14};
   model.details = {{"signed", {"angular", "linear"}, "rad,m", "both sums before the absolute value"}};
   model.joints = {"q_1", "q_2"};
   model.pose_lower = {-0.30, -0.5, -0.6};

@@ -1,0 +1,112 @@
+#include <algorithm>
+
+#include "engine/io/export_tables.h"
+
+namespace poesy {
+namespace {
+
+/// "rad,rad,m" as a unit for each of `count` components; one unit may stand for all.
+std::vector<std::string> component_units(const std::string& text, std::size_t count) {
+  std::vector<std::string> list;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    list.push_back(text.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  if (list.size() != count) list.assign(count, list.size() == 1 ? list.front() : text);
+  return list;
+}
+
+std::vector<std::string> solve_columns(const StoredResult& result) {
+  std::vector<std::string> columns{"pose", "sample"};
+  for (const NamedUnit& response : result.responses) columns.push_back(column(response.name, response.unit));
+  for (const Detail& detail : result.details) {
+    const auto units = component_units(detail.unit, detail.components.size());
+    for (std::size_t k = 0; k < units.size(); ++k) {
+      columns.push_back(column(detail.name + "_" + detail.components[k], units[k]));
+    }
+  }
+  columns.insert(columns.end(), {"status", "iterations"});
+  return columns;
+}
+
+void write_solves(TableFolder& folder, const StoredResult& result) {
+  const EvaluationResult& found = result.evaluation;
+  folder.write("evaluate", solve_columns(result), [&](CsvTable& table) {
+    for (std::size_t at = 0; at < found.status.size(); ++at) {
+      std::vector<double> row{static_cast<double>(at % found.samples)};
+      for (std::size_t r = 0; r < found.responses; ++r) row.push_back(found.response[r * found.status.size() + at]);
+      const auto detail = std::span(found.detail).subspan(at * found.details, found.details);
+      row.insert(row.end(), detail.begin(), detail.end());
+      row.push_back(static_cast<double>(found.status[at]));
+      row.push_back(found.iterations[at]);
+      table.row(std::to_string(at / found.samples), row);
+    }
+  });
+}
+
+/// A table of numbered rows, from values row by row.
+void write_rows(TableFolder& folder, const std::string& name, const std::vector<std::string>& columns,
+                std::span<const double> values) {
+  const std::size_t width = columns.size() - 1;
+  folder.write(name, columns, [&](CsvTable& table) {
+    for (std::size_t row = 0; (row + 1) * width <= values.size() && width > 0; ++row) {
+      table.row(std::to_string(row), values.subspan(row * width, width));
+    }
+  });
+}
+
+void write_joints(TableFolder& folder, const StoredResult& result) {
+  std::vector<std::string> columns{"pose"};
+  for (const std::string& joint : result.joints) columns.push_back(column(joint, "rad or m"));
+  write_rows(folder, "joint_displacements", columns, result.evaluation.joint_displacement);
+}
+
+void write_errors(TableFolder& folder, const StoredResult& result) {
+  std::vector<std::string> columns{result.pairing == Pairing::row_by_row ? "pose" : "sample"};
+  for (const NamedUnit& factor : result.factors) columns.push_back(column(factor.name, factor.unit));
+  write_rows(folder, "errors", columns, result.errors);
+}
+
+void write_case_errors(TableFolder& folder, const StoredResult& result) {
+  std::vector<std::string> columns{"case"};
+  for (const NamedUnit& factor : result.factors) columns.push_back(column(factor.name, factor.unit));
+  folder.write("errors", columns, [&](CsvTable& table) {
+    const std::size_t width = result.factors.size();
+    for (std::size_t c = 0; c < result.cases.size(); ++c) {
+      table.row(result.cases[c], std::span(result.errors).subspan(c * width, width));
+    }
+  });
+}
+
+void write_case_sums(TableFolder& folder, const StoredResult& result) {
+  const CaseResult& found = result.case_result;
+  std::vector<std::string> columns{"case", "poses"};
+  for (const NamedUnit& response : result.responses) {
+    for (const char* what : {"_mean", "_max"}) columns.push_back(column(response.name + what, response.unit));
+  }
+  folder.write("cases", columns, [&](CsvTable& table) {
+    for (std::size_t c = 0; c < result.cases.size(); ++c) {
+      std::vector<double> row{static_cast<double>(found.count[c])};
+      for (std::size_t at = c; at < found.mean.size(); at += result.cases.size()) {
+        row.insert(row.end(), {found.mean[at], found.max[at]});
+      }
+      table.row(result.cases[c], row);
+    }
+  });
+}
+
+}  // namespace
+
+void export_evaluation(TableFolder& folder, const StoredResult& result) {
+  write_solves(folder, result);
+  write_joints(folder, result);
+  if (result.cases.empty()) {
+    write_errors(folder, result);
+    return;
+  }
+  write_case_errors(folder, result);
+  write_case_sums(folder, result);
+}
+
+}  // namespace poesy

@@ -1,0 +1,108 @@
+#include "engine/io/export_tables.h"
+
+namespace poesy {
+namespace {
+
+void write_factors(TableFolder& folder, const StoredResult& result) {
+  const std::vector<std::string> columns{"factor", column("sigma", units_of(result.factors, kSi)),
+                                         column("sigma", units_of(result.factors, kDisplay))};
+  folder.write("factors", columns, [&](CsvTable& table) {
+    for (std::size_t p = 0; p < result.factors.size(); ++p) {
+      const double sigma = result.factor_sigma[p];
+      table.row(result.factors[p].name, std::vector{sigma, sigma / display(result.factors[p].unit).si});
+    }
+  });
+}
+
+std::vector<std::string> global_columns(const StoredResult& result) {
+  std::vector<std::string> columns{"factor"};
+  for (const NamedUnit& response : result.responses) {
+    for (const std::string& unit : {response.unit + " per " + units_of(result.factors, kSi),
+                                    kDisplay(response.unit) + " per " + units_of(result.factors, kDisplay)}) {
+      for (const char* what : {"", "_ci_low", "_ci_high"}) columns.push_back(column(response.name + what, unit));
+    }
+  }
+  return columns;
+}
+
+void write_global(TableFolder& folder, const StoredResult& result) {
+  const SensitivityResult& found = result.sensitivity;
+  folder.write("global", global_columns(result), [&](CsvTable& table) {
+    for (std::size_t p = 0; p < found.factors; ++p) {
+      std::vector<double> row;
+      for (std::size_t r = 0; r < found.responses; ++r) {
+        const std::size_t at = r * found.factors + p;
+        const double to_display = display(result.factors[p].unit).si / display(result.responses[r].unit).si;
+        for (const double scale : {1.0, to_display}) {
+          row.insert(row.end(),
+                     {found.global[at] * scale, found.global_ci_low[at] * scale, found.global_ci_high[at] * scale});
+        }
+      }
+      table.row(result.factors[p].name, row);
+    }
+  });
+}
+
+/// A table with a row for each factor and a column for each pose, from values [P x M].
+void write_cells(TableFolder& folder, const StoredResult& result, const std::string& name,
+                 std::span<const double> values, const std::string& unit) {
+  const std::size_t poses = result.sensitivity.poses;
+  std::vector<std::string> columns{"factor"};
+  for (std::size_t m = 0; m < poses; ++m) columns.push_back(column("pose_" + std::to_string(m), unit));
+  folder.write(name, columns, [&](CsvTable& table) {
+    for (std::size_t p = 0; p < result.factors.size(); ++p) {
+      table.row(result.factors[p].name, values.subspan(p * poses, poses));
+    }
+  });
+}
+
+template <class UnitOf>
+void write_local(TableFolder& folder, const StoredResult& result, const std::string& name,
+                 std::span<const double> values, const UnitOf& unit_of) {
+  const std::size_t cells = result.sensitivity.factors * result.sensitivity.poses;
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const NamedUnit& response = result.responses[r];
+    write_cells(folder, result, name + "_" + response.name, values.subspan(r * cells, cells), unit_of(response));
+  }
+}
+
+template <class Get>
+void write_counts(TableFolder& folder, const StoredResult& result, const std::string& name, const Get& get) {
+  std::vector<double> values;
+  for (const SolveCounts& counts : result.sensitivity.solves) values.push_back(static_cast<double>(get(counts)));
+  write_cells(folder, result, name, values, "1");
+}
+
+void write_solver(TableFolder& folder, const StoredResult& result) {
+  write_counts(folder, result, "not_converged", [](const SolveCounts& counts) { return counts.not_converged(); });
+  write_counts(folder, result, "iterations_mean", [](const SolveCounts& counts) {
+    return static_cast<double>(counts.iterations) / static_cast<double>(counts.total());
+  });
+  write_counts(folder, result, "iterations_max", [](const SolveCounts& counts) { return counts.most_iterations; });
+  for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+    write_counts(folder, result, "solves_" + std::string(kStatusNames[status]),
+                 [status](const SolveCounts& counts) { return counts.by_status[status]; });
+  }
+}
+
+}  // namespace
+
+void export_sensitivity(TableFolder& folder, const StoredResult& result) {
+  const SensitivityResult& found = result.sensitivity;
+  write_factors(folder, result);
+  write_global(folder, result);
+  const auto index_unit = [&](const NamedUnit& response) {
+    return response.unit + " per " + units_of(result.factors, kSi);
+  };
+  const auto response_unit = [](const NamedUnit& response) { return response.unit; };
+  const auto no_unit = [](const NamedUnit&) { return std::string("1"); };
+  write_local(folder, result, "local", found.local, index_unit);
+  write_local(folder, result, "local_ci_low", found.local_ci_low, index_unit);
+  write_local(folder, result, "local_ci_high", found.local_ci_high, index_unit);
+  write_local(folder, result, "count", found.count, no_unit);
+  write_local(folder, result, "mean", found.mean, response_unit);
+  write_local(folder, result, "std", found.std, response_unit);
+  write_solver(folder, result);
+}
+
+}  // namespace poesy

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/io/file_writer.h"
+#include "engine/io/result_file.h"
+
+/// How each kind of result is written as CSV: one source file for each kind.
+namespace poesy {
+
+/// One CSV file that is being written.
+class CsvTable {
+ public:
+  CsvTable(const std::string& path, const std::vector<std::string>& columns);
+
+  /// A line: its first cell as it stands, then numbers; NaN as "NaN".
+  void row(const std::string& first, std::span<const double> rest);
+  /// The file appears under its name.
+  void commit();
+
+ private:
+  void flush();
+
+  FileWriter writer_;
+  std::string text_;
+};
+
+/// The folder of a result's tables.
+class TableFolder {
+ public:
+  explicit TableFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Writes NAME.csv with these columns; fill(table) gives its rows.
+  template <class Fill>
+  void write(const std::string& name, const std::vector<std::string>& columns, const Fill& fill) {
+    const std::string path = (folder_ / (name + ".csv")).string();
+    CsvTable table(path, columns);
+    fill(table);
+    table.commit();
+    files_.push_back(path);
+  }
+
+  const std::vector<std::string>& files() const { return files_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::string> files_;
+};
+
+/// "name [unit]", or the name alone for a pure number.
+std::string column(const std::string& name, const std::string& unit);
+
+/// The unit in which people read an SI unit: "mm" for "m".
+const Unit& display(const std::string& si_unit_name);
+
+/// "m", or "m or rad" where factors differ.
+template <class UnitName>
+std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_name) {
+  std::vector<std::string> seen;
+  for (const NamedUnit& thing : things) {
+    const std::string unit(unit_name(thing.unit));
+    if (std::ranges::find(seen, unit) == seen.end()) seen.push_back(unit);
+  }
+  std::string text;
+  for (const std::string& unit : seen) text += (text.empty() ? "" : " or ") + unit;
+  return text;
+}
+
+inline const auto kSi = [](const std::string& unit) { return unit; };
+inline const auto kDisplay = [](const std::string& unit) { return std::string(display(unit).name); };
+
+void export_sensitivity(TableFolder& folder, const StoredResult& result);
+void export_evaluation(TableFolder& folder, const StoredResult& result);
+void export_identification(TableFolder& folder, const StoredResult& result);
+
+}  // namespace poesy

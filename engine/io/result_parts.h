@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "engine/io/result_builder.h"
+#include "engine/io/result_file.h"
+
+/// How each kind of study is composed into a result file and read back: one source file for each kind.
+namespace poesy {
+
+using Axes = std::vector<std::string>;
+
+/// 0 .. count - 1, the values of an axis that has no names.
+inline std::vector<std::int64_t> positions(std::size_t count) {
+  std::vector<std::int64_t> list(count);
+  std::iota(list.begin(), list.end(), 0);
+  return list;
+}
+
+/// One text of each thing: its name, for instance.
+template <class Things, class Member>
+std::vector<std::string> texts(const Things& things, const Member& member) {
+  std::vector<std::string> list;
+  for (const auto& thing : things) list.emplace_back(std::invoke(member, thing));
+  return list;
+}
+
+template <class Thing>
+std::string unit_of(const Thing& thing) {
+  return std::string(si_unit(thing.dimension));
+}
+
+/// All elements of a dataset that must have as many as its place in the result asks for.
+template <class T>
+std::vector<T> read_exactly(const h5::File& file, const std::string& path, std::size_t count) {
+  if (h5::size(file.shape(path)) != count) throw h5::Error(path + " does not have the shape it should have");
+  return file.read<T>(path);
+}
+
+inline std::size_t axis_length(const h5::File& file, const std::string& name) {
+  return h5::size(file.shape("/" + name));
+}
+
+void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found);
+/// Fills in `sensitivity` and `factor_sigma`.
+void read_sensitivity(const h5::File& file, StoredResult& result);
+
+void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found);
+void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing);
+/// As add_evaluation and add_errors, with axes [case x pose] for [pose x sample], and the sums over the poses.
+void add_cases(ResultBuilder& result, const Study& study, const CaseResult& found);
+/// Fills in `evaluation`, `details`, `joints`, `pairing`, `errors`, `cases` and `case_result`.
+void read_evaluation(const h5::File& file, StoredResult& result);
+
+void add_identification(ResultBuilder& result, const Study& study, const IdentificationResult& found);
+/// Fills in `identification` and `groups`.
+void read_identification(const h5::File& file, StoredResult& result);
+
+}  // namespace poesy

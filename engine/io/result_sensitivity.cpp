@@ -1,0 +1,143 @@
+#include <cmath>
+
+#include "engine/io/result_parts.h"
+
+namespace poesy {
+namespace {
+
+void add_sigma(ResultBuilder& result, const Study& study) {
+  std::vector<double> sigma;
+  for (const FactorIndex factor : study.analysis.factors) {
+    sigma.push_back(study.errors.by_factor[factor.value].standard_deviation());
+  }
+  result.add("/factors/sigma", {"factor"}, sigma,
+             {"SI: factor unit, see /factors/unit", "Standard deviation of the error, as set in the study"});
+}
+
+void add_global_indices(ResultBuilder& result, const SensitivityResult& found) {
+  const Axes axes{"response", "factor"};
+  const std::string unit = "SI: response unit / factor unit";
+  result.add(
+      "/sensitivity/global", axes, found.global,
+      {unit, "Global index: mean over the poses + standard deviation over the poses (Du et al. 2022, Eqs. 53-54)"});
+  result.add("/sensitivity/global_ci_low", axes, found.global_ci_low, {unit, "Lower end of the interval of global"});
+  result.add("/sensitivity/global_ci_high", axes, found.global_ci_high, {unit, "Upper end of the interval of global"});
+}
+
+void add_local_indices(ResultBuilder& result, const SensitivityResult& found) {
+  const Axes axes{"response", "factor", "pose"};
+  const std::string index_unit = "SI: response unit / factor unit";
+  const std::string response_unit = "SI: response unit, see /responses/unit";
+  const std::vector<std::uint64_t> count(found.count.begin(), found.count.end());
+  result.add("/sensitivity/local", axes, found.local,
+             {index_unit, "Index at each pose: sigma(response) / sigma(error) (Du et al. 2022, Eqs. 51-52)"});
+  result.add("/sensitivity/local_ci_low", axes, found.local_ci_low, {index_unit, "Lower end of the interval of local"});
+  result.add("/sensitivity/local_ci_high", axes, found.local_ci_high,
+             {index_unit, "Upper end of the interval of local"});
+  result.add("/sensitivity/count", axes, count, {"1", "Samples behind the index"});
+  result.add("/sensitivity/mean", axes, found.mean, {response_unit, "Mean of the response over the samples"});
+  result.add("/sensitivity/std", axes, found.std,
+             {response_unit, "Standard deviation of the response over the samples"});
+}
+
+void add_indices(ResultBuilder& result, const SensitivityResult& found) {
+  h5::File& file = result.file();
+  file.make_group("/sensitivity");
+  result.show_axes("/sensitivity", {"response", "factor", "pose"});
+  file.set_attribute("/sensitivity", "description",
+                     std::string("Sensitivity of each response to each error: sigma(response) / sigma(error), one "
+                                 "error varying at a time; NaN where undefined"));
+  file.set_attribute("/sensitivity", "conf_level", found.conf_level);
+  add_global_indices(result, found);
+  add_local_indices(result, found);
+  for (const char* interval : {"global_ci_low", "global_ci_high", "local_ci_low", "local_ci_high"}) {
+    file.set_attribute(std::string("/sensitivity/") + interval, "conf_level", found.conf_level);
+  }
+}
+
+template <class T, class Get>
+std::vector<T> each(const std::vector<SolveCounts>& solves, const Get& get) {
+  std::vector<T> values;
+  for (const SolveCounts& cell : solves) values.push_back(get(cell));
+  return values;
+}
+
+void add_solver(ResultBuilder& result, const std::vector<SolveCounts>& solves) {
+  const Axes axes{"factor", "pose"};
+  result.add_axis("status", texts(kStatusNames, std::identity()), {"1", "How a solve ended"});
+  result.file().make_group("/solver");
+  result.show_axes("/solver", {"status", "factor", "pose"});
+  result.add("/solver/not_converged", axes,
+             each<std::uint64_t>(solves, [](auto& cell) { return cell.not_converged(); }),
+             {"1", "Samples that did not reach their fixed point"});
+  result.add(
+      "/solver/iterations_mean", axes,
+      each<double>(solves,
+                   [](auto& cell) { return static_cast<double>(cell.iterations) / static_cast<double>(cell.total()); }),
+      {"1", "Mean number of iterations of a sample"});
+  result.add("/solver/iterations_max", axes,
+             each<std::uint32_t>(solves, [](auto& cell) { return cell.most_iterations; }),
+             {"1", "Most iterations of a sample"});
+  std::vector<std::uint64_t> by_status;
+  for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+    for (const SolveCounts& cell : solves) by_status.push_back(cell.by_status[status]);
+  }
+  result.add("/solver/solves_by_status", {"status", "factor", "pose"}, by_status, {"1", "Samples that ended so"});
+}
+
+std::vector<SolveCounts> read_solves(const h5::File& file, std::size_t cells) {
+  const auto by_status = read_exactly<std::uint64_t>(file, "/solver/solves_by_status", kStatusNames.size() * cells);
+  const auto mean = read_exactly<double>(file, "/solver/iterations_mean", cells);
+  const auto most = read_exactly<std::uint32_t>(file, "/solver/iterations_max", cells);
+  std::vector<SolveCounts> solves(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    SolveCounts& counts = solves[cell];
+    for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+      counts.by_status[status] = by_status[status * cells + cell];
+    }
+    // The mean is the sum over the total, so this gives back the sum exactly; without samples it is NaN.
+    if (counts.total() > 0) {
+      counts.iterations = static_cast<std::uint64_t>(std::llround(mean[cell] * static_cast<double>(counts.total())));
+    }
+    counts.most_iterations = most[cell];
+  }
+  return solves;
+}
+
+SensitivityResult read_indices(const h5::File& file) {
+  SensitivityResult found;
+  found.responses = axis_length(file, "response");
+  found.factors = axis_length(file, "factor");
+  found.poses = axis_length(file, "pose");
+  found.conf_level = file.attribute<double>("/sensitivity", "conf_level").at(0);
+  const std::size_t pairs = found.responses * found.factors;
+  const auto read = [&](const char* name, std::size_t count) {
+    return read_exactly<double>(file, std::string("/sensitivity/") + name, count);
+  };
+  found.local = read("local", pairs * found.poses);
+  found.local_ci_low = read("local_ci_low", pairs * found.poses);
+  found.local_ci_high = read("local_ci_high", pairs * found.poses);
+  found.count = read("count", pairs * found.poses);
+  found.mean = read("mean", pairs * found.poses);
+  found.std = read("std", pairs * found.poses);
+  found.global = read("global", pairs);
+  found.global_ci_low = read("global_ci_low", pairs);
+  found.global_ci_high = read("global_ci_high", pairs);
+  found.solves = read_solves(file, found.factors * found.poses);
+  return found;
+}
+
+}  // namespace
+
+void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
+  add_sigma(result, study);
+  add_indices(result, found);
+  add_solver(result, found.solves);
+}
+
+void read_sensitivity(const h5::File& file, StoredResult& result) {
+  result.factor_sigma = read_exactly<double>(file, "/factors/sigma", result.factors.size());
+  result.sensitivity = read_indices(file);
+}
+
+}  // namespace poesy

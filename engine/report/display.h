@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string_view>
+
+#include "engine/io/result_file.h"
+
+namespace poesy {
+
+/// The dimension of which this is the SI unit; a number for any other.
+Dimension dimension_of(std::string_view si_name);
+
+/// The unit in which people read it: mm for m.
+const Unit& display(const NamedUnit& named);
+
+}  // namespace poesy
