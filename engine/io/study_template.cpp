@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cctype>
 #include <string>
 
 #include "engine/io/study_file.h"
@@ -18,13 +19,19 @@ std::string comment(std::string_view text) {
   return out + "\n";
 }
 
+std::string title(Analysis::Kind kind) {
+  std::string text(name(kind));
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 std::string head(const ModelDescription& model, Analysis::Kind kind) {
   return comment(model.name + ": " + model.title) +
          "# Run this study with: poesy run STUDY.toml\n"
          "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec.\n"
          "# A key behind a '#' shows a default or an alternative.\n" +
          fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}  # optional, free text\n",
-                     quoted(std::string(name(kind)) + " of " + model.name));
+                     quoted(title(kind) + " of " + model.name));
 }
 
 std::string mechanism_section(const ModelDescription& model) {

@@ -1,2 +1,3 @@
 poesy_test(run_test LABELS determinism SOURCES engine/run/runner_test.cpp LINKS poesy_run)
+poesy_test(analysis_test LABELS unit SOURCES engine/run/cases_test.cpp engine/run/identification_test.cpp LINKS poesy_run)
 poesy_test(allocation_test LABELS property SOURCES engine/run/allocation_test.cpp LINKS poesy_run poesy_models)

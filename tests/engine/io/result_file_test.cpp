@@ -8,7 +8,7 @@
 #include "engine/io/study_file.h"
 #include "engine/io/version.h"
 #include "tests/engine/io/example_result.h"
-#include "tests/engine/io/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace poesy::test {
 namespace {

@@ -349,9 +349,6 @@ INSTANTIATE_TEST_SUITE_P(
                  {"poses times factors times samples", "fewer samples"}},
         BadStudy{"SamplesFraction", "samples = 100", "samples = ^100.0", {"analysis.samples is the number 100"}},
         BadStudy{"UnknownKind", "\"sensitivity\"", "^\"sensibility\"", {"did you mean 'sensitivity'?"}},
-        BadStudy{"Identification", "\"sensitivity\"", "^\"identification\"", {"not available yet in this version"}},
-        BadStudy{"Evaluate", "\"sensitivity\"", "^\"evaluate\"", {"not available yet in this version"}},
-        BadStudy{"MonteCarlo", "\"sensitivity\"", "^\"monte-carlo\"", {"not available yet in this version"}},
         BadStudy{"Cases", "samples = 100", "samples = 100\n^cases = []", {"analysis.cases", "\"sensitivity\""}},
         BadStudy{"UnknownSet", "[\"epsilon_1\", \"delta_1\"]", "^\"deformin\"", {"did you mean 'deforming'?"}},
         BadStudy{

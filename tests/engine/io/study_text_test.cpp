@@ -41,7 +41,25 @@ void expect_same(const Study& a, const Study& b) {
   EXPECT_EQ(a.analysis.factors, b.analysis.factors);
   EXPECT_EQ(a.analysis.samples, b.analysis.samples);
   EXPECT_EQ(a.analysis.conf_level, b.analysis.conf_level);
-  EXPECT_EQ(background_errors(a), background_errors(b));
+  EXPECT_EQ(background_errors(a.analysis.background, a.model()), background_errors(b.analysis.background, b.model()));
+  EXPECT_EQ(a.analysis.quantiles, b.analysis.quantiles);
+  EXPECT_EQ(a.analysis.pose_share, b.analysis.pose_share);
+  ASSERT_EQ(a.analysis.cases.size(), b.analysis.cases.size());
+  for (std::size_t c = 0; c < a.analysis.cases.size(); ++c) {
+    EXPECT_EQ(a.analysis.cases[c].name, b.analysis.cases[c].name);
+    EXPECT_EQ(a.analysis.cases[c].errors, b.analysis.cases[c].errors);
+  }
+  ASSERT_EQ(a.analysis.groups.size(), b.analysis.groups.size());
+  for (std::size_t g = 0; g < a.analysis.groups.size(); ++g) {
+    EXPECT_EQ(a.analysis.groups[g].name, b.analysis.groups[g].name);
+    EXPECT_EQ(a.analysis.groups[g].linear, b.analysis.groups[g].linear);
+    EXPECT_EQ(a.analysis.groups[g].angular, b.analysis.groups[g].angular);
+  }
+  ASSERT_EQ(a.analysis.reference.has_value(), b.analysis.reference.has_value());
+  if (a.analysis.reference) {
+    EXPECT_EQ(a.analysis.reference->factor, b.analysis.reference->factor);
+    EXPECT_EQ(a.analysis.reference->tolerance, b.analysis.reference->tolerance);
+  }
   EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
   EXPECT_EQ(a.solver.max_iterations, b.solver.max_iterations);
   EXPECT_EQ(a.not_converged, b.not_converged);
@@ -134,7 +152,7 @@ TEST(ReadableValue, IsExactAndShort) {
 }
 
 TEST(Template, RunsAsItIsAndAsksForTheUsualStudy) {
-  const Study study = study_of(template_text(kCatalog[0]));
+  const Study study = study_of(template_text(kCatalog[0], Analysis::Kind::sensitivity));
   const Study usual = study_of("title = \"Sensitivity of fake\"\n" +
                                shortest_study("[poses]\ncount = 158\n[analysis]\nbackground = { factors = "
                                               "\"benign\", linear = \"1 mm\", angular = \"1 deg\" }\n"));
@@ -148,14 +166,14 @@ TEST(Template, RunsForAModelWithoutSetsAndGeometry) {
   catalog[0].description.workspace_note = "two\nlines";
   catalog[0].build = [](std::span<const double>) { return std::make_unique<test::FakeModel>(); };
   const test::TempFolder folder;
-  const std::string path = folder.write("study.toml", template_text(catalog[0]));
+  const std::string path = folder.write("study.toml", template_text(catalog[0], Analysis::Kind::sensitivity));
   const Study study = read_study(path, catalog, StudyUse::run);
   EXPECT_EQ(study.analysis.factors.size(), 3u);
   EXPECT_FALSE(study.analysis.background);
 }
 
 TEST(Template, NamesEveryKey) {
-  const std::string text = template_text(kCatalog[0]);
+  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
   for (const char* key :
        {"format = ",     "version = ",       "title = ",     "model = ",          "arm = ",           "select = ",
         "count = ",      "workspace = ",     "file = ",      "linear = ",         "angular = ",       "override = ",
