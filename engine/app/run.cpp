@@ -36,7 +36,8 @@ int run(const Options& options) {
   const std::string path = options.result.empty() ? default_result(options.study) : options.result;
   check_result_path(path);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const Plan plan(study, select_poses(study.poses, *model));
+  const SelectedPoses poses = select_poses(study.poses, *model);
+  const Plan plan(study, poses.poses);
   const auto start = std::chrono::steady_clock::now();
   const std::size_t threads = resolved_threads(options.threads);
   std::optional<SensitivityResult> result;
@@ -50,7 +51,7 @@ int run(const Options& options) {
     return kInterrupted;
   }
   const RunFacts facts = run_facts(start, threads, plan.solves());
-  write_sensitivity(path, study, plan.poses(), *result, facts);
+  write_sensitivity(path, study, poses, *result, facts);
   const std::uint64_t failed = result->total().not_converged();
   std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", path, facts.solves,
                          facts.wall_seconds, threads, failed)

@@ -118,9 +118,13 @@ class Exporter {
     for (const NamedUnit& coordinate : result_->pose_coordinates) {
       columns.push_back(column(coordinate.name, coordinate.unit));
     }
+    if (!result_->condition.empty()) columns.push_back("condition");
     write("poses", columns, [&](Table& table) {
       for (std::size_t m = 0; m < result_->poses.size(); ++m) {
-        table.row(std::to_string(m), result_->poses[PoseIndex(m)]);
+        const auto pose = result_->poses[PoseIndex(m)];
+        std::vector<double> row(pose.begin(), pose.end());
+        if (!result_->condition.empty()) row.push_back(result_->condition[m]);
+        table.row(std::to_string(m), row);
       }
     });
   }

@@ -62,7 +62,20 @@ void add_study(ResultBuilder& result, const Study& study) {
   result.add_scalar("/study/text", resolved_text(study), {"1", "The study, every default filled in (TOML)"});
 }
 
-void add_poses(ResultBuilder& result, const ModelDescription& model, const PoseSet& poses) {
+void add_rejected_poses(ResultBuilder& result, const std::vector<RejectedPoses>& rejected) {
+  if (rejected.empty()) return;
+  const auto reasons = texts(rejected, &RejectedPoses::reason);
+  std::vector<std::uint64_t> counts;
+  for (const RejectedPoses& each : rejected) counts.push_back(each.count);
+  result.add_axis("rejection", reasons, {"1", "Why poses were rejected"});
+  result.file().make_group("/poses/rejected");
+  result.show_axes("/poses/rejected", {"rejection"});
+  result.add("/poses/rejected/reason", {"rejection"}, reasons, {"1", "Why poses were rejected"});
+  result.add("/poses/rejected/count", {"rejection"}, counts, {"1", "Candidate poses rejected for this reason"});
+}
+
+void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected) {
+  const PoseSet& poses = selected.poses;
   result.add_axis("pose", positions(poses.size()), {"1", "Number of the pose, from 0"});
   result.file().make_group("/poses");
   const auto names = texts(model.pose_coordinates, &PoseCoordinate::name);
@@ -71,6 +84,9 @@ void add_poses(ResultBuilder& result, const ModelDescription& model, const PoseS
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
     result.add("/poses/" + names[c], {"pose"}, poses.column(c), {unit_of(coordinate), coordinate.description});
   }
+  result.add("/poses/condition", {"pose"}, selected.condition,
+             {"1", "Condition number of the passive joints' Jacobian; infinity at a singular pose"});
+  add_rejected_poses(result, selected.rejected);
 }
 
 void add_factors(ResultBuilder& result, const std::vector<Factor>& factors) {
@@ -198,7 +214,7 @@ void add_details(ResultBuilder& result, const std::vector<Detail>& details, cons
 void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found) {
   const Axes axes{"pose", "sample"};
   result.add_axis("sample", positions(found.samples), {"1", "Number of the sample at each pose, from 0"});
-  result.add_axis("joint", model.joints, {"1", "Name of the joint displacement"});
+  result.add_axis("joint", texts(model.joints, &JointDisplacement::name), {"1", "Name of the joint displacement"});
   result.file().make_group("/evaluate");
   result.show_axes("/evaluate", {"pose", "sample", "joint"});
   const std::size_t cells = found.poses * found.samples;
@@ -268,9 +284,9 @@ void compose_and_write(const std::string& path, const Compose& compose) {
 
 }  // namespace
 
-void write_sensitivity(const std::string& path, const Study& study, const PoseSet& poses,
+void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.size());
+  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
   compose_and_write(path, [&](ResultBuilder& file) {
     add_root(file.file(), result_format::kSensitivity, study);
     add_study(file, study);
@@ -284,9 +300,9 @@ void write_sensitivity(const std::string& path, const Study& study, const PoseSe
   });
 }
 
-void write_evaluation(const std::string& path, const Study& study, const PoseSet& poses, const ErrorTable& errors,
+void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.poses == poses.size());
+  POESY_EXPECTS(result.poses == poses.poses.size());
   compose_and_write(path, [&](ResultBuilder& file) {
     add_root(file.file(), result_format::kEvaluate, study);
     add_study(file, study);
