@@ -43,7 +43,8 @@ double result_megabytes(const Plan& plan, const ModelDescription& model) {
 int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const Plan plan(study, select_poses(study.poses, *model));
+  const SelectedPoses poses = select_poses(study.poses, *model);
+  const Plan plan(study, poses.poses);
   std::fputs(resolved_text(study).c_str(), stdout);
   const std::size_t threads = resolved_threads(0);
   const double seconds =
@@ -55,6 +56,9 @@ int check(const std::string& path) {
                          result_megabytes(plan, model->description()), seconds, threads)
                  .c_str(),
              stdout);
+  for (const RejectedPoses& rejected : poses.rejected) {
+    std::fputs(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason).c_str(), stdout);
+  }
   return kDone;
 }
 

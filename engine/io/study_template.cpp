@@ -45,6 +45,22 @@ std::string mechanism_section(const ModelDescription& model) {
   return text;
 }
 
+/// "count = { z = 5, beta = 5 }".
+std::string grid_example(const ModelDescription& model) {
+  std::string text;
+  for (const PoseCoordinate& coordinate : model.pose_coordinates) {
+    text += fmt::format("{}{} = 5", text.empty() ? "count = { " : ", ", coordinate.name);
+  }
+  return text + " }";
+}
+
+std::string joint_list(const ModelDescription& model) {
+  std::string text = " ";
+  for (const JointDisplacement& joint : model.joints)
+    text += fmt::format(" {} ({})", joint.name, name(joint.dimension));
+  return text;
+}
+
 std::string poses_section(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
@@ -52,16 +68,28 @@ std::string poses_section(const ModelDescription& model) {
   }
   std::string text = "\n[poses]\n";
   text += "# interior: that many points of a Sobol' sequence in the workspace; more poses begin with the same ones\n";
+  text += "# boundary: that many points on the boundary of the feasible part of the workspace, uniform by area\n";
+  text += "# grid: that many points of a regular grid, or all of one with " + grid_example(model) + "\n";
   text += "# file: poses from CSV, first line the names of all pose coordinates, SI units\n";
   text += "select = \"interior\"  # the default\n";
-  text += "count = 158  # required for interior, at least 1\n";
+  text += "count = 158  # required for all but file, at least 1\n";
   text += "# A range [lower, upper] for every pose coordinate. Default: the model's own workspace, shown here.\n";
   for (const PoseCoordinate& coordinate : model.pose_coordinates) {
     text += comment(coordinate.name + ": " + coordinate.description);
   }
   if (!model.workspace_note.empty()) text += comment(model.workspace_note);
   text += "workspace = " + workspace_text(workspace, model, readable_value) + "\n";
-  return text + "# file = \"poses.csv\"  # instead of count and workspace, with select = \"file\"; beside this study\n";
+  if (!model.joints.empty()) {
+    const JointDisplacement& joint = model.joints.front();
+    text += "# Optional: ranges of joint displacements from home, [lower, upper]; other poses are rejected. Joints:\n";
+    text += comment(joint_list(model));
+    text += fmt::format("# limits = {{ {} = {} }}\n", joint.name,
+                        joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]");
+  }
+  text += "max_condition = 1e8  # poses whose condition number is above it are rejected as singular; the default\n";
+  return text +
+         "# file = \"poses.csv\"  # instead of count, workspace, limits and max_condition, with select = \"file\"; "
+         "beside this study\n";
 }
 
 std::string override_example(const ModelDescription& model) {

@@ -37,7 +37,9 @@ class Example {
       const double step = static_cast<double>(m);
       coordinates.insert(coordinates.end(), {-0.25 + step / 64.0, step / 8.0, -step / 4.0});
     }
-    poses = PoseSet(3, coordinates);
+    poses.poses = PoseSet(3, coordinates);
+    poses.condition = {4.0, 4.5, 5.0, std::numeric_limits<double>::infinity()};
+    poses.rejected = {{"q_1 above 250 mm", 12}, {"out of reach: z must be negative", 3}};
     facts = {.created = "2024-05-06T07:08:09Z",
              .host = "somewhere",
              .cpu = "a processor",
@@ -103,7 +105,7 @@ class Example {
   }
 
   Study study;
-  PoseSet poses;
+  SelectedPoses poses;
   RunFacts facts;
 
  private:

@@ -89,7 +89,7 @@ TEST(Allocation, NoneInAWarmBlockSolver) {
 std::size_t allocations_per_unit(std::size_t samples) {
   const Study study = bench::published_study(4, samples);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const Plan plan(study, select_poses(study.poses, *model));
+  const Plan plan(study, select_poses(study.poses, *model).poses);
   UnitEvaluator evaluate(plan, *model);
   const auto evaluate_all = [&] {
     for (std::size_t u = 0; u < plan.units(); ++u) evaluate(plan.unit(u));
