@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "engine/random/distribution.h"
 #include "engine/random/low_discrepancy.h"
@@ -19,14 +21,43 @@ constexpr double kGoldenRatio = 0.6180339887498949;
 
 using Vector = std::vector<double>;
 
-double dot(const Vector& a, const Vector& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
+double dot(std::span<const double> a, std::span<const double> b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
 
-/// Scales to this length. Returns false when the vector has no direction but rounding.
-bool scale_to(double length, Vector& vector) {
-  const double norm = std::sqrt(dot(vector, vector));
-  if (!(norm > kRounding)) return false;
-  for (double& value : vector) value *= length / norm;
-  return true;
+/// Number of uniforms that unit_vector() takes in n dimensions.
+std::size_t uniforms_for(std::size_t n) { return n <= 3 ? n - 1 : n; }
+
+/// A vector uniform on the unit sphere, [n], from uniforms [uniforms_for(n)]; in one dimension always 1. As few
+/// uniforms as possible where there is a closed form, because a low-discrepancy sequence is more even in fewer
+/// dimensions.
+void unit_vector(std::span<const double> uniforms, std::span<double> vector) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  if (vector.size() == 1) {
+    vector[0] = 1.0;
+  } else if (vector.size() == 2) {
+    vector[0] = std::cos(kTurn * uniforms[0]);
+    vector[1] = std::sin(kTurn * uniforms[0]);
+  } else if (vector.size() == 3) {
+    vector[2] = 2.0 * uniforms[0] - 1.0;
+    const double radius = std::sqrt(1.0 - vector[2] * vector[2]);
+    vector[0] = radius * std::cos(kTurn * uniforms[1]);
+    vector[1] = radius * std::sin(kTurn * uniforms[1]);
+  } else {
+    static const Distribution kNormal = Distribution::normal(1.0);
+    for (std::size_t c = 0; c < vector.size(); ++c) vector[c] = kNormal.quantile(uniforms[c]);
+    const double norm = std::sqrt(dot(vector, vector));
+    for (double& value : vector) value /= norm;
+  }
+}
+
+/// Turns a vector across the last axis into one across this unit vector, by the reflection that exchanges both lines.
+/// Precondition: the vector's last entry is 0.
+void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector) {
+  const double last = unit.back();
+  const double factor = dot(unit, vector) / (1.0 + std::abs(last));
+  for (std::size_t c = 0; c < vector.size(); ++c) vector[c] -= factor * unit[c];
+  vector.back() -= (last < 0.0 ? -factor : factor);
 }
 
 /// The part of a line inside the unit cube.
@@ -85,24 +116,20 @@ class Chord {
 class Lines {
  public:
   explicit Lines(std::size_t coordinates)
-      : sequence_(2 * coordinates + 1), uniform_(2 * coordinates + 1), direction_(coordinates), point_(coordinates) {}
+      : uniform_(coordinates == 1 ? 1 : uniforms_for(coordinates) + uniforms_for(coordinates - 1) + 1),
+        sequence_(uniform_.size()),
+        direction_(coordinates),
+        point_(coordinates) {}
 
   /// The next line's part in the cube; nothing when it misses. Valid until the next call.
   std::optional<Chord> next() {
     sequence_.next(uniform_);
     shift();
     const std::size_t coordinates = direction_.size();
-    for (std::size_t c = 0; c < coordinates; ++c) {
-      direction_[c] = normal_.quantile(uniform_[c]);
-      point_[c] = normal_.quantile(uniform_[coordinates + c]);
-    }
-    if (!scale_to(1.0, direction_)) return std::nullopt;
-    const double along = dot(point_, direction_);
-    for (std::size_t c = 0; c < coordinates; ++c) point_[c] -= along * direction_[c];
-    if (!scale_to(offset(), point_)) {
-      if (coordinates > 1) return std::nullopt;
-      point_[0] = 0.0;
-    }
+    uniform_[0] *= 0.5;  // half of the sphere: a line has no sign
+    unit_vector(uniform_, direction_);
+    point_.assign(coordinates, 0.0);
+    if (coordinates > 1) set_offset();
     for (double& value : point_) value += 0.5;
     return Chord::through(point_, direction_);
   }
@@ -120,15 +147,23 @@ class Lines {
 
   static double fraction(double value) { return value - std::floor(value); }
 
-  /// Distance from the cube's centre: uniform in the ball of dimension C - 1 around the cube.
-  double offset() const {
-    const auto coordinates = static_cast<double>(direction_.size());
-    return 0.5 * std::sqrt(coordinates) * std::pow(uniform_.back(), 1.0 / std::max(coordinates - 1.0, 1.0));
+  /// The point nearest to the centre: uniform in a ball across the direction that covers the cube.
+  void set_offset() {
+    const std::size_t across = direction_.size() - 1;
+    const std::span<double> offset = std::span(point_).first(across);
+    const double radius = 0.5 * std::sqrt(static_cast<double>(direction_.size()));
+    const double u = uniform_.back();
+    if (across == 1) {
+      offset[0] = radius * (2.0 * u - 1.0);
+    } else {
+      unit_vector(std::span(uniform_).subspan(uniforms_for(direction_.size())), offset);
+      for (double& value : offset) value *= radius * std::pow(u, 1.0 / static_cast<double>(across));
+    }
+    reflect_last_axis_to(direction_, point_);
   }
 
-  Distribution normal_ = Distribution::normal(1.0);
-  SobolSequence sequence_;
   Vector uniform_;
+  SobolSequence sequence_;
   Vector direction_;
   Vector point_;
 };
