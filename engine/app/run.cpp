@@ -75,6 +75,14 @@ std::optional<SolveCounts> run_cases_study(const Job& job) {
   return solves;
 }
 
+std::optional<SolveCounts> run_monte_carlo_study(const Job& job) {
+  const Plan plan(job.study, job.poses.poses);
+  const auto result = run_monte_carlo(plan, job.model, job.study.analysis, job.options);
+  if (!result) return std::nullopt;
+  write_monte_carlo(job.path, job.study, job.poses, *result, job.facts(result->total()));
+  return result->total();
+}
+
 std::optional<SolveCounts> run_study(const Job& job) {
   switch (job.study.analysis.kind) {
     case Analysis::Kind::sensitivity:
@@ -86,7 +94,7 @@ std::optional<SolveCounts> run_study(const Job& job) {
     case Analysis::Kind::monte_carlo:
       break;
   }
-  throw InputError({.file = job.path}, "no monte-carlo yet", "wait");
+  return run_monte_carlo_study(job);
 }
 
 /// Says what came out; the exit code.

@@ -64,6 +64,17 @@ const Unit& display(const std::string& si_unit_name) {
   return display_unit(Dimension::number);
 }
 
+void write_factors(TableFolder& folder, const StoredResult& result) {
+  const std::vector<std::string> columns{"factor", column("sigma", units_of(result.factors, kSi)),
+                                         column("sigma", units_of(result.factors, kDisplay))};
+  folder.write("factors", columns, [&](CsvTable& table) {
+    for (std::size_t p = 0; p < result.factors.size(); ++p) {
+      const double sigma = result.factor_sigma[p];
+      table.row(result.factors[p].name, std::vector{sigma, sigma / display(result.factors[p].unit).si});
+    }
+  });
+}
+
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder) {
   const StoredResult result = read_result(result_path);
   std::error_code error;
@@ -75,6 +86,8 @@ std::vector<std::string> export_tables(const std::string& result_path, const std
     export_sensitivity(tables, result);
   } else if (result.kind == result_format::kIdentification) {
     export_identification(tables, result);
+  } else if (result.kind == result_format::kMonteCarlo) {
+    export_monte_carlo(tables, result);
   } else {
     export_evaluation(tables, result);
   }

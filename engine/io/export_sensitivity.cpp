@@ -3,17 +3,6 @@
 namespace poesy {
 namespace {
 
-void write_factors(TableFolder& folder, const StoredResult& result) {
-  const std::vector<std::string> columns{"factor", column("sigma", units_of(result.factors, kSi)),
-                                         column("sigma", units_of(result.factors, kDisplay))};
-  folder.write("factors", columns, [&](CsvTable& table) {
-    for (std::size_t p = 0; p < result.factors.size(); ++p) {
-      const double sigma = result.factor_sigma[p];
-      table.row(result.factors[p].name, std::vector{sigma, sigma / display(result.factors[p].unit).si});
-    }
-  });
-}
-
 std::vector<std::string> global_columns(const StoredResult& result) {
   std::vector<std::string> columns{"factor"};
   for (const NamedUnit& response : result.responses) {

@@ -73,8 +73,12 @@ std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_
 inline const auto kSi = [](const std::string& unit) { return unit; };
 inline const auto kDisplay = [](const std::string& unit) { return std::string(display(unit).name); };
 
+/// factors.csv: the standard deviation of each error.
+void write_factors(TableFolder& folder, const StoredResult& result);
+
 void export_sensitivity(TableFolder& folder, const StoredResult& result);
 void export_evaluation(TableFolder& folder, const StoredResult& result);
 void export_identification(TableFolder& folder, const StoredResult& result);
+void export_monte_carlo(TableFolder& folder, const StoredResult& result);
 
 }  // namespace poesy

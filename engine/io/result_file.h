@@ -27,6 +27,10 @@ void write_cases(const std::string& path, const Study& study, const SelectedPose
 void write_identification(const std::string& path, const Study& study, const SelectedPoses& poses,
                           const IdentificationResult& result, const RunFacts& facts);
 
+/// Writes the result of a Monte Carlo study, in the same way.
+void write_monte_carlo(const std::string& path, const Study& study, const SelectedPoses& poses,
+                       const MonteCarloResult& result, const RunFacts& facts);
+
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
 /// folder does not exist or something other than a plain file stands there, FileError when the folder cannot be
 /// written.
@@ -63,6 +67,7 @@ struct StoredResult {
   CaseResult case_result;          ///< its sums over the poses; its `evaluation` is empty, see above
   IdentificationResult identification;
   std::vector<ErrorSize> groups;  ///< of the identification
+  MonteCarloResult monte_carlo;
   RunFacts facts;
 };
 
@@ -101,6 +106,12 @@ Verification verify_result(const std::string& path);
 ///     identification.csv   factor | verdicts of the single and of both stages, over all groups and for each
 ///     single_below.csv     factor | poses; like it: single_max, not_solved, coupled_below, coupled_reduced
 ///     couplings.csv        coupling | group, first and second factor (rows of identification.csv, from 0), poses
+///
+/// Tables of a Monte Carlo result: poses.csv, factors.csv and
+///
+///     monte_carlo_RESPONSE.csv   pose | mean, mean_ci_low, mean_ci_high, std, min, max, count, q_0.05 ... (quantiles)
+///     overall.csv                response | mean, std, min, max, count, q_0.05 ... over the samples of all poses, SI
+///     not_converged.csv          pose | not_converged, iterations_mean, iterations_max, solves_STATUS
 ///
 /// Returns the paths of the files written. Throws FileError.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);

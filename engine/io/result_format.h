@@ -14,6 +14,7 @@ inline constexpr std::int64_t kMinor = 0;
 inline constexpr std::string_view kSensitivity = "sensitivity";
 inline constexpr std::string_view kEvaluate = "evaluate";
 inline constexpr std::string_view kIdentification = "identification";
+inline constexpr std::string_view kMonteCarlo = "monte-carlo";
 
 inline constexpr std::string_view kRowByRow = "row-by-row";
 inline constexpr std::string_view kEveryPoseWithEveryRow = "every-pose-with-every-row";

@@ -44,6 +44,12 @@ inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
+/// The standard deviations of the errors that the study varies: /factors/sigma.
+void add_sigma(ResultBuilder& result, const Study& study);
+/// How the solves ended, with the counts of each cell along these axes: /solver.
+void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
+std::vector<SolveCounts> read_solver(const h5::File& file, std::size_t cells);
+
 void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found);
 /// Fills in `sensitivity` and `factor_sigma`.
 void read_sensitivity(const h5::File& file, StoredResult& result);
@@ -58,5 +64,9 @@ void read_evaluation(const h5::File& file, StoredResult& result);
 void add_identification(ResultBuilder& result, const Study& study, const IdentificationResult& found);
 /// Fills in `identification` and `groups`.
 void read_identification(const h5::File& file, StoredResult& result);
+
+void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarloResult& found);
+/// Fills in `monte_carlo` and `factor_sigma`.
+void read_monte_carlo(const h5::File& file, StoredResult& result);
 
 }  // namespace poesy

@@ -141,6 +141,8 @@ StoredResult read_all(const h5::File& file) {
     read_evaluation(file, result);
   } else if (result.kind == result_format::kIdentification) {
     read_identification(file, result);
+  } else if (result.kind == result_format::kMonteCarlo) {
+    read_monte_carlo(file, result);
   } else {
     throw h5::Error("its kind '" + result.kind + "' is unknown");
   }

@@ -13,12 +13,6 @@
 namespace poesy {
 namespace {
 
-std::string count_text(std::uint64_t count) {
-  std::string digits = std::to_string(count);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
-  return digits;
-}
-
 /// The responses worth a column: those with a dimension, or all when none has one.
 std::vector<std::size_t> shown_responses(const StoredResult& result, std::size_t first) {
   std::vector<std::size_t> shown{first};
@@ -72,6 +66,7 @@ std::size_t response_named(const StoredResult& result, std::string_view name) {
 SolveCounts all_solves(const StoredResult& result) {
   if (result.kind == "sensitivity") return result.sensitivity.total();
   if (result.kind == "identification") return result.identification.solves;
+  if (result.kind == "monte-carlo") return result.monte_carlo.total();
   return result.evaluation.total();
 }
 
@@ -85,6 +80,12 @@ Dimension dimension_of(std::string_view si_name) {
 }
 
 const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
+
+std::string count_text(std::uint64_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
+  return digits;
+}
 
 std::string summary_text(const StoredResult& result) {
   const SolveCounts solves = all_solves(result);
@@ -170,6 +171,7 @@ std::string evaluation_table(const StoredResult& result) {
 std::string result_tables(const StoredResult& result, std::string_view ranked_by) {
   if (result.kind == "sensitivity") return ranked_table(result, ranked_by);
   if (result.kind == "identification") return identification_table(result);
+  if (result.kind == "monte-carlo") return monte_carlo_table(result);
   return result.cases.empty() ? evaluation_table(result) : cases_table(result);
 }
 

@@ -30,6 +30,10 @@ std::string cases_table(const StoredResult& result);
 /// the couplings.
 std::string identification_table(const StoredResult& result);
 
+/// Per response of a Monte Carlo result, mean, spread, extremes and quantiles over the samples of all poses together;
+/// then the mean of the poses' means, and the largest mean and highest quantile with the pose where it is.
+std::string monte_carlo_table(const StoredResult& result);
+
 /// The tables that suit the result's kind. ranked_by is a response of the result.
 std::string result_tables(const StoredResult& result, std::string_view ranked_by);
 

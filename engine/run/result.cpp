@@ -4,6 +4,15 @@
 #include <numeric>
 
 namespace poesy {
+namespace {
+
+SolveCounts sum_of(const std::vector<SolveCounts>& cells) {
+  SolveCounts sum;
+  for (const SolveCounts& cell : cells) sum.merge(cell);
+  return sum;
+}
+
+}  // namespace
 
 std::uint64_t SolveCounts::total() const {
   return std::accumulate(by_status.begin(), by_status.end(), std::uint64_t{0});
@@ -29,11 +38,9 @@ void SolveCounts::merge(const SolveCounts& other) {
   most_iterations = std::max(most_iterations, other.most_iterations);
 }
 
-SolveCounts SensitivityResult::total() const {
-  SolveCounts sum;
-  for (const SolveCounts& cell : solves) sum.merge(cell);
-  return sum;
-}
+SolveCounts SensitivityResult::total() const { return sum_of(solves); }
+
+SolveCounts MonteCarloResult::total() const { return sum_of(solves); }
 
 SolveCounts EvaluationResult::total() const {
   SolveCounts sum;

@@ -45,6 +45,35 @@ struct SensitivityResult {
   SolveCounts total() const;
 };
 
+/// What a Monte Carlo study found, all errors varying together: R responses, M poses, Q quantiles; SI; NaN where
+/// undefined. The overall numbers are over the samples of all poses together.
+struct MonteCarloResult {
+  std::size_t responses = 0;
+  std::size_t poses = 0;
+  double conf_level = 0.95;
+  double quantile_relative_error = 0.0;  ///< bound on |quantile - order statistic| / |order statistic|
+  std::vector<double> levels;            ///< [Q] share of the samples below each quantile
+
+  std::vector<double> mean;          ///< [R x M]
+  std::vector<double> mean_ci_low;   ///< [R x M]
+  std::vector<double> mean_ci_high;  ///< [R x M]
+  std::vector<double> std;           ///< [R x M]
+  std::vector<double> min;           ///< [R x M]
+  std::vector<double> max;           ///< [R x M]
+  std::vector<std::uint64_t> count;  ///< [R x M] samples behind these
+  std::vector<double> quantiles;     ///< [R x M x Q]
+
+  std::vector<double> overall_mean;          ///< [R]
+  std::vector<double> overall_std;           ///< [R]
+  std::vector<double> overall_min;           ///< [R]
+  std::vector<double> overall_max;           ///< [R]
+  std::vector<std::uint64_t> overall_count;  ///< [R]
+  std::vector<double> overall_quantiles;     ///< [R x Q]
+  std::vector<SolveCounts> solves;           ///< [M]
+
+  SolveCounts total() const;
+};
+
 /// What `evaluate` found for M poses and S samples each (S = 1 when paired): SI.
 struct EvaluationResult {
   std::size_t poses = 0;

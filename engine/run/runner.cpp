@@ -1,66 +1,15 @@
 #include "engine/run/runner.h"
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_pipeline.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <thread>
-#include <type_traits>
 
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/handover.h"
+#include "engine/run/monte_carlo.h"
+#include "engine/run/run_in_order.h"
 #include "engine/run/sensitivity.h"
 
 namespace poesy {
 namespace {
-
-namespace tbb = oneapi::tbb;
-
-bool stopped(const RunOptions& options) {
-  return options.stop != nullptr && options.stop->load(std::memory_order_relaxed);
-}
-
-/// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, each with its own worker, and finish(n, output)
-/// in the order of n. A few outputs per thread are in flight at any time. Returns false when stopped.
-template <class MakeWorker, class Work, class Finish>
-bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish) {
-  using Worker = std::invoke_result_t<MakeWorker>;
-  using Output = std::invoke_result_t<Work, Worker&, std::size_t>;
-  const std::size_t threads = resolved_threads(options.threads);
-  const std::size_t in_flight = 4 * threads;
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  tbb::task_arena arena(static_cast<int>(threads));
-  tbb::enumerable_thread_specific<Worker> workers(make_worker);
-  // The pipeline finishes in order with at most in_flight numbers under way, so no two of those share a slot.
-  std::vector<Output> outputs(in_flight);
-  std::size_t next = 0;
-  std::size_t finished = 0;
-  const handover::Task start([&](tbb::flow_control& control) -> std::size_t {
-    if (next == count || stopped(options)) {
-      control.stop();
-      return 0;
-    }
-    return next++;
-  });
-  const handover::Task solve([&](std::size_t n) {
-    outputs[n % in_flight] = work(workers.local(), n);
-    return n;
-  });
-  const handover::Task collect([&](std::size_t n) {
-    finish(n, outputs[n % in_flight]);
-    ++finished;
-  });
-  arena.execute([&] {
-    tbb::parallel_pipeline(in_flight,
-                           tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, start) &
-                               tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, solve) &
-                               tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, collect));
-  });
-  handover::receive();
-  return finished == count;
-}
 
 /// Rows that are solved in one go at one pose.
 constexpr std::size_t kBlockRows = 256;
@@ -140,22 +89,6 @@ EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std:
   return result;
 }
 
-/// Reports progress after each finished piece of work.
-class ProgressCounter {
- public:
-  ProgressCounter(std::uint64_t total, const RunOptions& options) : options_(&options) { progress_.total = total; }
-
-  void add(const SolveCounts& solves) {
-    progress_.solves += solves.total();
-    progress_.not_converged += solves.not_converged();
-    if (options_->progress) options_->progress(progress_);
-  }
-
- private:
-  const RunOptions* options_;
-  Progress progress_;
-};
-
 }  // namespace
 
 std::size_t resolved_threads(std::size_t threads) {
@@ -176,6 +109,21 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
       });
   if (!complete) return std::nullopt;
   return sensitivity_result(plan, cells, conf_level);
+}
+
+std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
+                                                const RunOptions& options) {
+  MonteCarloCollector collect(plan, model.description().responses.size(), analysis);
+  ProgressCounter counter(plan.solves(), options);
+  const bool complete = run_in_order(
+      plan.units(), options, [&] { return PoseUnitEvaluator(plan, model); },
+      [&](PoseUnitEvaluator& evaluate, std::size_t u) { return evaluate(plan.unit(u)); },
+      [&](std::size_t u, const PoseUnit& found) {
+        collect.add(plan.unit(u).pose, found);
+        counter.add(found.solves);
+      });
+  if (!complete) return std::nullopt;
+  return std::move(collect).result();
 }
 
 std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,

@@ -36,6 +36,12 @@ std::size_t resolved_threads(std::size_t threads);
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
 
+/// Runs a Monte Carlo study on a pool of threads: as run_sensitivity, and memory does not grow with the number of
+/// samples either; a pose's samples are dropped once its quantiles are known. Of the analysis it takes conf_level and
+/// quantiles.
+std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
+                                                const RunOptions& options);
+
 /// Errors that somebody else sampled: S rows of V factors.
 struct ErrorTable {
   std::vector<FactorIndex> factors;  ///< [V]

@@ -2,15 +2,10 @@
 
 #include <span>
 
+#include "engine/stats/interval.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
-
-/// A confidence interval; NaN at both ends where there are too few samples.
-struct Interval {
-  double low;
-  double high;
-};
 
 /// An estimate with its interval.
 struct Estimate {

@@ -11,6 +11,7 @@ Plan::Plan(const Study& study, PoseSet poses)
     : poses_(std::move(poses)),
       factors_(study.analysis.factors),
       background_(background_errors(study.analysis.background, study.model())),
+      slots_(study.analysis.kind == Analysis::Kind::monte_carlo ? 1 : factors_.size()),
       samples_(study.analysis.samples),
       units_per_cell_((samples_ + kUnitSamples - 1) / kUnitSamples),
       seed_(study.seed),
@@ -29,7 +30,7 @@ WorkUnit Plan::unit(std::size_t u) const {
 }
 
 std::uint64_t Plan::solves() const {
-  return std::uint64_t{factors_.size()} * std::uint64_t{poses_.size()} * std::uint64_t{samples_};
+  return std::uint64_t{slots_} * std::uint64_t{poses_.size()} * std::uint64_t{samples_};
 }
 
 }  // namespace poesy

@@ -12,15 +12,16 @@
 
 namespace poesy {
 
-/// The smallest piece of work that is scheduled: consecutive samples of one varied factor at one pose.
+/// The smallest piece of work that is scheduled: consecutive samples of one slot at one pose.
 struct WorkUnit {
-  std::size_t slot;  ///< position of the factor among the plan's varied factors
+  std::size_t slot;  ///< position of the varied factor among the plan's factors; 0 where all vary together
   PoseIndex pose;
   SampleIndex first;
   std::size_t count;
 };
 
-/// A sensitivity study, expanded: an immutable table of work units in the order in which they are merged.
+/// A study of sampled errors, expanded: an immutable table of work units in the order in which they are merged. In a
+/// sensitivity study each factor is a slot, for it varies alone; in a Monte Carlo study one slot holds all factors.
 /// The table depends on the study alone, never on threads or ranks.
 class Plan {
  public:
@@ -29,15 +30,16 @@ class Plan {
 
   Plan(const Study& study, PoseSet poses);
 
-  std::size_t units() const { return factors_.size() * poses_.size() * units_per_cell_; }
-  /// Unit u: factor by factor, pose by pose, samples in order.
+  std::size_t slots() const { return slots_; }
+  std::size_t units() const { return slots_ * poses_.size() * units_per_cell_; }
+  /// Unit u: slot by slot, pose by pose, samples in order.
   WorkUnit unit(std::size_t u) const;
 
   std::size_t samples() const { return samples_; }
   std::uint64_t seed() const { return seed_; }
   const PoseSet& poses() const { return poses_; }
   std::span<const FactorIndex> factors() const { return factors_; }
-  /// Distribution of each varied factor, [slots].
+  /// Distribution of each varied factor, in the order of factors().
   std::span<const Distribution> distributions() const { return distributions_; }
   /// Constant errors, [F].
   std::span<const double> background() const { return background_; }
@@ -50,6 +52,7 @@ class Plan {
   std::vector<FactorIndex> factors_;
   std::vector<Distribution> distributions_;
   std::vector<double> background_;
+  std::size_t slots_;
   std::size_t samples_;
   std::size_t units_per_cell_;
   std::uint64_t seed_;

@@ -1,4 +1,4 @@
-# Joins published.csv with the exports of the three runs, whose folders are named converged, included and excluded.
+# Joins table10.csv with the exports of the three runs, whose folders are named converged, included and excluded.
 BEGIN {
   FS = ","
   REFERENCE = "epsilon_1_1_z"  # the error that Table 10 sets to 1 degree

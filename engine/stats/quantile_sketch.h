@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace poesy {
+
+/// Quantiles of a stream of numbers without keeping them: a histogram whose buckets are the numbers' own leading bits,
+/// which are sign, exponent and the first eight bits of the fraction. Counts are whole numbers, so merging is exact and
+/// neither the order of merging nor how the stream was cut into pieces changes a bit.
+/// Memory: 8 bytes for each bucket between the smallest and the largest magnitude seen of either sign, 256 buckets for
+/// each factor of two; at most 4.2 MB a sign, whatever the numbers are.
+class QuantileSketch {
+ public:
+  /// quantile(q) differs from the order statistic it stands for by at most this part of it. Exact for zero, and for the
+  /// extremes; numbers below 2^-1022 in magnitude (subnormal) are taken for zero.
+  static constexpr double kRelativeError = 0x1p-9;
+
+  /// Precondition: all values are finite.
+  void add(std::span<const double> values);
+  void merge(const QuantileSketch& other);
+
+  std::uint64_t count() const;
+  /// Exact; NaN when empty.
+  double min() const { return count() == 0 ? std::numeric_limits<double>::quiet_NaN() : min_; }
+  double max() const { return count() == 0 ? std::numeric_limits<double>::quiet_NaN() : max_; }
+  /// The order statistic of rank k, the smallest k >= 1 with k / n >= q: the inverse of the empirical distribution
+  /// function, rank ceil(q n), to kRelativeError. NaN when empty. Precondition: 0 <= q <= 1.
+  double quantile(double q) const;
+
+ private:
+  /// Counts of the buckets first, first + 1, ... of one sign; a bucket is numbered by the leading bits of a magnitude.
+  struct Store {
+    std::size_t first = 0;
+    std::uint64_t total = 0;
+    std::vector<std::uint64_t> counts;
+
+    /// Makes room for the buckets from lowest to highest.
+    void reach(std::size_t lowest, std::size_t highest);
+    void merge(const Store& other);
+    /// The middle of the bucket that holds rank k of the magnitudes, k = 1 for the smallest.
+    double magnitude(std::uint64_t k) const;
+  };
+
+  Store negative_;
+  Store positive_;
+  std::uint64_t zeros_ = 0;
+  double min_ = std::numeric_limits<double>::infinity();
+  double max_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace poesy
