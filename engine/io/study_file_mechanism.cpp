@@ -88,11 +88,12 @@ void read_count(const StudyValue& value, const ModelDescription& model, PoseSele
   std::int64_t product = 1;
   for (const PoseCoordinate& coordinate : model.pose_coordinates) {
     const StudyValue own = section.require(coordinate.name, "give a number for every pose coordinate of the model");
-    product *= own.whole_number(1, kMostPoses);
+    const std::int64_t number = own.whole_number(1, kMostPoses);
+    selection.grid_counts.push_back(static_cast<std::size_t>(number));
+    product *= number;
     if (product > kMostPoses) {
       value.fail("makes a grid of more than " + std::to_string(kMostPoses) + " poses", "write smaller numbers");
     }
-    selection.grid_counts.push_back(static_cast<std::size_t>(own.whole_number(1, kMostPoses)));
   }
   selection.count = static_cast<std::size_t>(product);
 }

@@ -56,8 +56,9 @@ std::string grid_example(const ModelDescription& model) {
 
 std::string joint_list(const ModelDescription& model) {
   std::string text = " ";
-  for (const JointDisplacement& joint : model.joints)
+  for (const JointDisplacement& joint : model.joints) {
     text += fmt::format(" {} ({})", joint.name, name(joint.dimension));
+  }
   return text;
 }
 
@@ -86,7 +87,7 @@ std::string poses_section(const ModelDescription& model) {
     text += fmt::format("# limits = {{ {} = {} }}\n", joint.name,
                         joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]");
   }
-  text += "max_condition = 1e8  # poses whose condition number is above it are rejected as singular; the default\n";
+  text += "# max_condition = 1e8  # poses whose condition number is above it are rejected as singular; the default\n";
   return text +
          "# file = \"poses.csv\"  # instead of count, workspace, limits and max_condition, with select = \"file\"; "
          "beside this study\n";
