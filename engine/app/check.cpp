@@ -1,59 +1,146 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
 #include "engine/io/study_file.h"
+#include "engine/run/cases.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/identification.h"
+#include "engine/run/monte_carlo.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"
 
 namespace poesy::app {
 namespace {
 
-/// Solves per second of one thread, measured on units spread over the plan for about a quarter of a second.
-double measured_rate(const Plan& plan, const Model& model) {
+/// What a study will ask of this machine.
+struct Outlook {
+  std::string solves;     ///< their number, and what it is the product of
+  std::size_t bytes;      ///< of the result
+  double thread_seconds;  ///< that one thread would take
+};
+
+/// Runs pieces of a study for about a quarter of a second. run_piece(at) runs one that stands at this share of the
+/// study, 0 <= at < 1, and gives the share of the whole that it was.
+template <class RunPiece>
+double measured_seconds(const RunPiece& run_piece) {
   using Clock = std::chrono::steady_clock;
-  constexpr std::size_t kProbes = 64;
-  UnitEvaluator evaluate(plan, model);
+  constexpr std::size_t kPieces = 64;
   const auto start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  std::uint64_t solves = 0;
-  for (std::size_t n = 0; n < kProbes && elapsed() < 0.25; ++n) {
-    // The golden ratio spreads any number of probes evenly over the table.
+  double done = 0.0;
+  for (std::size_t n = 0; n < kPieces && elapsed() < 0.25; ++n) {
+    // The golden ratio spreads any number of pieces evenly.
     const double at = static_cast<double>(n) * 0.6180339887498949;
-    WorkUnit unit = plan.unit(static_cast<std::size_t>((at - static_cast<double>(static_cast<std::size_t>(at))) *
-                                                       static_cast<double>(plan.units())));
-    unit.count = std::min<std::size_t>(unit.count, 200);
-    solves += evaluate(unit).solves.total();
+    done += run_piece(at - std::floor(at));
   }
-  return static_cast<double>(solves) / elapsed();
+  return elapsed() / done;
 }
 
-double result_megabytes(const Plan& plan, const ModelDescription& model) {
-  const std::size_t cells = plan.factors().size() * plan.poses().size();
+template <class Evaluate>
+double sampling_seconds(const Plan& plan, Evaluate evaluate) {
+  return measured_seconds([&](double at) {
+    WorkUnit unit = plan.unit(static_cast<std::size_t>(at * static_cast<double>(plan.units())));
+    unit.count = std::min<std::size_t>(unit.count, 200);
+    return static_cast<double>(evaluate(unit).solves.total()) / static_cast<double>(plan.solves());
+  });
+}
+
+Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const Plan plan(study, poses);
+  const std::size_t cells = plan.factors().size() * poses.size();
   const std::size_t per_response = sizeof(Moments) + 6 * sizeof(double);
-  return static_cast<double>(cells *
-                             (model.responses.size() * per_response + sizeof(UnitStats) + sizeof(SolveCounts))) /
-         1e6;
+  return {fmt::format("{} errors x {} poses x {} samples = {} solves", plan.factors().size(), poses.size(),
+                      plan.samples(), plan.solves()),
+          cells * (study.model().responses.size() * per_response + sizeof(UnitStats) + sizeof(SolveCounts)),
+          sampling_seconds(plan, UnitEvaluator(plan, model))};
+}
+
+Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const Plan plan(study, poses);
+  const std::size_t per_response = (7 + study.analysis.quantiles.size()) * sizeof(double);
+  return {fmt::format("{} poses x {} samples of {} errors together = {} solves", poses.size(), plan.samples(),
+                      plan.factors().size(), plan.solves()),
+          poses.size() * (study.model().responses.size() * per_response + sizeof(SolveCounts)),
+          sampling_seconds(plan, PoseUnitEvaluator(plan, model))};
+}
+
+/// Bytes that an evaluation of this many rows at each pose keeps.
+std::size_t evaluation_bytes(const ModelDescription& model, std::size_t poses, std::size_t rows) {
+  std::size_t numbers = model.responses.size();
+  for (const Detail& detail : model.details) numbers += detail.components.size();
+  return poses * rows * (numbers * sizeof(double) + sizeof(SolveStatus) + sizeof(std::uint32_t));
+}
+
+/// Seconds of a study that solves tables of errors, from run_poses(poses) for a few of its poses.
+template <class RunPoses>
+double table_seconds(const PoseSet& poses, const RunPoses& run_poses) {
+  const std::size_t count = std::min<std::size_t>(poses.size(), 4);
+  return measured_seconds([&](double at) {
+    std::vector<double> some;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto m = static_cast<std::size_t>(at * static_cast<double>(poses.size())) + k * poses.size() / count;
+      const auto pose = poses[PoseIndex(m % poses.size())];
+      some.insert(some.end(), pose.begin(), pose.end());
+    }
+    run_poses(PoseSet(poses.coordinates(), std::move(some)));
+    return static_cast<double>(count) / static_cast<double>(poses.size());
+  });
+}
+
+Outlook identification_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const std::size_t errors = study.analysis.factors.size();
+  const std::size_t groups = study.analysis.groups.size();
+  return {fmt::format("{} errors x {} groups x {} poses = {} solves, and more for couplings", errors, groups,
+                      poses.size(), errors * groups * poses.size()),
+          evaluation_bytes(study.model(), poses.size(), errors * groups),
+          table_seconds(poses, [&](const PoseSet& some) {
+            static_cast<void>(identify(study.analysis, study.model(), [&](const ErrorTable& table) {
+              return run_evaluation(model, study.solver, some, table, Pairing::every_pose_with_every_row, {1, {}, {}});
+            }));
+          })};
+}
+
+Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const ErrorTable table = case_table(study.analysis.cases);
+  return {fmt::format("{} cases x {} poses = {} solves", table.rows, poses.size(), table.rows * poses.size()),
+          evaluation_bytes(study.model(), poses.size(), table.rows), table_seconds(poses, [&](const PoseSet& some) {
+            static_cast<void>(
+                run_evaluation(model, study.solver, some, table, Pairing::every_pose_with_every_row, {1, {}, {}}));
+          })};
+}
+
+Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  switch (study.analysis.kind) {
+    case Analysis::Kind::sensitivity:
+      return sensitivity_outlook(study, model, poses);
+    case Analysis::Kind::identification:
+      return identification_outlook(study, model, poses);
+    case Analysis::Kind::evaluate:
+      return cases_outlook(study, model, poses);
+    case Analysis::Kind::monte_carlo:
+      break;
+  }
+  return monte_carlo_outlook(study, model, poses);
 }
 
 int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = select_poses(study.poses, *model);
-  const Plan plan(study, poses.poses);
   std::fputs(resolved_text(study).c_str(), stdout);
   const std::size_t threads = resolved_threads(0);
-  const double seconds =
-      static_cast<double>(plan.solves()) / (measured_rate(plan, *model) * static_cast<double>(threads));
-  std::fputs(fmt::format("\n# valid: {} errors x {} poses x {} samples = {} solves\n"
+  const Outlook expected = outlook(study, *model, poses.poses);
+  std::fputs(fmt::format("\n# valid: {}\n"
                          "# memory for the result: about {:.3g} MB\n"
                          "# time: about {:.2g} s on {} threads of this machine\n",
-                         plan.factors().size(), plan.poses().size(), plan.samples(), plan.solves(),
-                         result_megabytes(plan, model->description()), seconds, threads)
+                         expected.solves, static_cast<double>(expected.bytes) / 1e6,
+                         expected.thread_seconds / static_cast<double>(threads), threads)
                  .c_str(),
              stdout);
   for (const RejectedPoses& rejected : poses.rejected) {

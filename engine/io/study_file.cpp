@@ -91,43 +91,46 @@ NotConverged read_not_converged(const StudySection& section) {
   return kPolicies[value->word(words)];
 }
 
-/// Values of one response at one pose that a result keeps, and what they stand for.
-struct Breadth {
-  double count;
-  std::string_view what;
+/// What a study asks for at each pose, and what these numbers are the product of.
+struct AtPose {
+  double values;  ///< of one response that the result keeps
+  std::string_view of_values;
+  double solves;
+  std::string_view of_solves;
 };
 
-Breadth breadth(const Analysis& analysis) {
+AtPose at_pose(const Analysis& analysis) {
   const double factors = static_cast<double>(analysis.factors.size());
+  const double samples = static_cast<double>(analysis.samples);
+  const double tried = factors * static_cast<double>(analysis.groups.size());
+  const double cases = static_cast<double>(analysis.cases.size());
   switch (analysis.kind) {
     case Analysis::Kind::sensitivity:
-      return {factors, "factors"};
+      return {factors, "factors", factors * samples, "factors times samples"};
     case Analysis::Kind::identification:
-      return {factors * static_cast<double>(analysis.groups.size()), "factors times groups"};
+      return {tried, "factors times groups", tried, "factors times groups"};
     case Analysis::Kind::evaluate:
-      return {static_cast<double>(analysis.cases.size()), "cases"};
+      return {cases, "cases", cases, "cases"};
     case Analysis::Kind::monte_carlo:
       break;
   }
-  return {static_cast<double>(analysis.quantiles.size()), "quantiles"};
+  return {static_cast<double>(analysis.quantiles.size()), "quantiles", samples, "samples"};
 }
 
 /// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.size() : study.poses.count);
-  const Breadth at_pose = breadth(study.analysis);
-  const double cells = poses * at_pose.count;
-  const double solves = cells * static_cast<double>(study.analysis.samples);
-  if (cells > static_cast<double>(kMostCells)) {
+  const AtPose asked = at_pose(study.analysis);
+  if (poses * asked.values > static_cast<double>(kMostCells)) {
     throw InputError(root.section("poses").place(),
-                     "poses times " + std::string(at_pose.what) + " is " + shortest(cells) +
+                     "poses times " + std::string(asked.of_values) + " is " + shortest(poses * asked.values) +
                          ", but a result holds at most " + std::to_string(kMostCells),
-                     "ask for fewer poses or " + std::string(at_pose.what));
+                     "ask for fewer poses or " + std::string(asked.of_values));
   }
-  if (solves > static_cast<double>(kMostSolves)) {
+  if (poses * asked.solves > static_cast<double>(kMostSolves)) {
     throw InputError(root.section("analysis").place(),
-                     "poses times " + std::string(at_pose.what) + " times samples is " + shortest(solves) +
+                     "poses times " + std::string(asked.of_solves) + " is " + shortest(poses * asked.solves) +
                          ", but at most " + std::to_string(kMostSolves) + " can be solved",
                      "ask for fewer samples");
   }

@@ -1,8 +1,10 @@
 poesy_test(stats_test LABELS unit
-           SOURCES engine/stats/moments_test.cpp engine/stats/sensitivity_index_test.cpp
+           SOURCES engine/stats/mean_interval_test.cpp engine/stats/moments_test.cpp
+                   engine/stats/quantile_sketch_test.cpp engine/stats/sensitivity_index_test.cpp
            LINKS poesy_stats)
 poesy_test(stats_property_test LABELS property
-           SOURCES engine/stats/moments_property_test.cpp engine/stats/sensitivity_index_property_test.cpp
+           SOURCES engine/stats/moments_property_test.cpp engine/stats/quantile_sketch_property_test.cpp
+                   engine/stats/sensitivity_index_property_test.cpp
            LINKS poesy_stats)
 poesy_test(stats_statistical_test LABELS statistical
            SOURCES engine/stats/coverage_statistical_test.cpp

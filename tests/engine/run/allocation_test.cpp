@@ -12,6 +12,7 @@
 
 #include "bench/published_study.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/monte_carlo.h"
 #include "tests/models/chain/block_samples.h"
 
 namespace {
@@ -86,11 +87,13 @@ TEST(Allocation, NoneInAWarmBlockSolver) {
   }
 }
 
-std::size_t allocations_per_unit(std::size_t samples) {
-  const Study study = bench::published_study(4, samples);
+template <class UnitOfWork>
+std::size_t allocations_per_unit(Analysis::Kind kind, std::size_t samples) {
+  Study study = bench::published_study(4, samples);
+  study.analysis.kind = kind;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const Plan plan(study, select_poses(study.poses, *model).poses);
-  UnitEvaluator evaluate(plan, *model);
+  UnitOfWork evaluate(plan, *model);
   const auto evaluate_all = [&] {
     for (std::size_t u = 0; u < plan.units(); ++u) evaluate(plan.unit(u));
   };
@@ -102,8 +105,20 @@ std::size_t allocations_per_unit(std::size_t samples) {
 
 TEST(Allocation, NonePerSampleInAUnit) {
   // The pose's nominal displacements, and the three moments that are handed on.
-  EXPECT_LE(allocations_per_unit(Plan::kUnitSamples), 4u);
-  EXPECT_EQ(allocations_per_unit(10), allocations_per_unit(Plan::kUnitSamples));
+  const auto count = [](std::size_t samples) {
+    return allocations_per_unit<UnitEvaluator>(Analysis::Kind::sensitivity, samples);
+  };
+  EXPECT_LE(count(Plan::kUnitSamples), 4u);
+  EXPECT_EQ(count(10), count(Plan::kUnitSamples));
+}
+
+TEST(Allocation, NonePerSampleInAMonteCarloUnit) {
+  // Besides, the buckets of the three sketches that are handed on.
+  const auto count = [](std::size_t samples) {
+    return allocations_per_unit<PoseUnitEvaluator>(Analysis::Kind::monte_carlo, samples);
+  };
+  EXPECT_LE(count(Plan::kUnitSamples), 7u);
+  EXPECT_EQ(count(10), count(Plan::kUnitSamples));
 }
 
 }  // namespace

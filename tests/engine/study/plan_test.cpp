@@ -51,6 +51,23 @@ TEST_P(PlanOfSize, CoversEverySampleOnceInOrder) {
 INSTANTIATE_TEST_SUITE_P(Sizes, PlanOfSize,
                          testing::Combine(testing::Values(1, 2, 7), testing::Values(2, 999, 1000, 1001, 2500)));
 
+TEST(Plan, HasOneSlotWhereAllErrorsVaryTogether) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_with(catalog[0], 2500);
+  study.analysis.kind = Analysis::Kind::monte_carlo;
+  const Plan plan(study, some_poses(4));
+  EXPECT_EQ(plan.slots(), 1u);
+  EXPECT_EQ(plan.factors().size(), 2u);
+  EXPECT_EQ(plan.solves(), 4u * 2500u);
+  ASSERT_EQ(plan.units(), 4u * 3u);
+  for (std::size_t u = 0; u < plan.units(); ++u) {
+    const WorkUnit unit = plan.unit(u);
+    EXPECT_EQ(unit.slot, 0u);
+    EXPECT_EQ(unit.pose.value, u / 3);
+    EXPECT_EQ(unit.first.value, u % 3 * Plan::kUnitSamples);
+  }
+}
+
 TEST(Plan, HasNoUnitsWithoutPoses) {
   const Catalog catalog = test::fake_catalog();
   const Plan plan(study_with(catalog[0], 10), PoseSet());

@@ -1,0 +1,65 @@
+#include "engine/stats/quantile_sketch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace poesy {
+namespace {
+
+QuantileSketch of(const std::vector<double>& values) {
+  QuantileSketch sketch;
+  sketch.add(values);
+  return sketch;
+}
+
+TEST(QuantileSketch, KnowsNothingWithoutNumbers) {
+  const QuantileSketch empty;
+  EXPECT_EQ(empty.count(), 0u);
+  for (const double value : {empty.min(), empty.max(), empty.quantile(0.5)}) EXPECT_TRUE(std::isnan(value));
+}
+
+TEST(QuantileSketch, IsExactForOneNumberAndForConstants) {
+  for (const double value : {0.0, 1.0, -3.7e-9, 1.7976931348623157e308, 5e-324}) {
+    for (const std::size_t count : {1u, 2u, 100u}) {
+      const QuantileSketch sketch = of(std::vector<double>(count, value));
+      for (const double q : {0.0, 0.3, 0.5, 1.0}) EXPECT_EQ(sketch.quantile(q), value) << value;
+    }
+  }
+}
+
+TEST(QuantileSketch, IsExactForZeroAndForTheExtremes) {
+  const QuantileSketch sketch = of({-3.3, 0.0, 0.0, -0.0, 7.7});
+  EXPECT_EQ(sketch.count(), 5u);
+  EXPECT_EQ(sketch.quantile(0.0), -3.3);
+  EXPECT_EQ(sketch.quantile(0.5), 0.0);
+  EXPECT_EQ(sketch.quantile(0.8), 0.0);
+  EXPECT_EQ(sketch.quantile(1.0), 7.7);
+  EXPECT_EQ(sketch.min(), -3.3);
+  EXPECT_EQ(sketch.max(), 7.7);
+}
+
+TEST(QuantileSketch, TakesSubnormalsForZero) {
+  const QuantileSketch sketch = of({-5e-324, 1e-310, 2e-310, 3e-310, 1.0});
+  EXPECT_EQ(sketch.quantile(0.6), 0.0);
+  EXPECT_EQ(sketch.min(), -5e-324);
+}
+
+TEST(QuantileSketch, DoesNotLoseARankToRounding) {
+  std::vector<double> values;
+  for (int k = 1; k <= 100; ++k) values.push_back(k);
+  const QuantileSketch sketch = of(values);
+  // 0.07 * 100 is 7.000000000000001 in doubles, and its ceiling 8.
+  EXPECT_NEAR(sketch.quantile(0.07), 7.0, 7.0 * QuantileSketch::kRelativeError);
+  for (int k = 1; k <= 100; ++k) {
+    EXPECT_NEAR(sketch.quantile(k / 100.0), k, k * QuantileSketch::kRelativeError) << k;
+  }
+}
+
+TEST(QuantileSketch, ReachesItsStatedErrorAtABucketsEdge) {
+  const QuantileSketch sketch = of({0.5, 1.0, 2.0});
+  EXPECT_EQ(sketch.quantile(0.5), 1.0 + QuantileSketch::kRelativeError);
+}
+
+}  // namespace
+}  // namespace poesy
