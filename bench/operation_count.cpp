@@ -40,7 +40,7 @@ void count_units(const char* name, SolverOptions::Method method, std::size_t uni
   Study study = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
   study.solver.method = method;
   const auto model = build_model(study.mechanism);
-  const Plan plan(study, select_poses(study.poses, *model));
+  const Plan plan(study, select_poses(study.poses, *model).poses);
   UnitEvaluator evaluate(plan, *model);
   SolveCounts counts;
   bench::operation_counts = {};
@@ -52,7 +52,7 @@ void count_all_errors(const char* name, double scale) {
   constexpr std::size_t kCount = 100;
   const Study study = bench::published_study(bench::kPublishedPoses, kCount);
   const auto model = build_model(study.mechanism);
-  const PoseSet poses = select_poses(study.poses, *model);
+  const PoseSet poses = select_poses(study.poses, *model).poses;
   const auto evaluator = model->evaluator(study.solver);
   const std::vector<double> zeros(study.model().factors.size(), 0.0);
   std::vector<FactorIndex> varied;

@@ -18,6 +18,7 @@ class ReferenceModel final : public Model {
   std::vector<double> joint_displacements(std::span<const double> pose) const override {
     return model_->joint_displacements(pose);
   }
+  double condition(std::span<const double> pose) const override { return model_->condition(pose); }
   /// Details are not given.
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override;
 

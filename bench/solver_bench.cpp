@@ -25,7 +25,7 @@ void units(benchmark::State& state, SolverOptions::Method method, const std::str
   study.solver.method = method;
   const auto model = build_model(study.mechanism);
   const bench::ReferenceModel reference(*model);
-  const Plan plan(study, select_poses(study.poses, *model));
+  const Plan plan(study, select_poses(study.poses, *model).poses);
   const bool is_reference = isa == "scalar";
   if (!is_reference) bench::choose_instruction_set(isa);
   UnitEvaluator evaluate(plan, is_reference ? static_cast<const Model&>(reference) : *model);
@@ -42,7 +42,7 @@ void all_errors(benchmark::State& state, const std::string& isa, double scale) {
   constexpr std::size_t kCount = 1000;
   const Study study = bench::published_study(bench::kPublishedPoses, kCount);
   const auto model = build_model(study.mechanism);
-  const PoseSet poses = select_poses(study.poses, *model);
+  const PoseSet poses = select_poses(study.poses, *model).poses;
   std::unique_ptr<Evaluator> evaluator;
   {
     static std::mutex environment;

@@ -14,7 +14,7 @@ void study(benchmark::State& state, SolverOptions::Method method, const std::str
   Study study = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
   study.solver.method = method;
   std::unique_ptr<Model> model = build_model(study.mechanism);
-  const Plan plan(study, bench::every(step, select_poses(study.poses, *model)));
+  const Plan plan(study, bench::every(step, select_poses(study.poses, *model).poses));
   const bench::ReferenceModel reference(*model);
   const bool is_reference = isa == "scalar";
   if (!is_reference) bench::choose_instruction_set(isa);

@@ -42,7 +42,7 @@ void write_background(const std::filesystem::path& path, const Study& study) {
 /// The first samples of cells spread over the published study, and what Gauss-Newton makes of them here.
 void write_samples(const std::filesystem::path& folder, const Study& study, std::size_t cells) {
   const auto model = build_model(study.mechanism);
-  const Plan plan(study, select_poses(study.poses, *model));
+  const Plan plan(study, select_poses(study.poses, *model).poses);
   const auto evaluator = model->evaluator(study.solver);
   Table samples(folder / "samples.csv", "z,beta,gamma,factor,value");
   Table answers(folder / "answers.csv", "solved,iterations,angular_deformation,linear_deformation");

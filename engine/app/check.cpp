@@ -132,10 +132,10 @@ Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
 int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const PoseSet poses = select_poses(study.poses, *model);
+  const SelectedPoses poses = select_poses(study.poses, *model);
   std::fputs(resolved_text(study).c_str(), stdout);
   const std::size_t threads = resolved_threads(0);
-  const Outlook expected = outlook(study, *model, poses);
+  const Outlook expected = outlook(study, *model, poses.poses);
   std::fputs(fmt::format("\n# valid: {}\n"
                          "# memory for the result: about {:.3g} MB\n"
                          "# time: about {:.2g} s on {} threads of this machine\n",
@@ -143,6 +143,9 @@ int check(const std::string& path) {
                          expected.thread_seconds / static_cast<double>(threads), threads)
                  .c_str(),
              stdout);
+  for (const RejectedPoses& rejected : poses.rejected) {
+    std::fputs(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason).c_str(), stdout);
+  }
   return kDone;
 }
 

@@ -28,7 +28,7 @@ struct Options {
   bool quiet = false;
 };
 
-PoseSet read_reachable_poses(const std::string& path, const Model& model) {
+SelectedPoses read_reachable_poses(const std::string& path, const Model& model) {
   PoseSelection selection;
   selection.select = PoseSelection::Select::file;
   selection.file = path;
@@ -40,10 +40,10 @@ PoseSet read_reachable_poses(const std::string& path, const Model& model) {
 int evaluate(const Options& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const PoseSet poses = read_reachable_poses(options.poses, *model);
+  const SelectedPoses poses = read_reachable_poses(options.poses, *model);
   const ErrorTable errors = read_errors(options.errors, model->description());
-  if (options.paired && poses.size() != errors.rows) {
-    throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.size()),
+  if (options.paired && poses.poses.size() != errors.rows) {
+    throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");
   }
   if (!options.result.empty()) check_result_path(options.result);
@@ -53,7 +53,7 @@ int evaluate(const Options& options) {
   std::optional<EvaluationResult> result;
   {
     ProgressPrinter printer(options.quiet);
-    result = run_evaluation(*model, study.solver, poses, errors, pairing,
+    result = run_evaluation(*model, study.solver, poses.poses, errors, pairing,
                             {threads, [&](const Progress& progress) { printer(progress); }, &catch_interrupts()});
   }
   if (!result) {

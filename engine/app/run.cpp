@@ -37,7 +37,7 @@ std::string default_result(const std::string& study) {
 struct Job {
   const Study& study;
   const Model& model;
-  PoseSet poses;
+  SelectedPoses poses;
   std::string path;
   RunOptions options;
   std::chrono::steady_clock::time_point start;
@@ -48,7 +48,7 @@ struct Job {
 // Each runs a study of its kind and writes the result: how its solves ended, or nothing when it was interrupted.
 
 std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
-  const Plan plan(job.study, job.poses);
+  const Plan plan(job.study, job.poses.poses);
   const auto result = run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
   if (!result) return std::nullopt;
   write_sensitivity(job.path, job.study, job.poses, *result, job.facts(result->total()));
@@ -57,7 +57,7 @@ std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
 
 std::optional<SolveCounts> run_identification_study(const Job& job) {
   const auto result = identify(job.study.analysis, job.model.description(), [&](const ErrorTable& errors) {
-    return run_evaluation(job.model, job.study.solver, job.poses, errors, Pairing::every_pose_with_every_row,
+    return run_evaluation(job.model, job.study.solver, job.poses.poses, errors, Pairing::every_pose_with_every_row,
                           job.options);
   });
   if (!result) return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<SolveCounts> run_identification_study(const Job& job) {
 }
 
 std::optional<SolveCounts> run_cases_study(const Job& job) {
-  auto evaluation = run_evaluation(job.model, job.study.solver, job.poses, case_table(job.study.analysis.cases),
+  auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, case_table(job.study.analysis.cases),
                                    Pairing::every_pose_with_every_row, job.options);
   if (!evaluation) return std::nullopt;
   const SolveCounts solves = evaluation->total();
@@ -76,7 +76,7 @@ std::optional<SolveCounts> run_cases_study(const Job& job) {
 }
 
 std::optional<SolveCounts> run_monte_carlo_study(const Job& job) {
-  const Plan plan(job.study, job.poses);
+  const Plan plan(job.study, job.poses.poses);
   const auto result = run_monte_carlo(plan, job.model, job.study.analysis, job.options);
   if (!result) return std::nullopt;
   write_monte_carlo(job.path, job.study, job.poses, *result, job.facts(result->total()));
@@ -119,7 +119,7 @@ int run(const Options& options) {
   const std::string path = options.result.empty() ? default_result(options.study) : options.result;
   check_result_path(path);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  PoseSet poses = select_poses(study.poses, *model);
+  SelectedPoses poses = select_poses(study.poses, *model);
   ProgressPrinter printer(options.quiet);
   const Job job{
       study,

@@ -121,4 +121,13 @@ std::string to_text(Quantity quantity) {
   return shortest(quantity.si) + " " + std::string(si_unit(quantity.dimension));
 }
 
+std::string readable_text(Quantity quantity) {
+  const Unit& unit = display_unit(quantity.dimension);
+  std::array<char, 32> text{};
+  const auto [end, failure] =
+      std::to_chars(text.data(), text.data() + text.size(), quantity.si / unit.si, std::chars_format::general, 12);
+  const std::string number = failure == std::errc() ? std::string(text.data(), end) : std::string("nan");
+  return unit.dimension == Dimension::number ? number : number + " " + std::string(unit.name);
+}
+
 }  // namespace poesy

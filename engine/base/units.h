@@ -53,4 +53,7 @@ std::string shortest(double value);
 /// A quantity for a study file, exact when read back: "0.001 m", "0.5 rad".
 std::string to_text(Quantity quantity);
 
+/// A quantity in the unit in which people read it, to 12 digits: "80 mm", "1 deg".
+std::string readable_text(Quantity quantity);
+
 }  // namespace poesy

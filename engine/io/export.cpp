@@ -17,9 +17,13 @@ void write_poses(TableFolder& folder, const StoredResult& result) {
   for (const NamedUnit& coordinate : result.pose_coordinates) {
     columns.push_back(column(coordinate.name, coordinate.unit));
   }
+  if (!result.condition.empty()) columns.push_back("condition");
   folder.write("poses", columns, [&](CsvTable& table) {
     for (std::size_t m = 0; m < result.poses.size(); ++m) {
-      table.row(std::to_string(m), result.poses[PoseIndex(m)]);
+      const auto pose = result.poses[PoseIndex(m)];
+      std::vector<double> row(pose.begin(), pose.end());
+      if (!result.condition.empty()) row.push_back(result.condition[m]);
+      table.row(std::to_string(m), row);
     }
   });
 }

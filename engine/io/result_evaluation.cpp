@@ -119,7 +119,7 @@ EvaluationResult read_solves(const h5::File& file, const std::vector<NamedUnit>&
 }
 
 void add_solves(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found, const Axes& axes) {
-  result.add_axis("joint", model.joints, {"1", "Name of the joint displacement"});
+  result.add_axis("joint", texts(model.joints, &JointDisplacement::name), {"1", "Name of the joint displacement"});
   result.file().make_group("/evaluate");
   result.show_axes("/evaluate", {axes[0], axes[1], "joint"});
   const std::size_t cells = found.poses * found.samples;

@@ -12,23 +12,23 @@ namespace poesy {
 
 /// Writes the result of a sensitivity study. The file appears whole or not at all under its name: written beside it
 /// under a temporary name, synced, renamed. Throws FileError and leaves an existing file as it was.
-void write_sensitivity(const std::string& path, const Study& study, const PoseSet& poses,
+void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts);
 
 /// Writes the result of `evaluate`, in the same way.
-void write_evaluation(const std::string& path, const Study& study, const PoseSet& poses, const ErrorTable& errors,
+void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts);
 
 /// Writes the result of an evaluate study's cases, in the same way.
-void write_cases(const std::string& path, const Study& study, const PoseSet& poses, const CaseResult& result,
+void write_cases(const std::string& path, const Study& study, const SelectedPoses& poses, const CaseResult& result,
                  const RunFacts& facts);
 
 /// Writes the result of an identification, in the same way.
-void write_identification(const std::string& path, const Study& study, const PoseSet& poses,
+void write_identification(const std::string& path, const Study& study, const SelectedPoses& poses,
                           const IdentificationResult& result, const RunFacts& facts);
 
 /// Writes the result of a Monte Carlo study, in the same way.
-void write_monte_carlo(const std::string& path, const Study& study, const PoseSet& poses,
+void write_monte_carlo(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const MonteCarloResult& result, const RunFacts& facts);
 
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
@@ -53,6 +53,7 @@ struct StoredResult {
   std::string content_sha256;
   std::vector<NamedUnit> pose_coordinates;
   PoseSet poses;
+  std::vector<double> condition;  ///< [M] of each pose; empty in files of older versions
   std::vector<NamedUnit> factors;
   std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;
@@ -90,7 +91,7 @@ Verification verify_result(const std::string& path);
 ///     local_RESPONSE.csv   factor | one column a pose, SI
 ///     not_converged.csv    factor | one column a pose
 ///     factors.csv          factor | standard deviation
-///     poses.csv            pose | coordinates
+///     poses.csv            pose | coordinates, condition number
 ///
 /// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
 /// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and

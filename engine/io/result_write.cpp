@@ -40,7 +40,20 @@ void add_study(ResultBuilder& result, const Study& study) {
   result.add_scalar("/study/text", resolved_text(study), {"1", "The study, every default filled in (TOML)"});
 }
 
-void add_poses(ResultBuilder& result, const ModelDescription& model, const PoseSet& poses) {
+void add_rejected_poses(ResultBuilder& result, const std::vector<RejectedPoses>& rejected) {
+  if (rejected.empty()) return;
+  const auto reasons = texts(rejected, &RejectedPoses::reason);
+  std::vector<std::uint64_t> counts;
+  for (const RejectedPoses& each : rejected) counts.push_back(each.count);
+  result.add_axis("rejection", reasons, {"1", "Why poses were rejected"});
+  result.file().make_group("/poses/rejected");
+  result.show_axes("/poses/rejected", {"rejection"});
+  result.add("/poses/rejected/reason", {"rejection"}, reasons, {"1", "Why poses were rejected"});
+  result.add("/poses/rejected/count", {"rejection"}, counts, {"1", "Candidate poses rejected for this reason"});
+}
+
+void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected) {
+  const PoseSet& poses = selected.poses;
   result.add_axis("pose", positions(poses.size()), {"1", "Number of the pose, from 0"});
   result.file().make_group("/poses");
   const auto names = texts(model.pose_coordinates, &PoseCoordinate::name);
@@ -49,6 +62,9 @@ void add_poses(ResultBuilder& result, const ModelDescription& model, const PoseS
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
     result.add("/poses/" + names[c], {"pose"}, poses.column(c), {unit_of(coordinate), coordinate.description});
   }
+  result.add("/poses/condition", {"pose"}, selected.condition,
+             {"1", "Condition number of the passive joints' Jacobian; infinity at a singular pose"});
+  add_rejected_poses(result, selected.rejected);
 }
 
 void add_factors(ResultBuilder& result, const std::vector<Factor>& factors) {
@@ -95,7 +111,7 @@ void write_file(const std::string& path, h5::File& file) {
 
 /// Composes what every result has, with compose(result) for what its kind has, and writes it.
 template <class Compose>
-void compose_and_write(const std::string& path, std::string_view kind, const Study& study, const PoseSet& poses,
+void compose_and_write(const std::string& path, std::string_view kind, const Study& study, const SelectedPoses& poses,
                        std::span<const FactorIndex> factors, const RunFacts& facts, const Compose& compose) {
   try {
     ResultBuilder result;
@@ -114,40 +130,40 @@ void compose_and_write(const std::string& path, std::string_view kind, const Stu
 
 }  // namespace
 
-void write_sensitivity(const std::string& path, const Study& study, const PoseSet& poses,
+void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.size());
+  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
   compose_and_write(path, result_format::kSensitivity, study, poses, study.analysis.factors, facts,
                     [&](ResultBuilder& file) { add_sensitivity(file, study, result); });
 }
 
-void write_evaluation(const std::string& path, const Study& study, const PoseSet& poses, const ErrorTable& errors,
+void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.poses == poses.size());
+  POESY_EXPECTS(result.poses == poses.poses.size());
   compose_and_write(path, result_format::kEvaluate, study, poses, errors.factors, facts, [&](ResultBuilder& file) {
     add_evaluation(file, study.model(), result);
     add_errors(file, errors, pairing);
   });
 }
 
-void write_cases(const std::string& path, const Study& study, const PoseSet& poses, const CaseResult& result,
+void write_cases(const std::string& path, const Study& study, const SelectedPoses& poses, const CaseResult& result,
                  const RunFacts& facts) {
-  POESY_EXPECTS(result.evaluation.poses == poses.size());
+  POESY_EXPECTS(result.evaluation.poses == poses.poses.size());
   const ErrorTable errors = case_table(study.analysis.cases);
   compose_and_write(path, result_format::kEvaluate, study, poses, errors.factors, facts,
                     [&](ResultBuilder& file) { add_cases(file, study, result); });
 }
 
-void write_identification(const std::string& path, const Study& study, const PoseSet& poses,
+void write_identification(const std::string& path, const Study& study, const SelectedPoses& poses,
                           const IdentificationResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.size());
+  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
   compose_and_write(path, result_format::kIdentification, study, poses, study.analysis.factors, facts,
                     [&](ResultBuilder& file) { add_identification(file, study, result); });
 }
 
-void write_monte_carlo(const std::string& path, const Study& study, const PoseSet& poses,
+void write_monte_carlo(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const MonteCarloResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.poses == poses.size());
+  POESY_EXPECTS(result.poses == poses.poses.size());
   compose_and_write(path, result_format::kMonteCarlo, study, poses, study.analysis.factors, facts,
                     [&](ResultBuilder& file) { add_monte_carlo(file, study, result); });
 }

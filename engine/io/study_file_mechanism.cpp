@@ -51,8 +51,7 @@ std::vector<Range> default_workspace(const ModelDescription& model) {
 
 void read_pose_file(const StudySection& section, const ModelDescription& model, StudyUse use,
                     PoseSelection& selection) {
-  section.refuse("count", "select = \"file\"");
-  section.refuse("workspace", "select = \"file\"");
+  for (const char* key : {"count", "workspace", "limits", "max_condition"}) section.refuse(key, "select = \"file\"");
   selection.file = section.require("file", "write file = \"poses.csv\"").text();
   if (use == StudyUse::evaluate) return;
   const std::filesystem::path folder = std::filesystem::path(section.place().file).parent_path();
@@ -61,14 +60,52 @@ void read_pose_file(const StudySection& section, const ModelDescription& model, 
   selection.place = {path, 2, 1};
 }
 
+std::vector<JointLimit> read_limits(const StudySection& section, const ModelDescription& model) {
+  section.allow(names(model.joints), "joint");
+  std::vector<JointLimit> limits;
+  for (std::size_t joint = 0; joint < model.joints.size(); ++joint) {
+    const auto value = section.find(model.joints[joint].name);
+    if (value) limits.push_back({joint, read_range(*value, model.joints[joint].dimension), value->place()});
+  }
+  return limits;
+}
+
+double read_max_condition(const StudyValue& value) {
+  const double number = value.number();
+  if (!(number > 1.0)) value.fail("is " + shortest(number), "it must be greater than 1, e.g. 1e6");
+  return number;
+}
+
+/// A whole number, or for a grid a table with a number for every pose coordinate.
+void read_count(const StudyValue& value, const ModelDescription& model, PoseSelection& selection) {
+  selection.count_place = value.place();
+  if (selection.select != PoseSelection::Select::grid || !value.is_section()) {
+    selection.count = static_cast<std::size_t>(value.whole_number(1, kMostPoses));
+    return;
+  }
+  const StudySection section = value.section();
+  section.allow(names(model.pose_coordinates), "pose coordinate");
+  std::int64_t product = 1;
+  for (const PoseCoordinate& coordinate : model.pose_coordinates) {
+    const StudyValue own = section.require(coordinate.name, "give a number for every pose coordinate of the model");
+    product *= own.whole_number(1, kMostPoses);
+    if (product > kMostPoses) {
+      value.fail("makes a grid of more than " + std::to_string(kMostPoses) + " poses", "write smaller numbers");
+    }
+    selection.grid_counts.push_back(static_cast<std::size_t>(own.whole_number(1, kMostPoses)));
+  }
+  selection.count = static_cast<std::size_t>(product);
+}
+
 void read_box(const StudySection& section, const ModelDescription& model, StudyUse use, PoseSelection& selection) {
   section.refuse("file", "select = \"" + std::string(name(selection.select)) + "\"");
   const auto workspace = section.find("workspace");
   selection.workspace = workspace ? read_workspace(workspace->section(), model) : default_workspace(model);
   if (workspace) selection.place = workspace->place();
+  selection.limits = read_limits(section.section("limits"), model);
+  if (const auto value = section.find("max_condition")) selection.max_condition = read_max_condition(*value);
   if (use == StudyUse::evaluate && !section.find("count")) return;
-  const StudyValue count = section.require("count", "write how many poses, e.g. count = 158");
-  selection.count = static_cast<std::size_t>(count.whole_number(1, kMostPoses));
+  read_count(section.require("count", "write how many poses, e.g. count = 158"), model, selection);
 }
 
 PoseSelection::Select read_select(const StudySection& section, StudyUse use) {
@@ -79,9 +116,9 @@ PoseSelection::Select read_select(const StudySection& section, StudyUse use) {
   std::vector<std::string_view> words;
   for (const Select select : kSelects) words.push_back(name(select));
   const Select select = kSelects[value->word(words)];
-  if (use == StudyUse::run && select != Select::interior && select != Select::file) {
-    value->fail("is \"" + std::string(name(select)) + "\", which is not available yet in this version",
-                "use \"interior\" or \"file\"");
+  if (use == StudyUse::run && select == Select::trajectory) {
+    value->fail("is \"trajectory\", which is not available yet in this version",
+                "use \"interior\", \"boundary\", \"grid\" or \"file\"");
   }
   return select;
 }
@@ -106,7 +143,7 @@ MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog)
 PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use) {
   if (use == StudyUse::run) static_cast<void>(root.require("poses", "add the section [poses] with the key count"));
   const StudySection section = root.section("poses");
-  section.allow({"select", "count", "workspace", "file", "trajectory"});
+  section.allow({"select", "count", "workspace", "limits", "max_condition", "file", "trajectory"});
   PoseSelection selection;
   selection.place = section.place();
   selection.select = read_select(section, use);

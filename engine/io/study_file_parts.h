@@ -17,6 +17,11 @@ MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog)
 /// For StudyUse::evaluate the pose file is not opened.
 PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use);
 ErrorModel read_error_model(const StudySection& root, const ModelDescription& model);
+/// The cases of kind = "evaluate"; what a case does not set has the background's value.
+std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescription& model,
+                                  const std::vector<double>& background, StudyUse use);
+/// The groups of kind = "identification".
+std::vector<ErrorSize> read_groups(const StudySection& analysis);
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
 
 }  // namespace poesy

@@ -28,6 +28,7 @@ class StudyValue {
 
   const Place& place() const { return place_; }
   bool is_text() const { return node_->is_string(); }
+  bool is_section() const { return node_->is_table(); }
 
   std::string text() const;
   std::int64_t whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;

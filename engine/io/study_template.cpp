@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cctype>
 #include <string>
 
 #include "engine/io/study_file.h"
@@ -18,13 +19,19 @@ std::string comment(std::string_view text) {
   return out + "\n";
 }
 
+std::string title(Analysis::Kind kind) {
+  std::string text(name(kind));
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 std::string head(const ModelDescription& model, Analysis::Kind kind) {
   return comment(model.name + ": " + model.title) +
          "# Run this study with: poesy run STUDY.toml\n"
          "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec.\n"
          "# A key behind a '#' shows a default or an alternative.\n" +
          fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}  # optional, free text\n",
-                     quoted(std::string(name(kind)) + " of " + model.name));
+                     quoted(title(kind) + " of " + model.name));
 }
 
 std::string mechanism_section(const ModelDescription& model) {
@@ -38,6 +45,22 @@ std::string mechanism_section(const ModelDescription& model) {
   return text;
 }
 
+/// "count = { z = 5, beta = 5 }".
+std::string grid_example(const ModelDescription& model) {
+  std::string text;
+  for (const PoseCoordinate& coordinate : model.pose_coordinates) {
+    text += fmt::format("{}{} = 5", text.empty() ? "count = { " : ", ", coordinate.name);
+  }
+  return text + " }";
+}
+
+std::string joint_list(const ModelDescription& model) {
+  std::string text = " ";
+  for (const JointDisplacement& joint : model.joints)
+    text += fmt::format(" {} ({})", joint.name, name(joint.dimension));
+  return text;
+}
+
 std::string poses_section(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
@@ -45,16 +68,28 @@ std::string poses_section(const ModelDescription& model) {
   }
   std::string text = "\n[poses]\n";
   text += "# interior: that many points of a Sobol' sequence in the workspace; more poses begin with the same ones\n";
+  text += "# boundary: that many points on the boundary of the feasible part of the workspace, uniform by area\n";
+  text += "# grid: that many points of a regular grid, or all of one with " + grid_example(model) + "\n";
   text += "# file: poses from CSV, first line the names of all pose coordinates, SI units\n";
   text += "select = \"interior\"  # the default\n";
-  text += "count = 158  # required for interior, at least 1\n";
+  text += "count = 158  # required for all but file, at least 1\n";
   text += "# A range [lower, upper] for every pose coordinate. Default: the model's own workspace, shown here.\n";
   for (const PoseCoordinate& coordinate : model.pose_coordinates) {
     text += comment(coordinate.name + ": " + coordinate.description);
   }
   if (!model.workspace_note.empty()) text += comment(model.workspace_note);
   text += "workspace = " + workspace_text(workspace, model, readable_value) + "\n";
-  return text + "# file = \"poses.csv\"  # instead of count and workspace, with select = \"file\"; beside this study\n";
+  if (!model.joints.empty()) {
+    const JointDisplacement& joint = model.joints.front();
+    text += "# Optional: ranges of joint displacements from home, [lower, upper]; other poses are rejected. Joints:\n";
+    text += comment(joint_list(model));
+    text += fmt::format("# limits = {{ {} = {} }}\n", joint.name,
+                        joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]");
+  }
+  text += "max_condition = 1e8  # poses whose condition number is above it are rejected as singular; the default\n";
+  return text +
+         "# file = \"poses.csv\"  # instead of count, workspace, limits and max_condition, with select = \"file\"; "
+         "beside this study\n";
 }
 
 std::string override_example(const ModelDescription& model) {

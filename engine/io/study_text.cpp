@@ -63,12 +63,36 @@ std::string mechanism_text(const Study& study) {
   return text;
 }
 
+std::string grid_text(const PoseSelection& poses, const ModelDescription& model) {
+  std::string text;
+  for (std::size_t c = 0; c < poses.grid_counts.size(); ++c) {
+    text += fmt::format("{}{} = {}", c == 0 ? "{ " : ", ", model.pose_coordinates[c].name, poses.grid_counts[c]);
+  }
+  return text + " }";
+}
+
+std::string limits_text(const PoseSelection& poses, const ModelDescription& model) {
+  std::string text;
+  for (const JointLimit& limit : poses.limits) {
+    const JointDisplacement& joint = model.joints[limit.joint];
+    text += fmt::format("{}{} = {}", text.empty() ? "{ " : ", ", joint.name,
+                        range_text(limit.range, joint.dimension, exact_value));
+  }
+  return text + " }";
+}
+
 std::string poses_text(const Study& study) {
   const PoseSelection& poses = study.poses;
   std::string text = fmt::format("[poses]\nselect = {}\n", quoted(name(poses.select)));
   if (poses.select == PoseSelection::Select::file) return text + "file = " + quoted(poses.file) + "\n";
-  if (poses.count > 0) text += fmt::format("count = {}\n", poses.count);
-  return text + "workspace = " + workspace_text(poses.workspace, study.model(), exact_value) + "\n";
+  if (!poses.grid_counts.empty()) {
+    text += "count = " + grid_text(poses, study.model()) + "\n";
+  } else if (poses.count > 0) {
+    text += fmt::format("count = {}\n", poses.count);
+  }
+  text += "workspace = " + workspace_text(poses.workspace, study.model(), exact_value) + "\n";
+  if (!poses.limits.empty()) text += "limits = " + limits_text(poses, study.model()) + "\n";
+  return text + "max_condition = " + shortest(poses.max_condition) + "\n";
 }
 
 std::string errors_text(const Study& study) {
@@ -156,10 +180,13 @@ std::string exact_value(double si, Dimension dimension) {
 std::string readable_value(double si, Dimension dimension) {
   const std::string exact = exact_value(si, dimension);
   if (dimension == Dimension::number) return exact;
-  const Unit& unit = display_unit(dimension);
-  const std::string text = fmt::format("{:.12g} {}", si / unit.si, unit.name);
+  const std::string text = readable_text({si, dimension});
   const bool as_exact = parse_quantity(text).si == si;
   return as_exact && text.size() + 2 <= exact.size() + 1 ? quoted(text) : exact;
+}
+
+std::string range_text(const Range& range, Dimension dimension, std::string (*value)(double si, Dimension dimension)) {
+  return fmt::format("[{}, {}]", value(range.lower, dimension), value(range.upper, dimension));
 }
 
 std::string workspace_text(std::span<const Range> workspace, const ModelDescription& model,
@@ -167,9 +194,8 @@ std::string workspace_text(std::span<const Range> workspace, const ModelDescript
   std::string text;
   for (std::size_t c = 0; c < workspace.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    text +=
-        fmt::format("{}{} = [{}, {}]", c == 0 ? "{ " : ", ", coordinate.name,
-                    value(workspace[c].lower, coordinate.dimension), value(workspace[c].upper, coordinate.dimension));
+    text += fmt::format("{}{} = {}", c == 0 ? "{ " : ", ", coordinate.name,
+                        range_text(workspace[c], coordinate.dimension, value));
   }
   return text + " }";
 }

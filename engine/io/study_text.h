@@ -19,6 +19,9 @@ std::string exact_value(double si, Dimension dimension);
 /// The same in the unit in which people read it, where that is as exact and shorter: "60 mm" rather than "0.06 m".
 std::string readable_value(double si, Dimension dimension);
 
+/// A range as a TOML list, with one of the functions above for its ends.
+std::string range_text(const Range& range, Dimension dimension, std::string (*value)(double si, Dimension dimension));
+
 /// The workspace of a study as a TOML inline table, with one of the functions above for its numbers.
 std::string workspace_text(std::span<const Range> workspace, const ModelDescription& model,
                            std::string (*value)(double si, Dimension dimension));

@@ -53,6 +53,12 @@ struct PoseCoordinate {
   std::string description;
 };
 
+/// A joint's displacement from the home configuration.
+struct JointDisplacement {
+  std::string name;     ///< "q_1_1"
+  Dimension dimension;  ///< length (m) or angle (rad)
+};
+
 /// A structural parameter that a study may change.
 struct GeometryParameter {
   std::string name;
@@ -93,8 +99,8 @@ struct ModelDescription {
   std::vector<Response> responses;
   std::optional<DeformationMeasure> deformation;  ///< none where errors only move the platform
   std::vector<Detail> details;
-  std::vector<std::string> joints;  ///< names of all joint displacements, "q_1_1"
-  std::vector<double> pose_lower;   ///< a workspace inside reach, [pose coordinates], SI
+  std::vector<JointDisplacement> joints;  ///< all, in the order of Model::joint_displacements
+  std::vector<double> pose_lower;         ///< a workspace inside reach, [pose coordinates], SI
   std::vector<double> pose_upper;
   std::string workspace_note;  ///< where that workspace comes from
 
@@ -144,6 +150,11 @@ class Model {
   /// Nominal displacements of all joints, limb by limb, base to platform (rad, m).
   /// Precondition: the pose is reachable.
   virtual std::vector<double> joint_displacements(std::span<const double> pose) const = 0;
+
+  /// How close the mechanism is to a singular pose: the condition number, without unit and at least 1, of the matrix
+  /// that determines the motion of its passive joints, at nominal displacements; infinity at a singular pose.
+  /// Precondition: the pose is reachable.
+  virtual double condition(std::span<const double> pose) const = 0;
 
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
 

@@ -4,13 +4,24 @@
 
 namespace poesy {
 
-std::vector<double> sobol_points(std::size_t count, std::size_t dimensions) {
-  std::vector<double> points(count * dimensions);
-  if (points.empty()) return points;
+struct SobolSequence::Generator {
+  boost::random::sobol sequence;
+};
+
+SobolSequence::SobolSequence(std::size_t dimensions)
+    : generator_(std::make_unique<Generator>(Generator{boost::random::sobol(dimensions)})) {}
+
+SobolSequence::~SobolSequence() = default;
+
+void SobolSequence::next(std::span<double> point) {
   // Boost leaves out the origin. Coordinates of the points after it are k / 2^m with 2^m above the point's position:
   // never 0 or 1, and exact in a double for the first 2^53 points.
-  boost::random::sobol sequence(dimensions);
-  for (double& coordinate : points) coordinate = static_cast<double>(sequence()) * 0x1p-64;
+  for (double& coordinate : point) coordinate = static_cast<double>(generator_->sequence()) * 0x1p-64;
+}
+
+std::vector<double> sobol_points(std::size_t count, std::size_t dimensions) {
+  std::vector<double> points(count * dimensions);
+  if (!points.empty()) SobolSequence(dimensions).next(points);
   return points;
 }
 

@@ -11,34 +11,16 @@
 #include "engine/base/error.h"
 #include "engine/base/index.h"
 #include "engine/model/catalog.h"
-#include "engine/model/pose_set.h"
 #include "engine/random/distribution.h"
+#include "engine/study/pose_selection.h"
 
 namespace poesy {
-
-struct Range {
-  double lower;
-  double upper;
-};
 
 /// Which mechanism, with the value of every geometry parameter in the order of its description (SI).
 struct MechanismChoice {
   const CatalogEntry* entry = nullptr;
   std::vector<double> geometry;
   Place place;  ///< of the section, for messages about the geometry as a whole
-};
-
-/// Which poses of the platform.
-struct PoseSelection {
-  /// Only interior and file can be run so far; the others may stand in a study that is only evaluated.
-  enum class Select { interior, file, boundary, grid, trajectory };
-
-  Select select = Select::interior;
-  std::size_t count = 0;
-  std::vector<Range> workspace;  ///< one range per pose coordinate, for `interior`
-  std::string file;              ///< as written in the study, for `file`
-  PoseSet from_file;             ///< its poses
-  Place place;                   ///< of the workspace, or of the file's first pose (pose m stands m lines below)
 };
 
 /// How each error source is distributed.
@@ -125,8 +107,5 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
 
 /// Builds the study's mechanism. Throws InputError at the mechanism's place when the geometry is impossible.
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism);
-
-/// The study's poses. Throws InputError at the selection's place for the first pose the model cannot take.
-PoseSet select_poses(const PoseSelection& selection, const Model& model);
 
 }  // namespace poesy

@@ -86,6 +86,18 @@ std::vector<Detail> deformation_details(const ParallelChain& chain) {
   return details;
 }
 
+std::vector<JointDisplacement> joint_displacement_names(const ParallelChain& chain) {
+  std::vector<JointDisplacement> list;
+  for (std::size_t i = 0; i < chain.limbs.size(); ++i) {
+    const std::vector<Joint>& joints = chain.limbs[i].joints;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      list.push_back({"q_" + std::to_string(i + 1) + "_" + std::to_string(j + 1),
+                      joints[j].type == JointType::revolute ? Dimension::angle : Dimension::length});
+    }
+  }
+  return list;
+}
+
 std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options) {
   return std::make_unique<DeformationEvaluator>(model, options);
 }

@@ -35,6 +35,9 @@ DeformationMeasure deformation_measure(const ParallelChain& chain);
 /// One detail per pair of limbs, delta_mu_ki = [omega; v] (Eqs. 30, 46), named with limbs counted from 1.
 std::vector<Detail> deformation_details(const ParallelChain& chain);
 
+/// The displacements q_i_j of all joints, limb by limb, limbs and joints counted from 1.
+std::vector<JointDisplacement> joint_displacement_names(const ParallelChain& chain);
+
 /// Solves blocks of samples. The model must outlive the evaluator.
 std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options);
 

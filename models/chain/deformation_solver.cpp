@@ -11,17 +11,6 @@ namespace {
 
 constexpr int kFlatIterations = 3;
 
-/// The longest a limb is, in m, summed over its fixed frames: the size that rounding errors of positions scale with.
-double reach(const ParallelChain& chain) {
-  double longest = 0.0;
-  for (const Limb& limb : chain.limbs) {
-    double length = 0.0;
-    for (const auto& frame : limb.home) length += frame.p.norm();
-    longest = std::max(longest, length);
-  }
-  return longest;
-}
-
 std::vector<std::size_t> passive_positions(const ParallelChain& chain) {
   std::vector<std::size_t> positions;
   std::size_t joint = 0;
@@ -41,7 +30,7 @@ bool all_finite(std::span<const double> values) {
 }  // namespace
 
 double rounding_level(const ParallelChain& chain) {
-  return 64.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, reach(chain));
+  return 64.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, chain.reach());
 }
 
 DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOptions& options)

@@ -16,8 +16,8 @@ struct Deformation {
   std::uint32_t iterations;
 };
 
-/// Changes of the residual below this may be rounding: 64 eps x max(1, reach in m), the reach being the longest limb's
-/// length over its fixed frames.
+/// Changes of the residual below this may be rounding: 64 eps x max(1, reach in m): rounding errors of positions scale
+/// with the reach.
 double rounding_level(const ParallelChain& chain);
 
 /// Scheme I of Du et al. 2022 (Eqs. 40-44): moves the passive joints so that the poses of the limbs agree as well as

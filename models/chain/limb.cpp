@@ -31,4 +31,14 @@ std::size_t ParallelChain::frames() const {
   return sum_over(limbs, [](const Limb& limb) { return limb.frames(); });
 }
 
+double ParallelChain::reach() const {
+  double longest = 0.0;
+  for (const Limb& limb : limbs) {
+    double length = 0.0;
+    for (const auto& frame : limb.home) length += frame.p.norm();
+    longest = std::max(longest, length);
+  }
+  return longest;
+}
+
 }  // namespace poesy::chain

@@ -43,6 +43,8 @@ struct ParallelChain {
   std::size_t joints() const;
   std::size_t passive_joints() const;
   std::size_t frames() const;
+  /// The longest a limb is, in m, summed over its fixed frames.
+  double reach() const;
 };
 
 /// Error of one fixed frame: [omega; v] with omega the angular and v the linear errors (Eqs. 24-25).

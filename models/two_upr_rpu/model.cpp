@@ -7,6 +7,7 @@
 
 #include "engine/base/contract.h"
 #include "models/chain/deformation_model.h"
+#include "models/chain/passive_condition.h"
 #include "models/two_upr_rpu/errors.h"
 #include "models/two_upr_rpu/kinematics.h"
 
@@ -34,12 +35,9 @@ ModelDescription describe(const Geometry& geometry) {
   description.factor_sets = factor_sets();
   description.responses = chain::deformation_responses();
   description.deformation = chain::deformation_measure(parallel_chain(geometry));
-  description.details = chain::deformation_details(parallel_chain(published));
-  for (int limb = 1; limb <= 3; ++limb) {
-    for (int joint = 1; joint <= 4; ++joint) {
-      description.joints.push_back("q_" + std::to_string(limb) + "_" + std::to_string(joint));
-    }
-  }
+  const chain::ParallelChain chain = parallel_chain(published);
+  description.details = chain::deformation_details(chain);
+  description.joints = chain::joint_displacement_names(chain);
   description.pose_lower = {-0.30, -0.5, -0.6};
   description.pose_upper = {-0.18, 0.5, 0.6};
   description.workspace_note =
@@ -85,6 +83,10 @@ class TwoUprRpu final : public Model {
 
   std::vector<double> joint_displacements(std::span<const double> pose) const override {
     return deformation_.joint_displacements(pose);
+  }
+
+  double condition(std::span<const double> pose) const override {
+    return chain::passive_condition(deformation_.chain, joint_displacements(pose));
   }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {

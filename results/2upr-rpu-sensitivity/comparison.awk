@@ -18,7 +18,7 @@ FNR == 1 {
   }
   next
 }
-table == "published.csv" { order[++count] = $1; published[$1] = $2; next }
+table == "table10.csv" { order[++count] = $1; published[$1] = $2; next }
 table == "global.csv" { mu[run, $1] = $at; next }
 {
   settled = table ~ /_(converged|stagnated)\.csv$/

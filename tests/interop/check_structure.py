@@ -23,6 +23,13 @@ def datasets(group):
             yield from datasets(thing)
 
 
+def groups(parent, path=""):
+    for name in parent:
+        if isinstance(parent[name], h5py.Group):
+            yield path + name
+            yield from groups(parent[name], path + name + "/")
+
+
 def check_labels(file):
     for dataset in datasets(file):
         where = dataset.name
@@ -37,12 +44,12 @@ def check_labels(file):
 
 def check_xarray(path, file):
     """Every group opens with labelled coordinates for all axes that its group shows."""
-    for group in [name for name in file if isinstance(file[name], h5py.Group)]:
+    for group in groups(file):
         with xarray.open_dataset(path, engine="h5netcdf", group=group) as opened:
             opened.load()
-            for name in file[group]:
+            for name in [name for name in file[group] if isinstance(file[group][name], h5py.Dataset)]:
                 assert name in opened.variables, f"xarray does not see /{group}/{name}"
-            if group in ("sensitivity", "solver", "evaluate", "errors"):
+            if group in ("sensitivity", "solver", "evaluate", "errors", "monte_carlo"):
                 for dimension in opened.dims:
                     assert dimension in opened.coords, f"/{group} shows no names for {dimension}"
 

@@ -71,7 +71,10 @@ def check_sensitivity(path):
         expect(file["poses/z"][:], -0.25 + np.arange(4) / 64)
         expect(file["poses/gamma"][:], -np.arange(4) / 4)
         assert [file["poses"][name].attrs["unit"] for name in ("z", "beta", "gamma")] == ["m", "rad", "rad"]
-        assert set(file["poses"]) == {"z", "beta", "gamma"}
+        assert set(file["poses"]) == {"z", "beta", "gamma", "condition", "rejected"}
+        expect(file["poses/condition"][:], [4, 4.5, 5, np.inf])
+        expect(file["poses/rejected/reason"].asstr()[:], ["q_1 above 250 mm", "out of reach: z must be negative"])
+        expect(file["poses/rejected/count"][:], [12, 3])
 
 
 def check_evaluation(path, samples, rows_axis):

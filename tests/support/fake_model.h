@@ -40,6 +40,9 @@ class FakeModel : public Model {
     return {-pose[0], pose[1] + pose[2]};
   }
 
+  /// Singular at beta = +-90 deg.
+  double condition(std::span<const double> pose) const override { return 1.0 / std::abs(std::cos(pose[1])); }
+
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override;
 
  private:
@@ -101,7 +104,7 @@ inline ModelDescription FakeModel::describe() {
                      {"linear_deformation", Dimension::length, "second response"}};
   model.deformation = DeformationMeasure{1, 1e-14};
   model.details = {{"signed", {"angular", "linear"}, "rad,m", "both sums before the absolute value"}};
-  model.joints = {"q_1", "q_2"};
+  model.joints = {{"q_1", Dimension::length}, {"q_2", Dimension::angle}};
   model.pose_lower = {-0.30, -0.5, -0.6};
   model.pose_upper = {-0.18, 0.5, 0.6};
   model.workspace_note = "a box inside reach";

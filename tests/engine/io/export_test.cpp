@@ -8,7 +8,7 @@
 #include "engine/base/units.h"
 #include "engine/io/result_file.h"
 #include "tests/engine/io/example_result.h"
-#include "tests/engine/io/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace poesy::test {
 namespace {
@@ -112,8 +112,9 @@ TEST_F(Export, SolverTablesCountSamples) {
 TEST_F(Export, PosesKeepTheModelsOrderAndUnits) {
   export_tables(folder_ / "s.h5", folder_.path());
   const auto table = read_table(folder_ / "poses.csv");
-  EXPECT_EQ(table[0], (Cells{"pose", "z [m]", "beta [rad]", "gamma [rad]"}));
-  EXPECT_EQ(table[3], (Cells{"2", "-0.21875", "0.25", "-0.5"}));
+  EXPECT_EQ(table[0], (Cells{"pose", "z [m]", "beta [rad]", "gamma [rad]", "condition"}));
+  EXPECT_EQ(table[3], (Cells{"2", "-0.21875", "0.25", "-0.5", "5"}));
+  EXPECT_EQ(table[4][4], "inf");
 }
 
 TEST_F(Export, EvaluationHasARowForEachSolve) {

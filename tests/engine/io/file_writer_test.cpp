@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include "engine/base/error.h"
-#include "tests/engine/io/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace poesy::test {
 namespace {

@@ -6,7 +6,7 @@
 #include "engine/io/h5.h"
 #include "engine/io/result_file.h"
 #include "tests/engine/io/example_result.h"
-#include "tests/engine/io/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 // Read by the leak sanitizer: HDF5 1.10 does not free everything when it refuses a damaged file.
 extern "C" const char* __lsan_default_suppressions();

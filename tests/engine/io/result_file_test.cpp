@@ -8,7 +8,7 @@
 #include "engine/io/study_file.h"
 #include "engine/io/version.h"
 #include "tests/engine/io/example_result.h"
-#include "tests/engine/io/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace poesy::test {
 namespace {
@@ -54,7 +54,8 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   EXPECT_EQ(names_with_units(stored.pose_coordinates), (Names{"z m", "beta rad", "gamma rad"}));
   EXPECT_EQ(names_with_units(stored.factors), (Names{"epsilon_1 rad", "delta_1 m"}));
   EXPECT_EQ(names_with_units(stored.responses), (Names{"angular_deformation rad", "linear_deformation m"}));
-  expect_same(stored.poses, example.poses);
+  expect_same(stored.poses, example.poses.poses);
+  EXPECT_EQ(stored.condition, example.poses.condition);
   expect_same(stored.factor_sigma, {example.study.errors.by_factor[1].standard_deviation(), 0.001}, "sigma");
 
   EXPECT_EQ(found.responses, 2U);
@@ -106,7 +107,8 @@ TEST_P(EvaluationFile, ReadsBackAsWritten) {
   EXPECT_EQ(stored.pairing, GetParam());
   EXPECT_EQ(names_with_units(stored.factors), (Names{"delta_2 m", "epsilon_1 rad"}));
   EXPECT_EQ(stored.joints, (Names{"q_1", "q_2"}));
-  expect_same(stored.poses, example.poses);
+  expect_same(stored.poses, example.poses.poses);
+  EXPECT_EQ(stored.condition, example.poses.condition);
   expect_same(stored.errors, example.errors(GetParam()).values, "errors");
   ASSERT_EQ(stored.details.size(), 3U);
   EXPECT_EQ(stored.details[2].name, "twist_32");

@@ -9,7 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "tests/engine/io/example_result.h"
-#include "tests/engine/io/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace poesy::test {
 namespace {

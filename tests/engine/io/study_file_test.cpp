@@ -72,6 +72,8 @@ TEST(ReadStudy, FillsInDefaults) {
   EXPECT_EQ(study.poses.select, PoseSelection::Select::interior);
   ASSERT_EQ(study.poses.workspace.size(), 3u);
   EXPECT_EQ(study.poses.workspace[2].upper, 0.6);
+  EXPECT_TRUE(study.poses.limits.empty());
+  EXPECT_EQ(study.poses.max_condition, 1e8);
   EXPECT_EQ(study.errors.by_factor[0].sigma(), 1e-3);
   EXPECT_DOUBLE_EQ(study.errors.by_factor[1].sigma(), kDegree);
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(0), FactorIndex(1)}));
@@ -95,6 +97,26 @@ TEST(ReadStudy, VariesAllFactorsWhereTheModelHasNoDeformingSet) {
 TEST(ReadStudy, TakesTheGreatestSeedAndWholeNumbersForNumbers) {
   EXPECT_EQ(study_of(changed("seed = 5", "seed = 9223372036854775807")).seed, 9223372036854775807u);
   EXPECT_EQ(study_of(changed("tolerance = 1e-14", "tolerance = 1")).solver.tolerance, 1.0);
+}
+
+TEST(ReadStudy, TakesLimitsInTheModelsOrderAndAGrid) {
+  const PoseSelection poses =
+      study_of(changed("\"interior\"\ncount = 20",
+                       "\"grid\"\ncount = { gamma = 7, z = 1, beta = 5 }\nmax_condition = 1e6\n"
+                       "limits = { q_2 = [\"-60 deg\", \"60 deg\"], q_1 = [\"-50 mm\", \"80 mm\"] }"))
+          .poses;
+  EXPECT_EQ(poses.select, PoseSelection::Select::grid);
+  EXPECT_EQ(poses.grid_counts, (std::vector<std::size_t>{1, 5, 7}));
+  EXPECT_EQ(poses.count, 35u);
+  EXPECT_EQ(poses.max_condition, 1e6);
+  ASSERT_EQ(poses.limits.size(), 2u);
+  EXPECT_EQ(poses.limits[0].joint, 0u);
+  EXPECT_EQ(poses.limits[0].range.lower, -0.05);
+  EXPECT_EQ(poses.limits[0].range.upper, 0.08);
+  EXPECT_EQ(poses.limits[0].place.line, 13u);
+  EXPECT_EQ(poses.limits[1].joint, 1u);
+  EXPECT_DOUBLE_EQ(poses.limits[1].range.upper, 60 * kDegree);
+  EXPECT_EQ(poses.count_place.line, 11u);
 }
 
 TEST(ReadStudy, FindsThePoseFileBesideTheStudy) {
@@ -224,6 +246,49 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"TitleNumber", "\"A study\"", "^5", {"title is the whole number 5"}}),
     kName);
 
+/// The valid study with another select and other keys in [poses] before the workspace; with "file" instead of it.
+BadStudy bad_poses(const char* name, const std::string& select, const std::string& rest,
+                   std::vector<std::string> words) {
+  return {name, "select = \"interior\"\ncount = 20\n",
+          "select = \"" + select + "\"\n" + rest + (select == "file" ? " # " : "\n"), std::move(words)};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Workspace, BadStudies,
+    testing::Values(
+        bad_poses("UnknownJoint", "interior", "count = 9\nlimits = { ^q_3 = [\"0 mm\", \"1 mm\"] }",
+                  {": unknown joint 'q_3' in [poses.limits]; did you mean 'q_1'?"}),
+        bad_poses(
+            "LimitReversed", "boundary", "count = 9\nlimits = { q_1 = ^[\"8 mm\", \"-5 mm\"] }",
+            {": poses.limits.q_1 runs from 0.008 m to -0.005 m; write the lower end first, and two different ends"}),
+        bad_poses("LimitOfOne", "grid", "count = 9\nlimits = { q_1 = ^[\"8 mm\"] }",
+                  {": poses.limits.q_1 has 1 values; write the two ends of the range"}),
+        bad_poses("LimitDimension", "interior", "count = 9\nlimits = { q_2 = [\"-60 deg\", ^\"60 mm\"] }",
+                  {": poses.limits.q_2[1] is '60 mm', but must be an angle; write it like \"1 deg\""}),
+        bad_poses("LimitBare", "interior", "count = 9\nlimits = { q_1 = [^-50, \"80 mm\"] }",
+                  {": poses.limits.q_1[0] is the bare number -50; write it with a unit, e.g. \"1 mm\""}),
+        bad_poses("LimitsList", "interior", "count = 9\nlimits = ^[]",
+                  {": poses.limits is a list; write a section [poses.limits] or { key = value }"}),
+        bad_poses("MaxConditionOne", "interior", "count = 9\nmax_condition = ^1",
+                  {": poses.max_condition is 1; it must be greater than 1, e.g. 1e6"}),
+        bad_poses("MaxConditionText", "interior", "count = 9\nmax_condition = ^\"1e6\"",
+                  {": poses.max_condition is the text '1e6'; write a number without a unit"}),
+        bad_poses("MaxConditionInfinite", "interior", "count = 9\nmax_condition = ^inf",
+                  {": poses.max_condition is not finite; write a finite number"}),
+        bad_poses("GridZero", "grid", "count = { z = 2, beta = ^0, gamma = 2 }",
+                  {": poses.count.beta is 0; it must be at least 1"}),
+        bad_poses("GridIncomplete", "grid", "count = ^{ z = 2, beta = 3 }",
+                  {": key 'gamma' is missing in [poses.count]; give a number for every pose coordinate of the model"}),
+        bad_poses("GridUnknown", "grid", "count = { z = 2, ^bata = 3, gamma = 1 }",
+                  {": unknown pose coordinate 'bata' in [poses.count]; did you mean 'beta'?"}),
+        bad_poses("GridHuge", "grid", "count = ^{ z = 10000000, beta = 10000000, gamma = 10000000 }",
+                  {": poses.count makes a grid of more than 10000000 poses; write smaller numbers"}),
+        bad_poses("LimitsOfFile", "file", "file = \"p.csv\"\n^limits = { q_1 = [\"0 mm\", \"1 mm\"] }",
+                  {": poses.limits does not belong to select = \"file\"; remove it"}),
+        bad_poses("MaxConditionOfFile", "file", "file = \"p.csv\"\n^max_condition = 10",
+                  {": poses.max_condition does not belong to select = \"file\"; remove it"})),
+    kName);
+
 INSTANTIATE_TEST_SUITE_P(
     Mechanism, BadStudies,
     testing::Values(
@@ -259,9 +324,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"CountTooLargeForToml", "count = 20", "count = 9223372036854775808^", {"not TOML"}},
         BadStudy{"CountFraction", "count = 20", "count = ^20.5", {"poses.count is the number 20.5", "whole number"}},
         BadStudy{"CountText", "count = 20", "count = ^\"20\"", {"poses.count is the text '20'"}},
-        BadStudy{"Boundary", "\"interior\"", "^\"boundary\"", {"not available yet in this version", "interior"}},
-        BadStudy{"Grid", "\"interior\"", "^\"grid\"", {"not available yet in this version"}},
-        BadStudy{"Trajectory", "\"interior\"", "^\"trajectory\"", {"not available yet in this version"}},
+        BadStudy{"Trajectory",
+                 "\"interior\"",
+                 "^\"trajectory\"",
+                 {"not available yet in this version; use \"interior\", \"boundary\", \"grid\" or \"file\""}},
+        BadStudy{"CountsOfInterior",
+                 "count = 20",
+                 "count = ^{ z = 2, beta = 2, gamma = 2 }",
+                 {"poses.count is a section; write a whole number"}},
         BadStudy{"UnknownSelect", "\"interior\"", "^\"exterior\"", {"'exterior'", "did you mean 'interior'?"}},
         BadStudy{"FileBesideInterior", "count = 20", "count = 20\n^file = \"p.csv\"", {"poses.file", "interior"}},
         BadStudy{"CountBesideFile",
@@ -349,9 +419,6 @@ INSTANTIATE_TEST_SUITE_P(
                  {"poses times factors times samples", "fewer samples"}},
         BadStudy{"SamplesFraction", "samples = 100", "samples = ^100.0", {"analysis.samples is the number 100"}},
         BadStudy{"UnknownKind", "\"sensitivity\"", "^\"sensibility\"", {"did you mean 'sensitivity'?"}},
-        BadStudy{"Identification", "\"sensitivity\"", "^\"identification\"", {"not available yet in this version"}},
-        BadStudy{"Evaluate", "\"sensitivity\"", "^\"evaluate\"", {"not available yet in this version"}},
-        BadStudy{"MonteCarlo", "\"sensitivity\"", "^\"monte-carlo\"", {"not available yet in this version"}},
         BadStudy{"Cases", "samples = 100", "samples = 100\n^cases = []", {"analysis.cases", "\"sensitivity\""}},
         BadStudy{"UnknownSet", "[\"epsilon_1\", \"delta_1\"]", "^\"deformin\"", {"did you mean 'deforming'?"}},
         BadStudy{

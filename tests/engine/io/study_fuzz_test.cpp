@@ -72,10 +72,12 @@ TEST(DamagedStudy, MayNestAsDeepAsItsLinesAreLong) {
 
 TEST(DamagedTemplate, IsAStudyOrAnInputErrorWhateverBytesChange) {
   const Catalog catalog = test::fake_catalog();
-  const std::string text = template_text(catalog[0]);
   Damage damage([&](const std::string& path) { read_study(path, catalog, StudyUse::run); });
   std::mt19937_64 random(20240608);
-  for (int k = 0; k < 1000; ++k) damage.try_text(with_changed_bytes(text, random));
+  for (const Analysis::Kind kind : kKinds) {
+    const std::string text = template_text(catalog[0], kind);
+    for (int k = 0; k < 500; ++k) damage.try_text(with_changed_bytes(text, random));
+  }
   EXPECT_GT(damage.refused(), 100);
 }
 

@@ -32,6 +32,14 @@ void expect_same(const Study& a, const Study& b) {
     EXPECT_EQ(a.poses.workspace[c].lower, b.poses.workspace[c].lower);
     EXPECT_EQ(a.poses.workspace[c].upper, b.poses.workspace[c].upper);
   }
+  EXPECT_EQ(a.poses.grid_counts, b.poses.grid_counts);
+  EXPECT_EQ(a.poses.max_condition, b.poses.max_condition);
+  ASSERT_EQ(a.poses.limits.size(), b.poses.limits.size());
+  for (std::size_t k = 0; k < a.poses.limits.size(); ++k) {
+    EXPECT_EQ(a.poses.limits[k].joint, b.poses.limits[k].joint);
+    EXPECT_EQ(a.poses.limits[k].range.lower, b.poses.limits[k].range.lower);
+    EXPECT_EQ(a.poses.limits[k].range.upper, b.poses.limits[k].range.upper);
+  }
   for (std::size_t f = 0; f < a.errors.by_factor.size(); ++f) {
     EXPECT_EQ(a.errors.by_factor[f].shape(), b.errors.by_factor[f].shape());
     EXPECT_EQ(a.errors.by_factor[f].sigma(), b.errors.by_factor[f].sigma());
@@ -41,7 +49,25 @@ void expect_same(const Study& a, const Study& b) {
   EXPECT_EQ(a.analysis.factors, b.analysis.factors);
   EXPECT_EQ(a.analysis.samples, b.analysis.samples);
   EXPECT_EQ(a.analysis.conf_level, b.analysis.conf_level);
-  EXPECT_EQ(background_errors(a), background_errors(b));
+  EXPECT_EQ(background_errors(a.analysis.background, a.model()), background_errors(b.analysis.background, b.model()));
+  EXPECT_EQ(a.analysis.quantiles, b.analysis.quantiles);
+  EXPECT_EQ(a.analysis.pose_share, b.analysis.pose_share);
+  ASSERT_EQ(a.analysis.cases.size(), b.analysis.cases.size());
+  for (std::size_t c = 0; c < a.analysis.cases.size(); ++c) {
+    EXPECT_EQ(a.analysis.cases[c].name, b.analysis.cases[c].name);
+    EXPECT_EQ(a.analysis.cases[c].errors, b.analysis.cases[c].errors);
+  }
+  ASSERT_EQ(a.analysis.groups.size(), b.analysis.groups.size());
+  for (std::size_t g = 0; g < a.analysis.groups.size(); ++g) {
+    EXPECT_EQ(a.analysis.groups[g].name, b.analysis.groups[g].name);
+    EXPECT_EQ(a.analysis.groups[g].linear, b.analysis.groups[g].linear);
+    EXPECT_EQ(a.analysis.groups[g].angular, b.analysis.groups[g].angular);
+  }
+  ASSERT_EQ(a.analysis.reference.has_value(), b.analysis.reference.has_value());
+  if (a.analysis.reference) {
+    EXPECT_EQ(a.analysis.reference->factor, b.analysis.reference->factor);
+    EXPECT_EQ(a.analysis.reference->tolerance, b.analysis.reference->tolerance);
+  }
   EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
   EXPECT_EQ(a.solver.max_iterations, b.solver.max_iterations);
   EXPECT_EQ(a.not_converged, b.not_converged);
@@ -62,6 +88,11 @@ INSTANTIATE_TEST_SUITE_P(
     Studies, ResolvedText,
     testing::Values(
         std::string(test::kValidStudy), shortest_study("[poses]\ncount = 3\n"),
+        shortest_study("[poses]\ncount = 3\nmax_condition = 1234.5\n"
+                       "limits = { q_2 = [\"-60 deg\", \"0.7 rad\"], q_1 = [\"0 mm\", \"250.1 mm\"] }\n"),
+        shortest_study("[poses]\nselect = \"boundary\"\ncount = 692\nlimits = { q_1 = [\"0 mm\", \"250 mm\"] }\n"),
+        shortest_study("[poses]\nselect = \"grid\"\ncount = 158\n"),
+        shortest_study("[poses]\nselect = \"grid\"\ncount = { gamma = 7, z = 1, beta = 5 }\nmax_condition = 1e3\n"),
         shortest_study("[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n"),
         shortest_study("[poses]\ncount = 3\n[errors.override]\ndelta_1 = { distribution = \"triangular\", "
                        "half_width = \"0.123456789012345678 mm\" }\n"),
@@ -85,6 +116,7 @@ arm = "0.06 m"
 select = "interior"
 count = 3
 workspace = { z = ["-0.3 m", "-0.18 m"], beta = ["-0.5 rad", "0.5 rad"], gamma = ["-0.6 rad", "0.6 rad"] }
+max_condition = 1e+08
 
 [errors]
 linear = { distribution = "normal", sigma = "0.001 m" }
@@ -105,6 +137,17 @@ not_converged = "exclude"
 [run]
 seed = 1
 )");
+}
+
+TEST(ResolvedTextOf, AGridUnderLimitsShowsThem) {
+  const std::string text = resolved_text(study_of(
+      shortest_study("[poses]\nselect = \"grid\"\ncount = { z = 1, gamma = 7, beta = 5 }\nmax_condition = 1e6\n"
+                     "limits = { q_2 = [\"-1 rad\", \"0.5 rad\"], q_1 = [\"-50 mm\", \"80 mm\"] }\n")));
+  EXPECT_NE(text.find("count = { z = 1, beta = 5, gamma = 7 }\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("limits = { q_1 = [\"-0.05 m\", \"0.08 m\"], q_2 = [\"-1 rad\", \"0.5 rad\"] }\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("max_condition = 1e+06\n"), std::string::npos) << text;
 }
 
 TEST(ResolvedTextOf, AStudyToEvaluateReadsBackToEvaluate) {
@@ -134,7 +177,7 @@ TEST(ReadableValue, IsExactAndShort) {
 }
 
 TEST(Template, RunsAsItIsAndAsksForTheUsualStudy) {
-  const Study study = study_of(template_text(kCatalog[0]));
+  const Study study = study_of(template_text(kCatalog[0], Analysis::Kind::sensitivity));
   const Study usual = study_of("title = \"Sensitivity of fake\"\n" +
                                shortest_study("[poses]\ncount = 158\n[analysis]\nbackground = { factors = "
                                               "\"benign\", linear = \"1 mm\", angular = \"1 deg\" }\n"));
@@ -148,21 +191,50 @@ TEST(Template, RunsForAModelWithoutSetsAndGeometry) {
   catalog[0].description.workspace_note = "two\nlines";
   catalog[0].build = [](std::span<const double>) { return std::make_unique<test::FakeModel>(); };
   const test::TempFolder folder;
-  const std::string path = folder.write("study.toml", template_text(catalog[0]));
+  const std::string path = folder.write("study.toml", template_text(catalog[0], Analysis::Kind::sensitivity));
   const Study study = read_study(path, catalog, StudyUse::run);
   EXPECT_EQ(study.analysis.factors.size(), 3u);
   EXPECT_FALSE(study.analysis.background);
 }
 
 TEST(Template, NamesEveryKey) {
-  const std::string text = template_text(kCatalog[0]);
-  for (const char* key :
-       {"format = ",     "version = ",       "title = ",     "model = ",          "arm = ",           "select = ",
-        "count = ",      "workspace = ",     "file = ",      "linear = ",         "angular = ",       "override = ",
-        "sigma = ",      "half_width = ",    "kind = ",      "factors = ",        "samples = ",       "conf_level = ",
-        "background = ", "method = ",        "tolerance = ", "max_iterations = ", "not_converged = ", "seed = ",
-        "normal",        "truncated-normal", "uniform",      "triangular",        "exclude",          "include",
-        "fail"}) {
+  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
+  for (const char* key : {"format = ",
+                          "version = ",
+                          "title = ",
+                          "model = ",
+                          "arm = ",
+                          "select = ",
+                          "count = ",
+                          "workspace = ",
+                          "file = ",
+                          "linear = ",
+                          "angular = ",
+                          "override = ",
+                          "sigma = ",
+                          "half_width = ",
+                          "kind = ",
+                          "factors = ",
+                          "samples = ",
+                          "conf_level = ",
+                          "background = ",
+                          "method = ",
+                          "tolerance = ",
+                          "max_iterations = ",
+                          "not_converged = ",
+                          "seed = ",
+                          "normal",
+                          "truncated-normal",
+                          "uniform",
+                          "triangular",
+                          "exclude",
+                          "include",
+                          "fail",
+                          "interior",
+                          "boundary",
+                          "grid",
+                          "limits = ",
+                          "max_condition = "}) {
     EXPECT_NE(text.find(key), std::string::npos) << key;
   }
 }

@@ -30,6 +30,16 @@ TEST(SobolPoints, FewerPointsAreThePrefixOfMore) {
   }
 }
 
+TEST(SobolSequence, GivesTheSamePointsInAnyPortions) {
+  SobolSequence sequence(3);
+  std::vector<double> points(3 * 300);
+  const std::span<double> all(points);
+  sequence.next(all.first(3));
+  sequence.next(all.subspan(3, 3 * 20));
+  for (std::size_t point = 21; point < 300; ++point) sequence.next(all.subspan(3 * point, 3));
+  EXPECT_EQ(points, sobol_points(300, 3));
+}
+
 TEST(SobolPoints, StaysStrictlyInside) {
   for (const double coordinate : sobol_points(5000, 25)) {
     ASSERT_GT(coordinate, 0.0);

@@ -92,7 +92,7 @@ std::size_t allocations_per_unit(Analysis::Kind kind, std::size_t samples) {
   Study study = bench::published_study(4, samples);
   study.analysis.kind = kind;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const Plan plan(study, select_poses(study.poses, *model));
+  const Plan plan(study, select_poses(study.poses, *model).poses);
   UnitOfWork evaluate(plan, *model);
   const auto evaluate_all = [&] {
     for (std::size_t u = 0; u < plan.units(); ++u) evaluate(plan.unit(u));

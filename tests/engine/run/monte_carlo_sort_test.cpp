@@ -62,7 +62,7 @@ class MonteCarloOfAllErrors : public testing::TestWithParam<double> {};
 TEST_P(MonteCarloOfAllErrors, HasTheQuantilesOfAPlainSort) {
   const Study study = study_of(GetParam());
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const PoseSet poses = select_poses(study.poses, *model);
+  const PoseSet poses = select_poses(study.poses, *model).poses;
   const MonteCarloResult found = run_monte_carlo(Plan(study, poses), *model, study.analysis, {}).value();
   const std::size_t levels = found.levels.size();
   double worst = 0.0;

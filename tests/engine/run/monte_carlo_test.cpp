@@ -63,7 +63,7 @@ class FailingModel : public test::FakeModel {
 MonteCarloResult run(const Study& study, const Model& model, std::size_t threads) {
   RunOptions options;
   options.threads = threads;
-  return run_monte_carlo(Plan(study, select_poses(study.poses, model)), model, study.analysis, options).value();
+  return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
 }
 
 /// All samples of a response at a pose, one by one from their addresses.
@@ -84,7 +84,7 @@ std::vector<double> plain_samples(const Study& study, std::span<const double> po
 TEST(RunMonteCarlo, AgreesWithAllSamplesSorted) {
   const Study study = study_of(3, 2 * Plan::kUnitSamples + 77);
   const test::FakeModel model;
-  const PoseSet poses = select_poses(study.poses, model);
+  const PoseSet poses = select_poses(study.poses, model).poses;
   const MonteCarloResult found = run(study, model, 2);
   std::vector<std::vector<double>> overall(2);
   for (std::size_t r = 0; r < 2; ++r) {
@@ -117,7 +117,7 @@ TEST(RunMonteCarlo, FindsTheFoldedNormal) {
   constexpr std::size_t kPoses = 4;
   const Study study = study_of(kPoses, kSamples);
   const test::FakeModel model;
-  const PoseSet poses = select_poses(study.poses, model);
+  const PoseSet poses = select_poses(study.poses, model).poses;
   const MonteCarloResult found = run(study, model, 2);
   // Quantiles of |N(0, 1)| for 0.05, 0.5, 0.9 and 0.99: those of N(0, 1) for 0.525, 0.75, 0.95 and 0.995.
   constexpr double kFolded[4] = {0.0627067779432, 0.6744897501961, 1.6448536269515, 2.5758293035489};
@@ -168,7 +168,7 @@ TEST(RunMonteCarlo, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(RunMonteCarlo, FirstSamplesAreTheSameInALongerStudy) {
   const test::FakeModel model;
   const auto unit = [&](const Study& study, std::size_t u) {
-    const Plan plan(study, select_poses(study.poses, model));
+    const Plan plan(study, select_poses(study.poses, model).poses);
     return PoseUnitEvaluator(plan, model)(plan.unit(u));
   };
   const PoseUnit shorter = unit(study_of(2, Plan::kUnitSamples), 1);
@@ -186,7 +186,8 @@ TEST(RunMonteCarlo, OfOneErrorDrawsWhatASensitivityStudyDraws) {
   const MonteCarloResult together = run(study, model, 2);
   study.analysis.kind = Analysis::Kind::sensitivity;
   const auto alone =
-      run_sensitivity(Plan(study, select_poses(study.poses, model)), model, study.analysis.conf_level, {}).value();
+      run_sensitivity(Plan(study, select_poses(study.poses, model).poses), model, study.analysis.conf_level, {})
+          .value();
   EXPECT_EQ(together.mean, alone.mean);
   EXPECT_EQ(together.std, alone.std);
 }
@@ -223,7 +224,7 @@ TEST(RunMonteCarlo, StopsWhenAsked) {
   options.threads = 2;
   options.stop = &stop;
   options.progress = [&](const Progress& /*progress*/) { stop = true; };
-  EXPECT_FALSE(run_monte_carlo(Plan(study, select_poses(study.poses, model)), model, study.analysis, options));
+  EXPECT_FALSE(run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options));
 }
 
 }  // namespace

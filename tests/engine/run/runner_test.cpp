@@ -31,7 +31,7 @@ Study study_of(std::size_t poses, std::size_t samples) {
 
 struct Prepared {
   explicit Prepared(const Study& study)
-      : model(build_model(study.mechanism)), plan(study, select_poses(study.poses, *model)) {}
+      : model(build_model(study.mechanism)), plan(study, select_poses(study.poses, *model).poses) {}
   std::unique_ptr<Model> model;
   Plan plan;
 };

@@ -67,6 +67,28 @@ TEST(Oracle, JointDisplacements) {
   }
 }
 
+TEST(Condition, IsModestAtTheCornersOfTheWorkspace) {
+  const auto model = published();
+  const ModelDescription& description = model->description();
+  for (int corner = 0; corner < 8; ++corner) {
+    std::vector<double> pose;
+    for (std::size_t c = 0; c < 3; ++c) {
+      pose.push_back((corner >> c & 1) != 0 ? description.pose_upper[c] : description.pose_lower[c]);
+    }
+    EXPECT_GE(model->condition(pose), 1.0);
+    EXPECT_LT(model->condition(pose), 50.0);
+  }
+}
+
+TEST(Description, JointsHaveTheDimensionOfTheirKind) {
+  const auto model = published();
+  ASSERT_EQ(model->description().joints.size(), 12u);
+  for (const JointDisplacement& joint : model->description().joints) {
+    const bool slides = joint.name == "q_1_3" || joint.name == "q_2_3" || joint.name == "q_3_2";
+    EXPECT_EQ(joint.dimension, slides ? Dimension::length : Dimension::angle) << joint.name;
+  }
+}
+
 TEST(Oracle, LimbPosesWithErrorsAtNominalDisplacements) {
   const auto model = published();
   const chain::ParallelChain chain = parallel_chain({});

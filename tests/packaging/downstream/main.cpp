@@ -49,7 +49,7 @@ int main() {
   for (const poesy::CatalogEntry& entry : poesy::registry()) {
     const poesy::Study study = small_study(entry);
     const auto model = poesy::build_model(study.mechanism);
-    const poesy::Plan plan(study, poesy::select_poses(study.poses, *model));
+    const poesy::Plan plan(study, poesy::select_poses(study.poses, *model).poses);
     const auto result = poesy::run_sensitivity(plan, *model, 0.95, {});
     if (!result || !some_index_is_positive(*result)) {
       std::fprintf(stderr, "%s: no index above zero\n", entry.description.name.c_str());

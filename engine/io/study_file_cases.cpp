@@ -1,0 +1,108 @@
+#include "engine/io/study_file_parts.h"
+#include "engine/io/wording.h"
+
+namespace poesy {
+namespace {
+
+void set_case_errors(const StudyValue& value, std::string_view key, const ModelDescription& model,
+                     std::vector<double>& errors) {
+  if (const auto factor = model.find_factor(key)) {
+    errors[factor->value] = value.quantity(model.factors[factor->value].dimension);
+    return;
+  }
+  const Dimension dimension = key == "linear" ? Dimension::length : Dimension::angle;
+  const double size = value.quantity(dimension);
+  for (std::size_t f = 0; f < errors.size(); ++f) {
+    if (model.factors[f].dimension == dimension) errors[f] = size;
+  }
+}
+
+/// The errors of a case: `linear` and `angular` for all, then factor sets, then single factors, each over the last.
+std::vector<double> read_case_errors(const StudySection& section, const ModelDescription& model,
+                                     std::vector<double> errors) {
+  std::vector<std::string_view> known = names(model.factors);
+  const std::vector<std::string_view> sets = names(model.factor_sets);
+  known.insert(known.end(), sets.begin(), sets.end());
+  known.insert(known.end(), {"linear", "angular"});
+  section.allow(known, "factor");
+  for (const std::string_view key : {"linear", "angular"}) {
+    if (const auto value = section.find(key)) set_case_errors(*value, key, model, errors);
+  }
+  for (const FactorSet& set : model.factor_sets) {
+    if (!section.find(set.name)) continue;
+    const StudySection sizes = section.section(set.name);
+    sizes.allow({"linear", "angular"});
+    std::vector<double> all = errors;
+    for (const std::string& key : sizes.keys()) set_case_errors(*sizes.find(key), key, model, all);
+    for (const FactorIndex factor : set.factors) errors[factor.value] = all[factor.value];
+  }
+  for (const Factor& factor : model.factors) {
+    if (const auto value = section.find(factor.name)) set_case_errors(*value, factor.name, model, errors);
+  }
+  return errors;
+}
+
+/// The text of `name`, which no other of its kind may have.
+template <class Named>
+std::string read_name(const StudySection& section, const std::vector<Named>& others, const std::string& usual) {
+  const auto value = section.find("name");
+  const std::string name = value ? value->text() : usual;
+  if (value && (name.empty() || name.find_first_of(",;\"\n\r\t") != std::string::npos)) {
+    value->fail("is '" + printable(name) + "'",
+                "a name is plain text without commas and quotes, for it stands in tables");
+  }
+  for (const Named& other : others) {
+    if (other.name != name) continue;
+    if (value) value->fail("is '" + printable(name) + "', which another one has", "give each a name of its own");
+    throw InputError(section.place(), "it has no name, and '" + name + "' is taken", "write name = \"...\"");
+  }
+  return name;
+}
+
+}  // namespace
+
+std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescription& model,
+                                  const std::vector<double>& background, StudyUse use) {
+  std::vector<ErrorCase> cases;
+  if (const auto value = analysis.find("cases")) {
+    for (const StudyValue& one : value->list()) {
+      const StudySection section = one.section();
+      section.allow({"name", "errors"});
+      const std::string name = read_name(section, cases, "case " + std::to_string(cases.size() + 1));
+      const StudySection errors =
+          section.require("errors", "write e.g. errors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }").section();
+      if (errors.empty()) {
+        throw InputError(errors.place(), "case '" + printable(name) + "' gives no error",
+                         "write e.g. errors = { linear = \"0.1 mm\" }; zero is an error too");
+      }
+      cases.push_back({name, read_case_errors(errors, model, background)});
+    }
+  }
+  if (cases.empty() && use == StudyUse::run) {
+    throw InputError(analysis.place(), "kind = \"evaluate\" needs at least one case",
+                     "write [[analysis.cases]] with name and errors, or use 'poesy evaluate' for a table of errors");
+  }
+  return cases;
+}
+
+std::vector<ErrorSize> read_groups(const StudySection& analysis) {
+  std::vector<ErrorSize> groups;
+  if (const auto value = analysis.find("groups")) {
+    for (const StudyValue& one : value->list()) {
+      const StudySection section = one.section();
+      section.allow({"name", "linear", "angular"});
+      const std::string name = read_name(section, groups, "group " + std::to_string(groups.size() + 1));
+      const auto size = [&](std::string_view key, Dimension dimension) {
+        return section.require(key, "a group sets both").positive_quantity(dimension);
+      };
+      groups.push_back({name, size("linear", Dimension::length), size("angular", Dimension::angle)});
+    }
+    if (groups.empty()) value->fail("is empty", "leave it out for one group of 1 mm and 1 deg");
+  }
+  if (groups.empty()) {
+    groups.push_back({"group 1", display_unit(Dimension::length).si, display_unit(Dimension::angle).si});
+  }
+  return groups;
+}
+
+}  // namespace poesy

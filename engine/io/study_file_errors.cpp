@@ -1,0 +1,75 @@
+#include <array>
+#include <stdexcept>
+
+#include "engine/io/study_file_parts.h"
+#include "engine/io/wording.h"
+
+namespace poesy {
+namespace {
+
+using Shape = Distribution::Shape;
+
+Distribution make_distribution(Shape shape, double sigma, double half_width) {
+  switch (shape) {
+    case Shape::normal:
+      return Distribution::normal(sigma);
+    case Shape::truncated_normal:
+      return Distribution::truncated_normal(sigma, half_width);
+    case Shape::uniform:
+      return Distribution::uniform(half_width);
+    case Shape::triangular:
+      break;
+  }
+  return Distribution::triangular(half_width);
+}
+
+/// A parameter of a distribution; 0 and not allowed where the shape has none of that name.
+double read_parameter(const StudySection& section, std::string_view key, bool belongs, Shape shape,
+                      Dimension dimension) {
+  const std::string owner = "the distribution \"" + std::string(name(shape)) + "\"";
+  if (belongs) return section.require(key, owner + " needs it").positive_quantity(dimension);
+  section.refuse(key, owner);
+  return 0.0;
+}
+
+Distribution read_distribution(const StudyValue& value, Dimension dimension) {
+  constexpr std::array kShapes{Shape::normal, Shape::truncated_normal, Shape::uniform, Shape::triangular};
+  const StudySection section = value.section();
+  section.allow({"distribution", "sigma", "half_width"});
+  std::vector<std::string_view> words;
+  for (const Shape shape : kShapes) words.push_back(name(shape));
+  const Shape shape = kShapes[section.require("distribution", "write e.g. distribution = \"normal\"").word(words)];
+  const bool has_sigma = shape == Shape::normal || shape == Shape::truncated_normal;
+  const double sigma = read_parameter(section, "sigma", has_sigma, shape, dimension);
+  const double half_width = read_parameter(section, "half_width", shape != Shape::normal, shape, dimension);
+  try {
+    return make_distribution(shape, sigma, half_width);
+  } catch (const std::invalid_argument& reason) {
+    value.fail(std::string("is impossible: ") + reason.what(), "correct its parameters");
+  }
+}
+
+Distribution read_default(const StudySection& section, std::string_view key, Dimension dimension) {
+  if (const auto value = section.find(key)) return read_distribution(*value, dimension);
+  return Distribution::normal(display_unit(dimension).si);
+}
+
+}  // namespace
+
+ErrorModel read_error_model(const StudySection& root, const ModelDescription& model) {
+  const StudySection section = root.section("errors");
+  section.allow({"linear", "angular", "override"});
+  const Distribution linear = read_default(section, "linear", Dimension::length);
+  const Distribution angular = read_default(section, "angular", Dimension::angle);
+  const StudySection overrides = section.section("override");
+  overrides.allow(names(model.factors), "factor");
+  ErrorModel errors;
+  for (const Factor& factor : model.factors) {
+    const auto value = overrides.find(factor.name);
+    const Distribution& usual = factor.dimension == Dimension::length ? linear : angular;
+    errors.by_factor.push_back(value ? read_distribution(*value, factor.dimension) : usual);
+  }
+  return errors;
+}
+
+}  // namespace poesy

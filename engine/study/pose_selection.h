@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/model/model.h"
+#include "engine/model/pose_set.h"
+
+namespace poesy {
+
+struct Range {
+  double lower;
+  double upper;
+};
+
+/// The range that one joint's displacement from home must stay in, ends included.
+struct JointLimit {
+  std::size_t joint;  ///< position among the model's joints
+  Range range;        ///< SI
+  Place place;
+};
+
+/// Which poses of the platform.
+struct PoseSelection {
+  /// Trajectory cannot be run so far; it may stand in a study that is only evaluated.
+  enum class Select { interior, file, boundary, grid, trajectory };
+
+  Select select = Select::interior;
+  std::size_t count = 0;                 ///< with grid_counts their product
+  std::vector<std::size_t> grid_counts;  ///< for `grid`: one number per pose coordinate, or empty
+  std::vector<Range> workspace;          ///< one range per pose coordinate; for all but `file`
+  std::vector<JointLimit> limits;        ///< for all but `file`
+  double max_condition = 1e8;            ///< poses above it count as singular; for all but `file`
+  std::string file;                      ///< as written in the study, for `file`
+  PoseSet from_file;                     ///< its poses
+  Place place;                           ///< of the workspace, or of the file's first pose (pose m is m lines below)
+  Place count_place;
+};
+
+/// How many poses were tried and refused for one reason.
+struct RejectedPoses {
+  std::string reason;  ///< "q_1_3 above 80 mm"
+  std::size_t count;
+};
+
+struct SelectedPoses {
+  PoseSet poses;
+  std::vector<double> condition;        ///< [M], see Model::condition; infinity only for `file`
+  std::vector<RejectedPoses> rejected;  ///< most frequent first
+};
+
+/// The study's poses. Deterministic. A pose of the box is feasible when the model reaches it, every limited joint stays
+/// in its range, and its condition number is at most max_condition.
+///
+/// - interior: Sobol' points in the box, in order; the first `count` feasible ones. Fewer poses are the first of more.
+/// - boundary: points of the feasible set's boundary, uniform by area; see boundary_poses(). Fewer are the first of
+/// more.
+/// - grid: with grid_counts all feasible points of that grid, the last coordinate fastest. Ranges are divided evenly,
+///   both ends included; 1 means the middle. Else the coarsest grid with equal numbers for all coordinates and at least
+///   `count` feasible points, thinned evenly to `count`.
+/// - file: the poses of the file.
+///
+/// Throws InputError at the place of the limit that rejected most, or of the selection, when the box gives fewer poses
+/// than wanted (interior and grid: after max(100 000, 100 count) candidates); at count_place when poses of the boundary
+/// coincide to rounding; at the line of a file's first pose that the model cannot reach.
+SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
+
+}  // namespace poesy

@@ -1,0 +1,50 @@
+#include "models/chain/passive_condition.h"
+
+#include <Eigen/SVD>
+#include <limits>
+
+#include "engine/base/contract.h"
+
+namespace poesy::chain {
+namespace {
+
+/// J of Eq. 43 with lengths in units of `unit`. A motion of limb i enters pair (k, i) with +, one of limb k with -.
+Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const double> displacements, double unit) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(chain.pairs.size()),
+                                                   static_cast<Eigen::Index>(chain.passive_joints()));
+  std::size_t joint = 0;
+  Eigen::Index column = 0;
+  const auto add = [&](std::size_t limb, const lie::Screw<double>& spatial) {
+    lie::Screw<double> scaled = spatial;
+    const bool prismatic = spatial.head<3>().isZero(0.0);
+    if (!prismatic) scaled.tail<3>() /= unit;
+    for (std::size_t n = 0; n < chain.pairs.size(); ++n) {
+      const auto row = 6 * static_cast<Eigen::Index>(n);
+      if (chain.pairs[n].i == limb) jacobian.block<6, 1>(row, column) += scaled;
+      if (chain.pairs[n].k == limb) jacobian.block<6, 1>(row, column) -= scaled;
+    }
+    ++column;
+  };
+  for (std::size_t i = 0; i < chain.limbs.size(); ++i) {
+    const Limb& limb = chain.limbs[i];
+    const std::size_t joints = limb.joints.size();
+    forward_kinematics<double>(limb, limb.home, displacements.subspan(joint, joints),
+                               [&](std::size_t, const lie::Screw<double>& spatial) { add(i, spatial); });
+    joint += joints;
+  }
+  return jacobian;
+}
+
+}  // namespace
+
+double passive_condition(const ParallelChain& chain, std::span<const double> displacements) {
+  POESY_EXPECTS(displacements.size() == chain.joints());
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(passive_jacobian(chain, displacements, chain.reach()));
+  const auto& values = svd.singularValues();
+  const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
+  const double largest = values[0];
+  const double smallest = values[values.size() - 1];
+  return smallest > rounding * largest ? largest / smallest : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace poesy::chain

@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/io/h5.h"
+#include "engine/io/result_file.h"
+#include "engine/run/cases.h"
+#include "tests/engine/io/example_result.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy {
+namespace {
+
+/// Two cases at the example's four poses, all details kept.
+class CasesFile : public testing::Test {
+ protected:
+  CasesFile() : example_(), result_(case_result(evaluation(), NotConverged::include)) {
+    example_.study.analysis.kind = Analysis::Kind::evaluate;
+    example_.study.analysis.cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
+    path_ = folder_.file("cases.h5");
+    write_cases(path_, example_.study, example_.poses, result_, example_.facts);
+  }
+
+  EvaluationResult evaluation() const {
+    EvaluationResult all = example_.evaluation(Pairing::every_pose_with_every_row);
+    const std::size_t cells = 2 * test::Example::kPoses;
+    all.samples = 2;
+    all.response.resize(2 * cells);
+    all.detail.resize(8 * cells);
+    all.status.resize(cells);
+    all.iterations.resize(cells);
+    return all;
+  }
+
+  test::TempFolder folder_;
+  test::Example example_;
+  CaseResult result_;
+  std::string path_;
+};
+
+TEST_F(CasesFile, KeepsSolvesCaseByCase) {
+  const h5::File file = h5::File::open(path_);
+  EXPECT_EQ(file.shape("/evaluate/linear_deformation"), (h5::Shape{2, test::Example::kPoses}));
+  const auto values = file.read<double>("/evaluate/linear_deformation");
+  const std::vector<double>& by_pose = result_.evaluation.response;
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t m = 0; m < test::Example::kPoses; ++m) {
+      EXPECT_EQ(values[c * test::Example::kPoses + m], by_pose[(test::Example::kPoses + m) * 2 + c]);
+    }
+  }
+}
+
+TEST_F(CasesFile, IsReadBackAsItWas) {
+  const StoredResult stored = read_result(path_);
+  EXPECT_EQ(stored.kind, "evaluate");
+  EXPECT_EQ(stored.cases, (std::vector<std::string>{"fine", "coarse"}));
+  EXPECT_EQ(stored.evaluation.response, result_.evaluation.response);
+  EXPECT_EQ(stored.evaluation.detail, result_.evaluation.detail);
+  EXPECT_EQ(stored.evaluation.status, result_.evaluation.status);
+  EXPECT_EQ(stored.evaluation.iterations, result_.evaluation.iterations);
+  EXPECT_EQ(stored.evaluation.joint_displacement, result_.evaluation.joint_displacement);
+  EXPECT_EQ(stored.case_result.mean, result_.mean);
+  EXPECT_EQ(stored.case_result.max, result_.max);
+  EXPECT_EQ(stored.case_result.count, result_.count);
+  EXPECT_EQ(stored.errors, (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}));
+  EXPECT_TRUE(verify_result(path_).matches());
+}
+
+TEST_F(CasesFile, IsExportedWithItsNames) {
+  const std::string tables = folder_.file("tables");
+  export_tables(path_, tables);
+  EXPECT_EQ(test::read_bytes(tables + "/errors.csv"),
+            "case,delta_1 [m],epsilon_1 [rad],delta_2 [m]\nfine,0.001,0.002,0.003\ncoarse,0.004,0.005,0.006\n");
+  const std::string cases = test::read_bytes(tables + "/cases.csv");
+  EXPECT_EQ(cases.substr(0, cases.find('\n')),
+            "case,poses,angular_deformation_mean [rad],angular_deformation_max [rad],linear_deformation_mean [m],"
+            "linear_deformation_max [m]");
+}
+
+IdentificationResult identification() {
+  IdentificationResult result;
+  result.factors = 2;
+  result.groups = 2;
+  result.poses = test::Example::kPoses;
+  result.rounding = 1.5e-14;
+  result.required_poses = 3;
+  result.single_below = {0, 4, 1, 4};
+  result.single_max = {1e-3, 0.0, 2e-3, std::numeric_limits<double>::infinity()};
+  result.not_solved = {0, 0, 1, 0};
+  result.coupled_below = {0, 2, 0, 3};
+  result.coupled_reduced = {0, 4, 0, 1};
+  result.single_by_group = {1, 0, 1, 0};
+  result.coupled_by_group = {1, 1, 1, 0};
+  result.single = {1, 0};
+  result.coupled = {1, 1};
+  result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
+  result.solves.by_status = {5, 4, 3, 2, 1};
+  return result;
+}
+
+class IdentificationFile : public testing::Test {
+ protected:
+  IdentificationFile() : path_(folder_.file("identification.h5")) {
+    example_.study.analysis.kind = Analysis::Kind::identification;
+    example_.study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+  }
+
+  StoredResult stored(const IdentificationResult& result) {
+    write_identification(path_, example_.study, example_.poses, result, example_.facts);
+    return read_result(path_);
+  }
+
+  test::TempFolder folder_;
+  test::Example example_;
+  std::string path_;
+};
+
+TEST_F(IdentificationFile, IsReadBackAsItWas) {
+  const IdentificationResult written = identification();
+  const StoredResult read = stored(written);
+  const IdentificationResult& found = read.identification;
+  EXPECT_EQ(read.kind, "identification");
+  EXPECT_EQ(read.groups[1].name, "small");
+  EXPECT_EQ(read.groups[1].angular, 4e-4);
+  EXPECT_EQ(found.poses, written.poses);
+  EXPECT_EQ(found.rounding, written.rounding);
+  EXPECT_EQ(found.required_poses, written.required_poses);
+  EXPECT_EQ(found.single_below, written.single_below);
+  EXPECT_EQ(found.single_max, written.single_max);
+  EXPECT_EQ(found.not_solved, written.not_solved);
+  EXPECT_EQ(found.coupled_below, written.coupled_below);
+  EXPECT_EQ(found.coupled_reduced, written.coupled_reduced);
+  EXPECT_EQ(found.single_by_group, written.single_by_group);
+  EXPECT_EQ(found.coupled_by_group, written.coupled_by_group);
+  EXPECT_EQ(found.single, written.single);
+  EXPECT_EQ(found.coupled, written.coupled);
+  EXPECT_EQ(found.solves.by_status, written.solves.by_status);
+  ASSERT_EQ(found.couplings.size(), 2u);
+  EXPECT_EQ(found.couplings[1].first, 1u);
+  EXPECT_EQ(found.couplings[1].deforming_poses, 2u);
+  EXPECT_TRUE(verify_result(path_).matches());
+}
+
+TEST_F(IdentificationFile, MayHaveNoCouplings) {
+  IdentificationResult none = identification();
+  none.couplings.clear();
+  EXPECT_TRUE(stored(none).identification.couplings.empty());
+}
+
+TEST_F(IdentificationFile, IsExportedGroupByGroup) {
+  stored(identification());
+  const std::string tables = folder_.file("tables");
+  export_tables(path_, tables);
+  EXPECT_EQ(test::read_bytes(tables + "/identification.csv"),
+            "factor,single,coupled,single_group_1,single_group_2,coupled_group_1,coupled_group_2\n"
+            "epsilon_1,1,1,1,1,1,1\ndelta_1,0,1,0,0,1,0\n");
+  EXPECT_EQ(test::read_bytes(tables + "/couplings.csv"),
+            "coupling,group,first_factor,second_factor,poses\n0,1,0,1,4\n1,2,1,0,2\n");
+  EXPECT_EQ(test::read_bytes(tables + "/single_below.csv"), "factor,group_1,group_2\nepsilon_1,0,1\ndelta_1,4,4\n");
+}
+
+}  // namespace
+}  // namespace poesy
