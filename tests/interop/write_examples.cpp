@@ -12,11 +12,12 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const std::string folder = argv[1];
-  const poesy::test::Example example;
+  poesy::test::Example example;
   example.write_sensitivity(folder + "/sensitivity.h5");
   example.write_evaluation(folder + "/evaluate.h5", Pairing::every_pose_with_every_row);
   example.write_evaluation(folder + "/paired.h5", Pairing::row_by_row);
-  for (const char* name : {"/sensitivity", "/evaluate", "/paired"}) {
+  example.write_monte_carlo(folder + "/monte_carlo.h5");
+  for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo"}) {
     poesy::export_tables(folder + name + ".h5", folder + name);
   }
   return 0;

@@ -21,6 +21,10 @@ class Determinism(ProgramTest):
         self.assertNotEqual(self.content_hash(STUDY), self.content_hash(STUDY, "--seed", "6"))
         self.assertEqual(self.content_hash(STUDY), self.content_hash(STUDY, "--seed", "5"))
 
+    def test_monte_carlo(self):
+        study = STUDY.replace('"sensitivity"', '"monte-carlo"')
+        self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 3)}), 1)
+
     def test_evaluate(self):
         self.write("study.toml", STUDY)
         self.write("poses.csv", "gamma,z,beta\n" + "".join(f"{0.1 * k},-0.25,0.1\n" for k in range(4)))

@@ -74,6 +74,38 @@ class Example {
     return result;
   }
 
+  /// Two quantiles; sets the study's kind and levels to match. Numbers count on through the arrays.
+  MonteCarloResult monte_carlo() {
+    study.analysis.kind = Analysis::Kind::monte_carlo;
+    study.analysis.quantiles = {0.05, 0.995};
+    MonteCarloResult result;
+    result.responses = 2;
+    result.poses = kPoses;
+    result.conf_level = 0.9;
+    result.quantile_relative_error = 1.0 / 512.0;
+    result.levels = study.analysis.quantiles;
+    double next = 0.0;
+    const auto fill = [&](std::vector<double>& values, std::size_t length) {
+      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
+      values.back() = std::numeric_limits<double>::quiet_NaN();
+    };
+    for (auto* values :
+         {&result.mean, &result.mean_ci_low, &result.mean_ci_high, &result.std, &result.min, &result.max}) {
+      fill(*values, 2 * kPoses);
+    }
+    fill(result.quantiles, 2 * kPoses * 2);
+    for (auto* values : {&result.overall_mean, &result.overall_std, &result.overall_min, &result.overall_max}) {
+      fill(*values, 2);
+    }
+    fill(result.overall_quantiles, 4);
+    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) result.count.push_back(97 - cell);
+    result.overall_count = {382, 366};
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      result.solves.push_back({.by_status = {90 - m, 7, 2, 1, m}, .iterations = 700 + m, .most_iterations = 50});
+    }
+    return result;
+  }
+
   EvaluationResult evaluation(Pairing pairing) const {
     const std::size_t samples = pairing == Pairing::row_by_row ? 1 : kSamples;
     const std::size_t rows = kPoses * samples;
@@ -99,6 +131,10 @@ class Example {
 
   void write_sensitivity(const std::string& path) const {
     poesy::write_sensitivity(path, study, poses, sensitivity(), facts);
+  }
+  void write_monte_carlo(const std::string& path) {
+    const MonteCarloResult result = monte_carlo();
+    poesy::write_monte_carlo(path, study, poses, result, facts);
   }
   void write_evaluation(const std::string& path, Pairing pairing) const {
     poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);

@@ -186,7 +186,8 @@ TEST(RunMonteCarlo, OfOneErrorDrawsWhatASensitivityStudyDraws) {
   const MonteCarloResult together = run(study, model, 2);
   study.analysis.kind = Analysis::Kind::sensitivity;
   const auto alone =
-      run_sensitivity(Plan(study, select_poses(study.poses, model).poses), model, study.analysis.conf_level, {}).value();
+      run_sensitivity(Plan(study, select_poses(study.poses, model).poses), model, study.analysis.conf_level, {})
+          .value();
   EXPECT_EQ(together.mean, alone.mean);
   EXPECT_EQ(together.std, alone.std);
 }
