@@ -17,5 +17,6 @@ void add_export(CLI::App& program, Action& action);
 void add_verify(CLI::App& program, Action& action);
 void add_models(CLI::App& program, Action& action);
 void add_template(CLI::App& program, Action& action);
+void add_tolerances(CLI::App& program, Action& action);
 
 }  // namespace poesy::app

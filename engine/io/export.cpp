@@ -53,6 +53,12 @@ void CsvTable::flush() {
   text_.clear();
 }
 
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw FileError(folder, "cannot be made (" + error.message() + ")", "choose another folder");
+}
+
 std::string column(const std::string& name, const std::string& unit) {
   return unit == "1" ? name : name + " [" + unit + "]";
 }
@@ -77,9 +83,7 @@ void write_factors(TableFolder& folder, const StoredResult& result) {
 
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder) {
   const StoredResult result = read_result(result_path);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder, "cannot be made (" + error.message() + ")", "choose another folder");
+  make_folder(folder);
   TableFolder tables(folder);
   write_poses(tables, result);
   if (result.kind == result_format::kSensitivity) {

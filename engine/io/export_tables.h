@@ -17,7 +17,7 @@ class CsvTable {
  public:
   CsvTable(const std::string& path, const std::vector<std::string>& columns);
 
-  /// A line: its first cell as it stands, then numbers; NaN as "NaN".
+  /// A line: its first cell (or cells, with their commas) as it stands, then numbers; NaN as "NaN".
   void row(const std::string& first, std::span<const double> rest);
   /// The file appears under its name.
   void commit();
@@ -51,6 +51,9 @@ class TableFolder {
   std::vector<std::string> files_;
 };
 
+/// Makes a folder if it is missing. Throws FileError.
+void make_folder(const std::string& folder);
+
 /// "name [unit]", or the name alone for a pure number.
 std::string column(const std::string& name, const std::string& unit);
 
@@ -77,6 +80,8 @@ inline const auto kDisplay = [](const std::string& unit) { return std::string(di
 void write_factors(TableFolder& folder, const StoredResult& result);
 
 void export_sensitivity(TableFolder& folder, const StoredResult& result);
+/// tolerances_RESPONSE.csv for every response; none for a file of an older version.
+void export_tolerances(TableFolder& folder, const StoredResult& result);
 void export_evaluation(TableFolder& folder, const StoredResult& result);
 void export_identification(TableFolder& folder, const StoredResult& result);
 void export_monte_carlo(TableFolder& folder, const StoredResult& result);

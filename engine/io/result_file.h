@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/model/pose_set.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
+#include "engine/stats/tolerance.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -57,7 +60,9 @@ struct StoredResult {
   std::vector<NamedUnit> factors;
   std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;
-  SensitivityResult sensitivity;
+  SensitivityResult sensitivity;           ///< `background` is empty in files of older versions
+  std::vector<std::uint64_t> factor_limb;  ///< [P] of a sensitivity result; empty in files of older versions
+  std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
   EvaluationResult evaluation;
   std::vector<Detail> details;
   std::vector<std::string> joints;
@@ -92,6 +97,8 @@ Verification verify_result(const std::string& path);
 ///     not_converged.csv    factor | one column a pose
 ///     factors.csv          factor | standard deviation
 ///     poses.csv            pose | coordinates, condition number
+///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
+///                               share, equal-effect tolerance in SI and in the units people read ("inf": no limit)
 ///
 /// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
 /// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and

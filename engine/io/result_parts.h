@@ -44,7 +44,9 @@ inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
-/// The standard deviations of the errors that the study varies: /factors/sigma.
+/// The standard deviations of the errors that the study varies, [P].
+std::vector<double> sigma_of(const Study& study);
+/// These as /factors/sigma.
 void add_sigma(ResultBuilder& result, const Study& study);
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
@@ -53,6 +55,11 @@ std::vector<SolveCounts> read_solver(const h5::File& file, std::size_t cells);
 void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found);
 /// Fills in `sensitivity` and `factor_sigma`.
 void read_sensitivity(const h5::File& file, StoredResult& result);
+
+/// What a program that sets tolerances needs of a sensitivity result, without the rest: /tolerances.
+void add_tolerances(ResultBuilder& result, const Study& study, const SensitivityResult& found);
+/// Fills in `factor_limb` and `tolerance_reference`.
+void read_tolerances(const h5::File& file, StoredResult& result);
 
 void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found);
 void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing);

@@ -27,6 +27,8 @@ void add_local_indices(ResultBuilder& result, const SensitivityResult& found) {
   result.add("/sensitivity/mean", axes, found.mean, {response_unit, "Mean of the response over the samples"});
   result.add("/sensitivity/std", axes, found.std,
              {response_unit, "Standard deviation of the response over the samples"});
+  result.add("/sensitivity/background", {"response", "pose"}, found.background,
+             {response_unit, "The response with all varied errors zero; NaN where that was not solved"});
 }
 
 void add_indices(ResultBuilder& result, const SensitivityResult& found) {
@@ -63,6 +65,7 @@ SensitivityResult read_indices(const h5::File& file) {
   found.global = read("global", pairs);
   found.global_ci_low = read("global_ci_low", pairs);
   found.global_ci_high = read("global_ci_high", pairs);
+  if (file.exists("/sensitivity/background")) found.background = read("background", found.responses * found.poses);
   found.solves = read_solver(file, found.factors * found.poses);
   return found;
 }
@@ -72,12 +75,14 @@ SensitivityResult read_indices(const h5::File& file) {
 void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
   add_sigma(result, study);
   add_indices(result, found);
+  add_tolerances(result, study, found);
   add_solver(result, {"factor", "pose"}, found.solves);
 }
 
 void read_sensitivity(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_exactly<double>(file, "/factors/sigma", result.factors.size());
   result.sensitivity = read_indices(file);
+  if (file.exists("/tolerances")) read_tolerances(file, result);
 }
 
 }  // namespace poesy

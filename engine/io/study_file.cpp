@@ -19,8 +19,7 @@ constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kLongestLine = 16384;
 constexpr std::int64_t kVersion = 1;
 
-std::string read_lines(const std::string& path) {
-  std::string text = read_text(path, "study", kMostBytes);
+void check_lines(const std::string& text, const std::string& path) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw InputError({path, 1, 1}, "the study is empty", "'poesy template MODEL' writes one to start from");
   }
@@ -33,7 +32,6 @@ std::string read_lines(const std::string& path) {
     }
     begin = end + 1;
   }
-  return text;
 }
 
 toml::table parse(const std::string& text, const std::string& path) {
@@ -159,7 +157,11 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
 }  // namespace
 
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) {
-  const std::string text = read_lines(path);
+  return study_of_text(read_text(path, "study", kMostBytes), path, catalog, use);
+}
+
+Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use) {
+  check_lines(text, path);
   const toml::table table = parse(text, path);
   Study study = study_from(StudySection(table, "", {path, 1, 1}), catalog, use);
   static_cast<void>(build_model(study.mechanism));

@@ -20,6 +20,9 @@ enum class StudyUse {
 /// A pose file named by the study is found relative to the study's folder.
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use);
 
+/// The same for a study's text; `path` names it in messages.
+Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use);
+
 /// The study with every default filled in, as TOML that reads back to the same study.
 std::string resolved_text(const Study& study);
 

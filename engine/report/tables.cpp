@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/report/display.h"
+#include "engine/stats/tolerance.h"
 
 namespace poesy {
 namespace {
@@ -22,11 +23,8 @@ std::vector<std::size_t> shown_responses(const StoredResult& result, std::size_t
   return shown;
 }
 
-/// Below this, in SI, an index is rounding: the solver works to about 1e-14 rad or m for errors of about 1e-3.
-constexpr double kRounding = 1e-10;
-
 std::string number(double value, double scale) {
-  if (std::abs(value) < kRounding) return fmt::format("{:>8}", "0");
+  if (std::abs(value) < kIndexRounding) return fmt::format("{:>8}", "0");
   return fmt::format("{:>8.4g}", value * scale);
 }
 

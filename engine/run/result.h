@@ -40,7 +40,8 @@ struct SensitivityResult {
   std::vector<double> global;          ///< [R x P] Eqs. 53-54
   std::vector<double> global_ci_low;   ///< [R x P]
   std::vector<double> global_ci_high;  ///< [R x P]
-  std::vector<SolveCounts> solves;     ///< [P x M]
+  std::vector<double> background;      ///< [R x M] all varied errors zero; NaN where that was not solved
+  std::vector<SolveCounts> solves;     ///< [P x M] of the samples; the background's solves are not among them
 
   SolveCounts total() const;
 };

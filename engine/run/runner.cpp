@@ -108,7 +108,9 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
         counter.add(stats.solves);
       });
   if (!complete) return std::nullopt;
-  return sensitivity_result(plan, cells, conf_level);
+  SensitivityResult result = sensitivity_result(plan, cells, conf_level);
+  result.background = background_responses(plan, model);
+  return result;
 }
 
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,

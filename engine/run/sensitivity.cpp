@@ -1,5 +1,8 @@
 #include "engine/run/sensitivity.h"
 
+#include <array>
+#include <limits>
+
 #include "engine/base/contract.h"
 #include "engine/stats/sensitivity_index.h"
 
@@ -44,6 +47,41 @@ SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats
   }
   for (const UnitStats& cell : cells) result.solves.push_back(cell.solves);
   return result;
+}
+
+std::vector<double> background_responses(const Plan& plan, const Model& model) {
+  const std::size_t responses = model.description().responses.size();
+  const std::size_t poses = plan.poses().size();
+  const auto evaluator = model.evaluator(plan.solver());
+  std::vector<double> errors(plan.background().begin(), plan.background().end());
+  for (const FactorIndex factor : plan.factors()) errors[factor.value] = 0.0;
+  const std::array zero{0.0};
+  std::array status{SolveStatus::converged};
+  std::array iterations{std::uint32_t{0}};
+  std::vector<double> outcome(responses);
+  std::vector<double> background(responses * poses);
+  for (std::size_t m = 0; m < poses; ++m) {
+    evaluator->evaluate({plan.poses()[PoseIndex(m)], errors, plan.factors().first(1), zero, 1},
+                        {outcome, status, iterations, {}});
+    for (std::size_t r = 0; r < responses; ++r) {
+      background[r * poses + m] = solved(status[0]) ? outcome[r] : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return background;
+}
+
+ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response) {
+  POESY_EXPECTS(sigma.size() == result.factors && result.background.size() == result.responses * result.poses);
+  const auto part = [&](const std::vector<double>& values, std::size_t length) {
+    return std::span(values).subspan(response * length, length);
+  };
+  const std::size_t cells = result.factors * result.poses;
+  return {.index = part(result.global, result.factors),
+          .sigma = sigma,
+          .count = part(result.count, cells),
+          .mean = part(result.mean, cells),
+          .std = part(result.std, cells),
+          .background = part(result.background, result.poses)};
 }
 
 }  // namespace poesy

@@ -30,6 +30,29 @@ def numbered(array, poses):
     return values
 
 
+def check_tolerances(found):
+    """Of the indices 5000 and 5010, 5100 and NaN; the reference is the smaller effect, at 1 mm or 1 degree."""
+    expect(found.coords["response"], RESPONSES)
+    expect(found.coords["factor"], FACTORS)
+    expect(found["kind"], ["angular", "linear"])
+    expect(found["limb"], [1, 1])
+    expect(found["unit"], ["rad", "m"])
+    expect(found["index"], [[5000, 5010], [5100, np.nan]])
+    expect(found["index_ci_low"], [[6000, 6010], [6100, np.nan]])
+    expect(found["index_ci_high"], [[7000, 7010], [7100, np.nan]])
+    expect(found["reference_factor"], ["delta_1", "epsilon_1"])
+    degree = np.pi / 180
+    np.testing.assert_allclose(found["reference_tolerance"], [0.001, degree], rtol=1e-15)
+    np.testing.assert_allclose(found["equal_effect"], [[5.01 / 5000, 0.001], [degree, np.nan]], rtol=1e-15)
+    effects = np.array([5000 * 0.5 / np.sqrt(3), 5.01]) ** 2
+    np.testing.assert_allclose(found["variance_share"], [effects / effects.sum(), [np.nan, np.nan]], rtol=1e-14)
+    background = np.arange(8).reshape(2, 4) / 16
+    np.testing.assert_allclose(found["background_rms"], np.sqrt((background**2).mean(axis=1)), rtol=1e-15)
+    square = (numbered(3, 4) ** 2 + numbered(4, 4) ** 2 * 96 / 97).mean(axis=2) - (background**2).mean(axis=1)[:, None]
+    sigma = np.array([0.5 / np.sqrt(3), 0.001])
+    np.testing.assert_allclose(found["rms_effect"], np.sqrt(square) / sigma, rtol=1e-12)
+
+
 def check_sensitivity(path):
     found = opened(path, "sensitivity")
     expect(found.coords["response"], RESPONSES)
@@ -48,6 +71,11 @@ def check_sensitivity(path):
     assert found.attrs["conf_level"] == 0.95
     for name in ("global_ci_low", "global_ci_high", "local_ci_low", "local_ci_high"):
         assert found[name].attrs["conf_level"] == 0.95
+
+    assert found["background"].dims == ("response", "pose")
+    expect(found["background"], np.arange(8).reshape(2, 4) / 16)
+
+    check_tolerances(opened(path, "tolerances"))
 
     solver = opened(path, "solver")
     cell = np.arange(8).reshape(2, 4)

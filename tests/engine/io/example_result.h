@@ -67,6 +67,7 @@ class Example {
       values->back() = std::numeric_limits<double>::quiet_NaN();
     }
     result.count.assign(result.local.size(), 97.0);
+    for (std::size_t k = 0; k < 2 * kPoses; ++k) result.background.push_back(static_cast<double>(k) / 16.0);
     for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
       result.solves.push_back(
           {.by_status = {90 - cell, 7, 2, 1, cell}, .iterations = 700 + cell, .most_iterations = 50});

@@ -69,7 +69,9 @@ TEST_F(Export, SensitivityHasThePromisedTables) {
                                       "solves_singular.csv",
                                       "solves_stagnated.csv",
                                       "std_angular_deformation.csv",
-                                      "std_linear_deformation.csv"}));
+                                      "std_linear_deformation.csv",
+                                      "tolerances_angular_deformation.csv",
+                                      "tolerances_linear_deformation.csv"}));
 }
 
 TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {

@@ -51,6 +51,7 @@ TEST(RunSensitivity, HasTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(many.global, one.global);
     EXPECT_EQ(many.local, one.local);
     EXPECT_EQ(many.mean, one.mean);
+    EXPECT_EQ(many.background, one.background);
     EXPECT_EQ(many.local_ci_low, one.local_ci_low);
     EXPECT_EQ(many.global_ci_high, one.global_ci_high);
   }

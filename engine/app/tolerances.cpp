@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "engine/app/command.h"
+#include "engine/app/exit_code.h"
+#include "engine/base/error.h"
+#include "engine/base/units.h"
+#include "engine/io/tolerance_files.h"
+#include "engine/io/wording.h"
+#include "engine/report/display.h"
+#include "engine/report/tolerance_table.h"
+#include "engine/run/sensitivity.h"
+#include "models/registry.h"
+
+namespace poesy::app {
+namespace {
+
+struct Options {
+  std::string result;
+  std::string response;
+  std::optional<std::string> limit;
+  std::optional<std::string> reference;
+  std::string folder;
+};
+
+/// Position of the thing that an option names.
+std::size_t position(const std::vector<NamedUnit>& things, const std::string& name, std::string_view option,
+                     std::string_view what) {
+  const auto at = std::ranges::find(things, name, &NamedUnit::name);
+  if (at != things.end()) return static_cast<std::size_t>(at - things.begin());
+  throw InputError({}, fmt::format("{}: '{}' is no {} of this result", option, printable(name), what),
+                   suggestion(name, names(things)));
+}
+
+/// A quantity above zero of the dimension that belongs to an SI unit.
+double positive(const std::string& text, std::string_view option, const NamedUnit& owner) {
+  const Dimension dimension = dimension_of(owner.unit);
+  const std::string example = fmt::format("{} is measured in {}", owner.name, display_unit(dimension).name);
+  Quantity quantity;
+  if (const auto number = parse_number(text); number && dimension == Dimension::number) {
+    quantity.si = *number;
+  } else {
+    try {
+      quantity = parse_quantity(text);
+    } catch (const QuantityError& error) {
+      throw InputError({}, fmt::format("{}: {}", option, printable(error.what(), 200)), example);
+    }
+  }
+  if (quantity.dimension != dimension) {
+    throw InputError({}, fmt::format("{}: '{}' is no {}", option, printable(text), name(dimension)), example);
+  }
+  if (!(quantity.si > 0.0)) {
+    throw InputError({}, fmt::format("{}: '{}' is not above zero", option, printable(text)), "write a positive one");
+  }
+  return quantity.si;
+}
+
+StoredResult read_sensitivity_result(const std::string& path) {
+  StoredResult result = read_result(path);
+  if (result.kind != "sensitivity") {
+    throw InputError({path}, "tolerances need indices, but this is a result of kind '" + result.kind + "'",
+                     "give the result of a sensitivity study");
+  }
+  if (result.factor_limb.empty() || result.sensitivity.background.empty()) {
+    throw InputError({path}, "has no tolerances, for an older poesy (" + result.poesy_version + ") wrote it",
+                     "run the study again");
+  }
+  return result;
+}
+
+std::optional<ReferenceError> reference_of(const Options& options, const StoredResult& result, std::size_t response) {
+  if (!options.reference) return result.tolerance_reference[response];
+  const std::size_t equals = options.reference->find('=');
+  const std::size_t factor = position(result.factors, options.reference->substr(0, equals), "--reference", "error");
+  const NamedUnit& named = result.factors[factor];
+  if (equals == std::string::npos) return ReferenceError{factor, display(named).si};
+  return ReferenceError{factor, positive(options.reference->substr(equals + 1), "--reference", named)};
+}
+
+void check_reference(const StoredResult& result, const ResponseStudy& response, const std::string& name,
+                     const std::optional<ReferenceError>& reference) {
+  if (!reference) {
+    throw InputError({}, fmt::format("--response: no error of this result has an effect on {}", name),
+                     "there is nothing to set tolerances by; name another response");
+  }
+  if (has_effect(response.index[reference->factor])) return;
+  const std::string& factor = result.factors[reference->factor].name;
+  if (std::isnan(response.index[reference->factor])) {
+    throw InputError({}, fmt::format("--reference: the effect of '{}' on {} is not known", factor, name),
+                     "name another");
+  }
+  throw InputError(
+      {},
+      fmt::format("--reference: '{}' has no effect on {} (index 0), so nothing can be counted from it", factor, name),
+      "name another");
+}
+
+void check_prediction(const StoredResult& result, const MeanSquare& response, const std::string& name) {
+  if (std::isnan(response.background)) {
+    throw InputError({},
+                     fmt::format("--limit: {} with the background alone is not known, for a pose was not solved", name),
+                     "raise [solver] max_iterations and run the study again, or leave out --limit");
+  }
+  for (std::size_t p = 0; p < response.effects.size(); ++p) {
+    if (!std::isnan(response.effects[p])) continue;
+    throw InputError({},
+                     fmt::format("--limit: the effect of '{}' on {} is not known at a pose where too few samples count",
+                                 result.factors[p].name, name),
+                     "run the study with more samples, or leave out --limit");
+  }
+}
+
+LimitTolerances within(const Options& options, const StoredResult& result, const ResponseStudy& study,
+                       const MeanSquare& response, const NamedUnit& named) {
+  const double limit = positive(*options.limit, "--limit", named);
+  check_prediction(result, response, named.name);
+  if (limit * limit <= response.background) {
+    throw InputError(
+        {},
+        fmt::format("--limit: the background alone gives {} a root mean square of {}, so no tolerance can "
+                    "meet {}",
+                    named.name, response_text(named, std::sqrt(response.background)), response_text(named, limit)),
+        "raise the limit, or study smaller errors in [analysis] background");
+  }
+  return limit_tolerances(study, response, limit);
+}
+
+/// Writes what -d asks for; says what that was.
+std::string write_files(const Options& options, const StoredResult& result, const ResponseTolerances& found) {
+  std::string commands;
+  if (found.limit) {
+    for (const std::string& study : write_confirmation(options.folder, result, found, registry())) {
+      commands += "confirm with: poesy run " + study + "\n";
+    }
+  }
+  return write_tolerances(options.folder, result, found) + "\n" + commands;
+}
+
+/// How a Monte Carlo study settles whether the limit holds.
+std::string explanation(const StoredResult& result, const ResponseTolerances& found) {
+  const NamedUnit& response = result.responses[found.response];
+  return fmt::format("the limit holds if their mean of {} over all poses, as 'poesy show' prints it, is below {}\n",
+                     response.name, response_text(response, found.limit->limit));
+}
+
+int set_tolerances(const Options& options) {
+  const StoredResult result = read_sensitivity_result(options.result);
+  const std::size_t response = position(result.responses, options.response, "--response", "response");
+  const NamedUnit& named = result.responses[response];
+  const ResponseStudy study = response_study(result.sensitivity, result.factor_sigma, response);
+  const std::optional<ReferenceError> reference = reference_of(options, result, response);
+  check_reference(result, study, named.name, reference);
+  ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
+  if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
+  std::string text = tolerance_table(result, found) + "\n";
+  if (!options.folder.empty()) {
+    text += write_files(options, result, found);
+  } else if (found.limit) {
+    text += "-d DIR writes this table and the Monte Carlo studies that confirm it\n";
+  }
+  if (found.limit) text += explanation(result, found);
+  std::fputs(text.c_str(), stdout);
+  return kDone;
+}
+
+}  // namespace
+
+void add_tolerances(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("tolerances", "tolerances from the indices of a sensitivity result");
+  command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
+  command->add_option("--response", options->response, "response that the tolerances are for")
+      ->required()
+      ->type_name("NAME");
+  command->add_option("--limit", options->limit, "tolerances that keep the response below this, e.g. \"0.05 mm\"")
+      ->type_name("LIMIT");
+  command
+      ->add_option("--reference", options->reference,
+                   "error from which equal effects are counted, with its tolerance; default: the study's")
+      ->type_name("FACTOR[=TOLERANCE]");
+  command->add_option("-d,--directory", options->folder, "folder for tolerances.csv and the studies that confirm it")
+      ->type_name("DIR");
+  command->footer(
+      "Example: poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\" -d tolerances");
+  command->callback([options, &action] { action = [options] { return set_tolerances(*options); }; });
+}
+
+}  // namespace poesy::app

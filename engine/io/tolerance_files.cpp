@@ -1,0 +1,82 @@
+#include "engine/io/tolerance_files.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "engine/base/contract.h"
+#include "engine/base/error.h"
+#include "engine/io/export_tables.h"
+#include "engine/io/file_writer.h"
+#include "engine/io/study_file.h"
+
+namespace poesy {
+namespace {
+
+constexpr const char* kPoses = "confirm_poses";
+
+void write_poses(TableFolder& folder, const StoredResult& result) {
+  std::vector<std::string> columns;
+  for (const NamedUnit& coordinate : result.pose_coordinates) columns.push_back(coordinate.name);
+  folder.write(kPoses, columns, [&](CsvTable& table) {
+    for (std::size_t m = 0; m < result.poses.size(); ++m) {
+      const auto pose = result.poses[PoseIndex(m)];
+      table.row(shortest(pose[0]), pose.subspan(1));
+    }
+  });
+}
+
+/// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
+Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
+  // The file of poses, if there is one, is known by a path relative to a study that may be gone; the result has them.
+  Study study = study_of_text(result.study_text, "the study in the result", catalog, StudyUse::evaluate);
+  if (study.analysis.factors.size() != result.factors.size()) {
+    throw FileError("the study in the result", "does not fit the result's factors", "run the study again");
+  }
+  study.analysis.kind = Analysis::Kind::monte_carlo;
+  study.analysis.reference.reset();
+  if (study.poses.select == PoseSelection::Select::file) study.poses.file = std::string(kPoses) + ".csv";
+  return study;
+}
+
+void set_tolerances(Study& study, std::span<const double> tolerances) {
+  for (std::size_t p = 0; p < tolerances.size(); ++p) {
+    if (std::isinf(tolerances[p])) continue;
+    study.errors.by_factor[study.analysis.factors[p].value] = Distribution::normal(tolerances[p]);
+  }
+}
+
+std::string write_study(const std::string& folder, const std::string& name, const Study& study) {
+  const std::string path = (std::filesystem::path(folder) / (name + ".toml")).string();
+  FileWriter writer(path);
+  writer.write(resolved_text(study));
+  writer.commit();
+  return path;
+}
+
+}  // namespace
+
+std::vector<std::string> write_confirmation(const std::string& folder, const StoredResult& result,
+                                            const ResponseTolerances& tolerances, const Catalog& catalog) {
+  POESY_EXPECTS(tolerances.limit.has_value());
+  Study study = monte_carlo_study(result, catalog);
+  make_folder(folder);
+  TableFolder tables(folder);
+  if (study.poses.select == PoseSelection::Select::file) write_poses(tables, result);
+  const ErrorModel as_studied = study.errors;
+  const NamedUnit& response = result.responses[tolerances.response];
+  const std::string limit = response.unit == "1"
+                                ? shortest(tolerances.limit->limit)
+                                : readable_text({tolerances.limit->limit, display(response.unit).dimension});
+  std::vector<std::string> paths;
+  const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
+    study.title = "Confirms " + words + " that keep the mean of " + response.name + " below " + limit;
+    study.errors = as_studied;
+    set_tolerances(study, values);
+    paths.push_back(write_study(folder, name, study));
+  };
+  add("confirm_equal_effect", "tolerances of equal effect", tolerances.limit->equal_effect);
+  add("confirm_equal_tolerance", "equal tolerances", tolerances.limit->equal_tolerance);
+  return paths;
+}
+
+}  // namespace poesy

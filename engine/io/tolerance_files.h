@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/io/result_file.h"
+#include "engine/model/catalog.h"
+#include "engine/stats/tolerance.h"
+
+namespace poesy {
+
+/// Tolerances for one response of a sensitivity result, within a limit on it if there is one.
+struct ResponseTolerances {
+  std::size_t response;  ///< position among the result's
+  Tolerances all;
+  std::optional<LimitTolerances> limit;
+};
+
+/// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
+///
+///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit | index, index_ci_low,
+///     index_ci_high, variance_share, equal_effect, and with a limit limit_equal_effect and limit_equal_tolerance, in
+///     `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
+///
+/// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error;
+/// "inf" says that the error has no effect. Returns the path. Throws FileError.
+std::string write_tolerances(const std::string& folder, const StoredResult& result,
+                             const ResponseTolerances& tolerances);
+
+/// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
+/// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. An error
+/// without limit stays as it was. Poses that came from a file are written beside them as confirm_poses.csv. Returns the
+/// paths of the studies. Precondition: tolerances.limit. Throws FileError; InputError when the stored study cannot be
+/// read with this catalog.
+std::vector<std::string> write_confirmation(const std::string& folder, const StoredResult& result,
+                                            const ResponseTolerances& tolerances, const Catalog& catalog);
+
+}  // namespace poesy

@@ -1,0 +1,111 @@
+#include "engine/stats/tolerance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double square(double x) { return x * x; }
+
+double mean_of_squares(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += square(value);
+  return sum / static_cast<double>(values.size());
+}
+
+/// The samples' mean square at one pose.
+double sample_mean_square(double mean, double std, double count) {
+  return square(mean) + square(std) * (count - 1.0) / count;
+}
+
+/// 1 / mu_p; infinity without effect.
+std::vector<double> inverse(std::span<const double> index) {
+  std::vector<double> values;
+  for (const double mu : index) values.push_back(std::isnan(mu) ? kNaN : has_effect(mu) ? 1.0 / mu : kInfinity);
+  return values;
+}
+
+}  // namespace
+
+bool has_effect(double index) { return index >= kIndexRounding; }
+
+std::optional<std::size_t> smallest_effect(std::span<const double> index, std::span<const double> sigma) {
+  std::optional<std::size_t> smallest;
+  for (std::size_t p = 0; p < index.size(); ++p) {
+    if (!has_effect(index[p])) continue;
+    if (!smallest || index[p] * sigma[p] < index[*smallest] * sigma[*smallest]) smallest = p;
+  }
+  return smallest;
+}
+
+std::vector<double> equal_effect_tolerances(std::span<const double> index, const ReferenceError& reference) {
+  const double mu = index[reference.factor];
+  if (!has_effect(mu)) return std::vector<double>(index.size(), kNaN);
+  std::vector<double> tolerances = inverse(index);
+  for (double& tolerance : tolerances) tolerance *= mu * reference.tolerance;
+  tolerances[reference.factor] = reference.tolerance;  // not a rounding beside it
+  return tolerances;
+}
+
+std::vector<double> variance_shares(std::span<const double> index, std::span<const double> sigma) {
+  std::vector<double> shares;
+  double sum = 0.0;
+  for (std::size_t p = 0; p < index.size(); ++p) {
+    const bool is_zero = index[p] < kIndexRounding;
+    shares.push_back(is_zero ? 0.0 : square(index[p] * sigma[p]));
+    sum += shares.back();
+  }
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
+double MeanSquare::growth(std::span<const double> tolerances) const {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < effects.size(); ++p) {
+    if (effects[p] != 0.0) sum += effects[p] * square(tolerances[p]);
+  }
+  return sum;
+}
+
+MeanSquare mean_square(const ResponseStudy& study) {
+  const std::size_t poses = study.background.size();
+  MeanSquare response{mean_of_squares(study.background), {}};
+  for (std::size_t p = 0; p < study.index.size(); ++p) {
+    double growth = 0.0;
+    for (std::size_t cell = p * poses; cell < (p + 1) * poses; ++cell) {
+      growth += sample_mean_square(study.mean[cell], study.std[cell], study.count[cell]);
+    }
+    growth = growth / static_cast<double>(poses) - response.background;
+    const bool none = growth < 0.0 || study.index[p] < kIndexRounding;
+    response.effects.push_back(none ? 0.0 : growth / square(study.sigma[p]));
+  }
+  return response;
+}
+
+std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit) {
+  POESY_EXPECTS(!(square(limit) <= response.background));
+  const double multiple = std::sqrt((square(limit) - response.background) / response.growth(proportions));
+  std::vector<double> tolerances(proportions.begin(), proportions.end());
+  for (double& tolerance : tolerances) tolerance *= multiple;
+  return tolerances;
+}
+
+Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceError>& reference) {
+  return {reference,
+          reference ? equal_effect_tolerances(study.index, *reference) : std::vector<double>(study.index.size(), kNaN),
+          variance_shares(study.index, study.sigma), mean_square(study)};
+}
+
+LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response, double limit) {
+  return {limit, tolerances_within(response, inverse(study.index), limit),
+          tolerances_within(response, study.sigma, limit)};
+}
+
+}  // namespace poesy

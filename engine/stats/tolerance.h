@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+/// Tolerances from the indices of a sensitivity study. A tolerance here is the standard deviation of a normal error, in
+/// SI; infinity says that the error has no effect and needs no limit, NaN that its effect is not known.
+namespace poesy {
+
+/// Below this, in SI, an index is rounding: solvers work to about 1e-14 rad or m for errors of about 1e-3.
+inline constexpr double kIndexRounding = 1e-10;
+
+/// Whether a global index is more than rounding. NaN is not.
+bool has_effect(double index);
+
+/// One response of a sensitivity study of P errors at M poses, SI. Refers to the study's arrays.
+struct ResponseStudy {
+  std::span<const double> index;       ///< [P] global
+  std::span<const double> sigma;       ///< [P] of the errors, as the study sets them
+  std::span<const double> count;       ///< [P x M] samples
+  std::span<const double> mean;        ///< [P x M] of the response, one error varying
+  std::span<const double> std;         ///< [P x M]
+  std::span<const double> background;  ///< [M] the response with all varied errors zero
+};
+
+/// The error from which equal-effect tolerances are counted.
+struct ReferenceError {
+  std::size_t factor;  ///< position among the P errors
+  double tolerance;
+};
+
+/// The error with the smallest effect index x sigma of those that have one; none where no error has.
+std::optional<std::size_t> smallest_effect(std::span<const double> index, std::span<const double> sigma);
+
+/// t_p = (mu_ref / mu_p) t_ref: what gives every error the effect of the reference (Du et al. 2022, Section 6.3, Table
+/// 10), [P]. NaN throughout when the reference has no effect.
+std::vector<double> equal_effect_tolerances(std::span<const double> index, const ReferenceError& reference);
+
+/// (mu_p sigma_p)^2 over its sum, [P]; NaN throughout when an index is not known or no error has an effect.
+std::vector<double> variance_shares(std::span<const double> index, std::span<const double> sigma);
+
+/// The mean square of a response over the poses, for independent errors of mean zero and standard deviations t_p:
+/// background + sum of effects_p t_p^2. Exact for a response that is the norm of something linear in the errors. Its
+/// root is never below the mean of the response (Jensen).
+struct MeanSquare {
+  double background = 0.0;      ///< mean square over the poses of the response to the background alone
+  std::vector<double> effects;  ///< [P] growth of the mean square per t_p^2; 0 for errors without effect
+
+  /// sum of effects_p t_p^2. Errors without effect do not count, whatever their tolerance.
+  double growth(std::span<const double> tolerances) const;
+  double at(std::span<const double> tolerances) const { return background + growth(tolerances); }
+};
+
+/// From the study's own samples: effects_p = mean over the poses of (mean square of the samples - background^2),
+/// or 0 if that is negative, over sigma_p^2. NaN where a pose has no background, or fewer than two samples of an error.
+MeanSquare mean_square(const ResponseStudy& study);
+
+/// The multiple of `proportions` [P] whose predicted mean square is limit^2; proportions that are infinite stay so. NaN
+/// where the prediction is not known. Precondition: limit^2 > background.
+std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit);
+
+/// Tolerances of all errors for one response.
+struct Tolerances {
+  std::optional<ReferenceError> reference;
+  std::vector<double> equal_effect;    ///< [P] from the reference; NaN without one
+  std::vector<double> variance_share;  ///< [P]
+  MeanSquare mean_square;
+};
+
+Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceError>& reference);
+
+/// Tolerances that keep the root mean square of a response over samples and poses at a limit, and so its mean below.
+struct LimitTolerances {
+  double limit = 0.0;
+  std::vector<double> equal_effect;     ///< [P] every error has the same effect: t_p = k / mu_p
+  std::vector<double> equal_tolerance;  ///< [P] the same multiple of every error in the study: t_p = k sigma_p
+};
+
+/// Precondition: limit^2 > tolerances.mean_square.background.
+LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response, double limit);
+
+}  // namespace poesy

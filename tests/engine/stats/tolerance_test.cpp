@@ -1,0 +1,154 @@
+#include "engine/stats/tolerance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace poesy {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A response that is the norm of something linear: its mean square is b_m^2 + sum over p of (w_pm t_p)^2. Three errors
+/// at two poses; the third has no effect.
+struct LinearResponse {
+  static constexpr double kSamples = 100.0;
+
+  std::vector<double> sigma{1e-3, 2e-2, 1e-3};
+  std::vector<double> background{3e-4, 4e-4};
+  std::vector<double> weight{0.5, 0.7, 0.02, 0.03, 0.0, 0.0};  ///< [P x M]
+  std::vector<double> index{0.4, 0.015, 1e-14};
+  std::vector<double> count = std::vector<double>(6, kSamples);
+  std::vector<double> mean;
+  std::vector<double> std;
+
+  LinearResponse() {
+    for (std::size_t cell = 0; cell < weight.size(); ++cell) {
+      const double square = std::pow(background[cell % 2], 2) + std::pow(weight[cell] * sigma[cell / 2], 2);
+      mean.push_back(0.6 * std::sqrt(square));
+      std.push_back(0.8 * std::sqrt(square * kSamples / (kSamples - 1.0)));
+    }
+  }
+
+  ResponseStudy study() const { return {index, sigma, count, mean, std, background}; }
+
+  /// The root mean square over both poses, by its definition.
+  double rms(std::span<const double> tolerances) const {
+    double sum = 0.0;
+    for (std::size_t m = 0; m < 2; ++m) {
+      sum += std::pow(background[m], 2);
+      for (std::size_t p = 0; p < 2; ++p) sum += std::pow(weight[2 * p + m] * tolerances[p], 2);
+    }
+    return std::sqrt(sum / 2.0);
+  }
+};
+
+TEST(Tolerances, OfEqualEffectMakeIndexTimesToleranceConstant) {
+  const std::vector<double> index{0.4, 2.0, 0.007, 31.0};
+  const auto tolerances = equal_effect_tolerances(index, {2, 0.0175});
+  EXPECT_EQ(tolerances[2], 0.0175);
+  for (std::size_t p = 0; p < index.size(); ++p) EXPECT_DOUBLE_EQ(index[p] * tolerances[p], 0.007 * 0.0175);
+}
+
+TEST(Tolerances, AreUnlimitedWithoutEffectAndUnknownWithoutIndex) {
+  const std::vector<double> index{0.5, 0.9 * kIndexRounding, kNaN, 0.0};
+  const auto tolerances = equal_effect_tolerances(index, {0, 1e-3});
+  EXPECT_EQ(tolerances[1], kInfinity);
+  EXPECT_TRUE(std::isnan(tolerances[2]));
+  EXPECT_EQ(tolerances[3], kInfinity);
+}
+
+TEST(Tolerances, CannotBeCountedFromAReferenceWithoutEffect) {
+  for (const std::size_t reference : {1u, 2u}) {
+    for (const double tolerance : equal_effect_tolerances(std::vector{0.5, 0.0, kNaN}, {reference, 1e-3})) {
+      EXPECT_TRUE(std::isnan(tolerance));
+    }
+  }
+}
+
+TEST(Tolerances, ReferenceOfSmallestEffectSkipsThoseWithoutAny) {
+  const std::vector<double> sigma{1e-3, 1e-3, 2e-2, 1e-3};
+  EXPECT_EQ(smallest_effect(std::vector{0.0, 0.5, 0.1, kNaN}, sigma), 1u);  // 5e-4 is less than 2e-3
+  EXPECT_EQ(smallest_effect(std::vector{0.0, 1e-14, kNaN, kNaN}, sigma), std::nullopt);
+}
+
+TEST(VarianceShares, SumToOneInTheRatioOfSquares) {
+  const auto shares = variance_shares(std::vector{0.3, 0.02, 1e-14}, std::vector{1e-3, 2e-2, 1e-3});
+  EXPECT_DOUBLE_EQ(shares[0], 9.0 / 25.0);
+  EXPECT_DOUBLE_EQ(shares[1], 16.0 / 25.0);
+  EXPECT_EQ(shares[2], 0.0);
+  EXPECT_DOUBLE_EQ(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0);
+}
+
+TEST(VarianceShares, AreUnknownWhereAnIndexIsUnknownOrNoneHasAnEffect) {
+  for (const double share : variance_shares(std::vector{0.3, kNaN}, std::vector{1.0, 1.0})) {
+    EXPECT_TRUE(std::isnan(share));
+  }
+  for (const double share : variance_shares(std::vector{0.0, 0.0}, std::vector{1.0, 1.0})) {
+    EXPECT_TRUE(std::isnan(share));
+  }
+}
+
+TEST(MeanSquareOfResponse, IsExactForALinearOne) {
+  const LinearResponse response;
+  const MeanSquare found = mean_square(response.study());
+  EXPECT_DOUBLE_EQ(found.background, (9e-8 + 16e-8) / 2.0);
+  EXPECT_NEAR(found.effects[0], (0.25 + 0.49) / 2.0, 1e-12);
+  EXPECT_NEAR(found.effects[1], (4e-4 + 9e-4) / 2.0, 1e-14);
+  EXPECT_EQ(found.effects[2], 0.0);
+  const std::vector<double> tolerances{3e-3, 1e-2, kInfinity};
+  EXPECT_NEAR(std::sqrt(found.at(tolerances)), response.rms(tolerances), 1e-14);
+}
+
+TEST(MeanSquareOfResponse, IsUnknownWithoutSamplesOrBackground) {
+  LinearResponse few;
+  few.std[1] = kNaN;
+  EXPECT_TRUE(std::isnan(mean_square(few.study()).effects[0]));
+  EXPECT_FALSE(std::isnan(mean_square(few.study()).effects[1]));
+  LinearResponse unsolved;
+  unsolved.background[1] = kNaN;
+  EXPECT_TRUE(std::isnan(mean_square(unsolved.study()).background));
+  EXPECT_TRUE(std::isnan(mean_square(unsolved.study()).effects[0]));
+}
+
+TEST(MeanSquareOfResponse, CountsAnErrorThatOnlyTakesAwayAsNothing) {
+  LinearResponse response;
+  for (std::size_t cell = 0; cell < 2; ++cell) response.mean[cell] = response.std[cell] = 0.0;
+  EXPECT_EQ(mean_square(response.study()).effects[0], 0.0);
+}
+
+TEST(LimitTolerances, ReachTheLimitExactly) {
+  const LinearResponse response;
+  const MeanSquare prediction = mean_square(response.study());
+  for (const double limit : {4e-4, 1e-3, 0.7}) {
+    const LimitTolerances found = limit_tolerances(response.study(), prediction, limit);
+    EXPECT_NEAR(response.rms(found.equal_effect), limit, 1e-12 * limit);
+    EXPECT_NEAR(response.rms(found.equal_tolerance), limit, 1e-12 * limit);
+  }
+}
+
+TEST(LimitTolerances, KeepTheirProportions) {
+  const LinearResponse response;
+  const LimitTolerances found = limit_tolerances(response.study(), mean_square(response.study()), 1e-3);
+  EXPECT_DOUBLE_EQ(found.equal_effect[0] * response.index[0], found.equal_effect[1] * response.index[1]);
+  EXPECT_EQ(found.equal_effect[2], kInfinity);
+  for (std::size_t p = 1; p < 3; ++p) {
+    EXPECT_DOUBLE_EQ(found.equal_tolerance[p] / response.sigma[p], found.equal_tolerance[0] / response.sigma[0]);
+  }
+}
+
+TEST(LimitTolerances, VanishAsTheLimitNearsTheBackground) {
+  LinearResponse response;
+  response.index[2] = 0.0;
+  const MeanSquare prediction = mean_square(response.study());
+  const double limit = std::sqrt(prediction.background) * (1.0 + 1e-10);
+  const LimitTolerances found = limit_tolerances(response.study(), prediction, limit);
+  EXPECT_GT(found.equal_effect[0], 0.0);
+  EXPECT_LT(found.equal_effect[0], 1e-7);
+}
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,148 @@
+"""poesy tolerances: what it prints and writes, Monte Carlo studies that confirm it, and what it refuses."""
+
+import csv
+import math
+
+import h5py
+from poesy_program import STUDY, ProgramTest, main
+
+RESPONSE = "linear_deformation"
+# epsilon_1_1_z moves one length alone, and has no effect on angles.
+FACTORS = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '["delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"]')
+REFERENCE = FACTORS.replace("samples = 1500", 'samples = 1500\nreference = { factor = "epsilon_1_1_z", tolerance = "1 deg" }')
+# This one deforms with the background alone.
+DEFORMED = FACTORS.replace('factors = "benign", linear', 'factors = ["epsilon_3_0_y"], linear')
+
+
+class Tolerances(ProgramTest):
+    def result(self, study=REFERENCE):
+        self.write("study.toml", study)
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+        return "r.h5"
+
+    def table(self, folder):
+        with (self.folder / folder / "tolerances.csv").open(newline="") as file:
+            return {row["factor"]: row for row in csv.DictReader(file)}
+
+    def refuses(self, *arguments, words):
+        done = self.poesy("tolerances", *arguments)
+        message = done.stderr.decode()
+        self.assertEqual(done.returncode, 2, message)
+        self.assertEqual(message.count("\n"), 1, message)
+        self.assertIn("; ", message)
+        for word in words:
+            self.assertIn(word, message)
+        self.assertEqual(done.stdout, b"")
+
+    def test_equal_effect_from_the_study_reference(self):
+        printed = self.succeeds("tolerances", self.result(), "--response", RESPONSE, "-d", "out")
+        self.assertIn("epsilon_1_1_z = 1 deg", printed)
+        self.assertNotIn("confirm", printed)
+        table = self.table("out")
+        self.assertEqual({name: (row["kind"], row["limb"], row["unit"]) for name, row in table.items()},
+                         {"delta_1_1_y": ("linear", "1", "m"), "epsilon_1_4_z": ("angular", "1", "rad"),
+                          "epsilon_1_1_z": ("angular", "1", "rad")})
+        self.assertAlmostEqual(float(table["epsilon_1_1_z"]["equal_effect_display"]), 1.0, places=14)
+        # One length alone: 1 degree of it does what pi / 180 mm of the other does, but for sampling.
+        self.assertAlmostEqual(float(table["delta_1_1_y"]["equal_effect_display"]) / (math.pi / 180), 1.0, delta=0.15)
+        products = [float(row["index"]) * float(row["equal_effect"]) for row in table.values()]
+        self.assertAlmostEqual(max(products) / min(products), 1.0, places=12)
+        self.assertAlmostEqual(sum(float(row["variance_share"]) for row in table.values()), 1.0, places=12)
+        with h5py.File(self.folder / "r.h5") as file:
+            group = file["tolerances"]
+            at = list(file["response"].asstr()).index(RESPONSE)
+            self.assertEqual([float(row["equal_effect"]) for row in table.values()], list(group["equal_effect"][at]))
+
+    def test_reference_from_the_command_line(self):
+        result = self.result()
+        self.succeeds("tolerances", result, "--response", RESPONSE, "--reference", "delta_1_1_y=10 um", "-d", "a")
+        self.assertAlmostEqual(float(self.table("a")["delta_1_1_y"]["equal_effect"]), 1e-5, places=18)
+        self.succeeds("tolerances", result, "--response", RESPONSE, "--reference", "delta_1_1_y", "-d", "b")
+        self.assertAlmostEqual(float(self.table("b")["delta_1_1_y"]["equal_effect"]), 1e-3, places=16)
+
+    def test_no_limit_for_an_error_without_effect(self):
+        printed = self.succeeds("tolerances", self.result(), "--response", "angular_deformation", "--reference",
+                                "epsilon_1_4_z", "-d", "out")
+        self.assertIn("no limit", printed)
+        self.assertEqual(self.table("out")["epsilon_1_1_z"]["equal_effect"], "inf")
+
+    def confirm(self, study, limit_mm):
+        """The root mean square that each Monte Carlo study finds, over the limit."""
+        printed = self.succeeds("tolerances", self.result(study), "--response", RESPONSE, "--limit", f"{limit_mm} mm", "-d",
+                                "out")
+        ratios = {}
+        for name in ("confirm_equal_effect", "confirm_equal_tolerance"):
+            self.assertIn(f"poesy run out/{name}.toml", printed)
+            self.succeeds("run", f"out/{name}.toml", "--quiet")
+            with h5py.File(self.folder / f"{name}.h5") as file:
+                at = list(file["response"].asstr()).index(RESPONSE)
+                mean, std = (file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))
+            self.assertLess(mean, limit_mm * 1e-3)
+            ratios[name] = math.hypot(mean, std) / (limit_mm * 1e-3)
+        return ratios
+
+    def test_monte_carlo_confirms_the_limit(self):
+        # The prediction is off by what is not linear in the mechanism: some percent, not a factor.
+        for name, ratio in self.confirm(REFERENCE, 0.05).items():
+            self.assertAlmostEqual(ratio, 1.0, delta=0.3, msg=name)
+
+    def test_poses_from_a_file_are_taken_along(self):
+        poses = self.folder / "elsewhere"
+        poses.mkdir()
+        (poses / "poses.csv").write_text("z,beta,gamma\n-0.2,0.1,0.1\n-0.25,0,0.2\n")
+        self.confirm(REFERENCE.replace("count = 6", 'select = "file"\nfile = "elsewhere/poses.csv"'), 0.05)
+
+    def test_limits_that_cannot_be(self):
+        result = self.result()
+        for limit, words in {"0 mm": ["not above zero"], "-1 mm": ["not above zero"], "1 deg": ["length", "mm"],
+                             "0.05": ["no unit", "mm"], "0.05 inch": ["inch", "mm"], "much": ["much"], "": ["--limit"]}.items():
+            with self.subTest(limit):
+                self.refuses(result, "--response", RESPONSE, f"--limit={limit}", words=words)
+
+    def test_limit_that_the_background_exceeds(self):
+        result = self.result(DEFORMED)
+        self.refuses(result, "--response", RESPONSE, "--limit", "0.05 mm", "-d", "out",
+                     words=["--limit", "background alone", "0.05 mm", "no tolerance can meet"])
+        self.assertFalse((self.folder / "out").exists())
+        self.succeeds("tolerances", result, "--response", RESPONSE, "--limit", "50 mm")
+
+    def test_reference_without_effect(self):
+        result = self.result()
+        words = ["--reference: 'epsilon_1_1_z' has no effect on angular_deformation (index 0)", "name another"]
+        self.refuses(result, "--response", "angular_deformation", words=words)
+        self.refuses(result, "--response", "angular_deformation", "--reference", "epsilon_1_1_z", words=words)
+
+    def test_names_and_files_that_do_not_fit(self):
+        result = self.result()
+        self.refuses(result, "--response", "linear_deformatio", words=["linear_deformatio'", "did you mean 'linear_deformation'"])
+        self.refuses(result, "--response", RESPONSE, "--reference", "epsilon_1_4_y", words=["--reference", "epsilon_1_4_z"])
+        self.refuses(result, "--response", RESPONSE, "--reference", "epsilon_1_4_z=1 mm", words=["--reference", "angle"])
+        self.refuses(result, words=["--response"])
+        self.write("mc.toml", STUDY.replace('"sensitivity"', '"monte-carlo"'))
+        self.succeeds("run", "mc.toml", "--quiet")
+        self.refuses("mc.h5", "--response", RESPONSE, words=["mc.h5", "monte-carlo", "sensitivity"])
+        self.assertEqual(self.poesy("tolerances", "absent.h5", "--response", RESPONSE).returncode, 3)
+
+    def test_background_that_was_not_solved(self):
+        result = self.result()
+        with h5py.File(self.folder / result, "r+") as file:
+            file["sensitivity/background"][...] = math.nan
+        self.refuses(result, "--response", RESPONSE, "--limit", "0.05 mm", words=["--limit", "background", "not solved"])
+        self.assertIn("unknown", self.succeeds("tolerances", result, "--response", RESPONSE))
+
+    def test_result_of_an_older_version(self):
+        result = self.result()
+        with h5py.File(self.folder / result, "r+") as file:
+            del file["tolerances"]
+            del file["sensitivity/background"]
+        self.refuses(result, "--response", RESPONSE, words=[result, "older poesy", "run the study again"])
+        self.succeeds("show", result)
+        self.succeeds("export", result, "-d", "tables")
+
+    def test_nothing_has_an_effect(self):
+        result = self.result(STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '["delta_1_1_y", "epsilon_1_1_z"]'))
+        self.refuses(result, "--response", "angular_deformation", words=["no error", "angular_deformation"])
+
+
+if __name__ == "__main__":
+    main()
