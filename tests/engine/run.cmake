@@ -3,3 +3,4 @@ poesy_test(analysis_test LABELS unit SOURCES engine/run/cases_test.cpp engine/ru
 poesy_test(allocation_test LABELS property SOURCES engine/run/allocation_test.cpp LINKS poesy_run poesy_models)
 poesy_test(monte_carlo_sort_test LABELS regression SOURCES engine/run/monte_carlo_sort_test.cpp
            LINKS poesy_run poesy_models)
+poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_io poesy_models)
