@@ -58,7 +58,7 @@ std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
 std::optional<SolveCounts> run_identification_study(const Job& job) {
   const auto result = identify(job.study.analysis, job.model.description(), [&](const ErrorTable& errors) {
     return run_evaluation(job.model, job.study.solver, job.poses.poses, errors, Pairing::every_pose_with_every_row,
-                          job.options);
+                          job.options, Outcomes::responses);
   });
   if (!result) return std::nullopt;
   write_identification(job.path, job.study, job.poses, *result, job.facts(result->solves));

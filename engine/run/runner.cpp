@@ -70,13 +70,15 @@ class TableEvaluator {
   std::vector<double> details_;
 };
 
-EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std::size_t samples) {
+EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std::size_t samples, Outcomes outcomes) {
   const ModelDescription& description = model.description();
   EvaluationResult result;
   result.poses = poses.size();
   result.samples = samples;
   result.responses = description.responses.size();
-  for (const Detail& detail : description.details) result.details += detail.components.size();
+  if (outcomes == Outcomes::with_details) {
+    for (const Detail& detail : description.details) result.details += detail.components.size();
+  }
   const std::size_t all = result.poses * samples;
   result.response.resize(result.responses * all);
   result.detail.resize(all * result.details);
@@ -108,9 +110,7 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
         counter.add(stats.solves);
       });
   if (!complete) return std::nullopt;
-  SensitivityResult result = sensitivity_result(plan, cells, conf_level);
-  result.background = background_responses(plan, model);
-  return result;
+  return sensitivity_result(plan, cells, background_responses(plan, model), conf_level);
 }
 
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
@@ -129,10 +129,11 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
 }
 
 std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,
-                                               const ErrorTable& errors, Pairing pairing, const RunOptions& options) {
+                                               const ErrorTable& errors, Pairing pairing, const RunOptions& options,
+                                               Outcomes outcomes) {
   const bool paired = pairing == Pairing::row_by_row;
   const std::size_t samples = paired ? 1 : errors.rows;
-  EvaluationResult result = empty_evaluation(model, poses, samples);
+  EvaluationResult result = empty_evaluation(model, poses, samples, outcomes);
   const std::size_t blocks = (samples + kBlockRows - 1) / kBlockRows;
   ProgressCounter counter(poses.size() * samples, options);
   const bool complete = run_in_order(

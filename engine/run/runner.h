@@ -54,8 +54,14 @@ enum class Pairing {
   row_by_row  ///< pose m with row m; equal numbers of both
 };
 
+enum class Outcomes {
+  with_details,  ///< everything the model gives
+  responses      ///< without details, which take most of the memory
+};
+
 /// Solves every requested (pose, row). Empty when stopped.
 std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,
-                                               const ErrorTable& errors, Pairing pairing, const RunOptions& options);
+                                               const ErrorTable& errors, Pairing pairing, const RunOptions& options,
+                                               Outcomes outcomes = Outcomes::with_details);
 
 }  // namespace poesy

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/stats/sensitivity_index.h"
@@ -32,23 +33,6 @@ void append_row(std::span<const UnitStats> cells, std::size_t response, double s
 
 }  // namespace
 
-SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, double conf_level) {
-  SensitivityResult result;
-  result.factors = plan.factors().size();
-  result.poses = plan.poses().size();
-  result.conf_level = conf_level;
-  POESY_EXPECTS(cells.size() == result.factors * result.poses && !cells.empty());
-  result.responses = cells.front().responses.size();
-  for (std::size_t r = 0; r < result.responses; ++r) {
-    for (std::size_t p = 0; p < result.factors; ++p) {
-      append_row(cells.subspan(p * result.poses, result.poses), r, plan.distributions()[p].standard_deviation(),
-                 result);
-    }
-  }
-  for (const UnitStats& cell : cells) result.solves.push_back(cell.solves);
-  return result;
-}
-
 std::vector<double> background_responses(const Plan& plan, const Model& model) {
   const std::size_t responses = model.description().responses.size();
   const std::size_t poses = plan.poses().size();
@@ -68,6 +52,26 @@ std::vector<double> background_responses(const Plan& plan, const Model& model) {
     }
   }
   return background;
+}
+
+SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, std::vector<double> background,
+                                     double conf_level) {
+  SensitivityResult result;
+  result.factors = plan.factors().size();
+  result.poses = plan.poses().size();
+  result.conf_level = conf_level;
+  POESY_EXPECTS(cells.size() == result.factors * result.poses && !cells.empty());
+  result.responses = cells.front().responses.size();
+  POESY_EXPECTS(background.size() == result.responses * result.poses);
+  result.background = std::move(background);
+  for (std::size_t r = 0; r < result.responses; ++r) {
+    for (std::size_t p = 0; p < result.factors; ++p) {
+      append_row(cells.subspan(p * result.poses, result.poses), r, plan.distributions()[p].standard_deviation(),
+                 result);
+    }
+  }
+  for (const UnitStats& cell : cells) result.solves.push_back(cell.solves);
+  return result;
 }
 
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response) {

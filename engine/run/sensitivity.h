@@ -9,13 +9,14 @@
 
 namespace poesy {
 
-/// The indices of a study from what its cells hold. cells: [P x M], merged over the units of each (factor, pose).
-/// `background` stays empty.
-SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, double conf_level);
-
 /// Each response to the background alone, all varied errors zero: one solve at each pose, [R x M]. NaN where it was not
 /// solved.
 std::vector<double> background_responses(const Plan& plan, const Model& model);
+
+/// The indices of a study from what its cells hold. cells: [P x M], merged over the units of each (factor, pose).
+/// background: as background_responses gives it.
+SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, std::vector<double> background,
+                                     double conf_level);
 
 /// One response of a result, for tolerances. sigma: [P] of the errors, as the study sets them. Refers to both.
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response);

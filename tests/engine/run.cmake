@@ -5,3 +5,4 @@ poesy_test(monte_carlo_sort_test LABELS regression SOURCES engine/run/monte_carl
            LINKS poesy_run poesy_models)
 poesy_test(tolerance_confirmation_test LABELS statistical SOURCES engine/run/tolerance_confirmation_test.cpp
            LINKS poesy_run)
+poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_io poesy_models)

@@ -29,6 +29,20 @@ BAD_STUDIES = {
         "7:", ["z"]),
     "duplicate_factor": (changed('"epsilon_1_4_z"', '"delta_1_1_y"'), "12:", ["delta_1_1_y"]),
     "wrong_type": (changed("samples = 1500", 'samples = "many"'), "13:", ["samples"]),
+    "empty_workspace": (
+        changed("count = 6", 'count = 6\nlimits = { q_1_3 = ["500 mm", "600 mm"] }'), "7:",
+        ["workspace is empty", "q_1_3 below 500 mm"]),
+    "unknown_joint": (
+        changed("count = 6", 'count = 6\nlimits = { q_1_9 = ["-500 mm", "600 mm"] }'), "7:", ["q_1_9"]),
+    "boundary_too_dense": (
+        changed("count = 6", 'select = "boundary"\ncount = 1000\nworkspace = { z = ["-0.25 m", "-0.24999999999999997 m"], '
+                'beta = ["0.1 rad", "0.10000000000000002 rad"], gamma = ["0.1 rad", "0.10000000000000002 rad"] }'),
+        "7:", ["separated at rounding"]),
+    "case_of_unknown_error": (
+        changed('kind = "sensitivity"', 'kind = "evaluate"\ncases = [{ errors = { delta_9_1_y = "1 mm" } }]')
+        .replace('background', '# background'), "12:", ["delta_9_1_y", "delta_1_1_y"]),
+    "no_case": (changed('kind = "sensitivity"', 'kind = "evaluate"').replace('background', '# background'), "10:",
+                ["at least one case"]),
     "not_toml": (changed("[poses]", "[poses"), "5:", []),
     "rubbish": (bytes(range(256)) * 20, "", []),
     "empty": ("", "1:1", ["empty"]),

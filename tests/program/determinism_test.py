@@ -25,6 +25,16 @@ class Determinism(ProgramTest):
         study = STUDY.replace('"sensitivity"', '"monte-carlo"')
         self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 3)}), 1)
 
+    def test_identification_and_cases(self):
+        head, rest = STUDY.split("[analysis]")
+        head = head.replace("count = 6", 'select = "boundary"\ncount = 30')
+        solver = rest[rest.index("[solver]"):]
+        for analysis in ('kind = "identification"\n',
+                         'kind = "evaluate"\ncases = [{ errors = { linear = "1 mm", angular = "1 deg" } }, '
+                         '{ errors = { epsilon_1_4_z = "1 deg" } }]\n'):
+            study = head + "[analysis]\n" + analysis + solver
+            self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 3, 7)}), 1)
+
     def test_evaluate(self):
         self.write("study.toml", STUDY)
         self.write("poses.csv", "gamma,z,beta\n" + "".join(f"{0.1 * k},-0.25,0.1\n" for k in range(4)))

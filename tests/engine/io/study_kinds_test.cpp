@@ -84,6 +84,16 @@ TEST(StudyOfMonteCarlo, TakesQuantilesAndVariesAll) {
   EXPECT_EQ(study.analysis.factors.size(), 3u);
 }
 
+TEST(StudyOfMonteCarlo, SolvesSamplesAtEachPoseWhateverItsQuantiles) {
+  // Three poses; 10^15 solves are allowed.
+  EXPECT_EQ(study_of("kind = \"monte-carlo\"\nsamples = 333333333333333\n").analysis.samples, 333333333333333u);
+  const test::TempFolder folder;
+  const std::string path =
+      folder.write("study.toml", with_analysis("kind = \"monte-carlo\"\nsamples = 333333333333334\n"));
+  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, 5, 1},
+                           {"poses times samples is", "at most 1000000000000000", "fewer samples"});
+}
+
 TEST(StudyOfSensitivity, TakesAReference) {
   const Study study = study_of("reference = { factor = \"epsilon_1\", tolerance = \"2 deg\" }\n");
   ASSERT_TRUE(study.analysis.reference);

@@ -118,7 +118,8 @@ TEST(Quantile, RisesAndStaysWithinTheHalfWidth) {
 
 TEST(Transform, EqualsTheQuantileOfEachValue) {
   for (const Distribution& d : all_shapes()) {
-    const std::vector<double> shares{0x1p-54, 0.01, 0.3, 0.5, 0.77, 1.0 - 0x1p-53};
+    std::vector<double> shares{0x1p-54, 0.01, 0.075, 0.3, 0.5, 0.77, 0.925, 1.0 - 0x1p-53};
+    for (int k = 0; k < 1001; ++k) shares.push_back((k + 0.5) / 1001.0);  // more than a block, and a part of one
     std::vector<double> values = shares;
     d.transform(values);
     for (std::size_t k = 0; k < shares.size(); ++k) EXPECT_EQ(values[k], d.quantile(shares[k]));

@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "bench/published_study.h"
+#include "engine/io/result_file.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/sensitivity.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy {
+namespace {
+
+/// The content hash of a study whose units were solved in this order by one evaluator, and merged in the plan's.
+std::string hash_of(const Study& study, const Model& model, const std::vector<std::size_t>& order) {
+  const SelectedPoses poses = select_poses(study.poses, model);
+  const Plan plan(study, poses.poses);
+  UnitEvaluator evaluate(plan, model);
+  std::vector<UnitStats> stats(plan.units());
+  for (const std::size_t u : order) stats[u] = evaluate(plan.unit(u));
+  std::vector<UnitStats> cells(plan.factors().size() * plan.poses().size());
+  for (std::size_t u = 0; u < plan.units(); ++u) {
+    const WorkUnit unit = plan.unit(u);
+    cells[unit.slot * plan.poses().size() + unit.pose.value].merge(stats[u]);
+  }
+  const test::TempFolder folder;
+  write_sensitivity(folder / "r.h5", study, poses,
+                    sensitivity_result(plan, cells, background_responses(plan, model), 0.95), {});
+  return verify_result(folder / "r.h5").computed;
+}
+
+TEST(UnitOrder, DoesNotChangeTheContentHash) {
+  const Study study = bench::published_study(5, 1300);  // two units for each error and pose
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  std::vector<std::size_t> order(2 * 25 * 5);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::string in_order = hash_of(study, *model, order);
+  std::mt19937_64 random(20240610);
+  for (int k = 0; k < 5; ++k) {
+    std::shuffle(order.begin(), order.end(), random);
+    EXPECT_EQ(hash_of(study, *model, order), in_order);
+  }
+}
+
+}  // namespace
+}  // namespace poesy
