@@ -50,6 +50,14 @@ def number(value):
     return "0" if abs(value) < ROUNDING else f"{value:.4g}"
 
 
+def figure(folder, study, name, columns):
+    """The data of a figure: the first column of an exported table and these, to six digits."""
+    lines = table(folder, study, name)
+    head = ",".join([next(iter(next(iter(lines.values())))), *columns])
+    return "\n".join([head, *(",".join([key, *(f"{float(row[column]):.6g}" for column in columns)])
+                              for key, row in lines.items())]) + "\n"
+
+
 # Tables 6 and 7
 
 def published_verdicts():

@@ -1,0 +1,86 @@
+"""results/2upr-rpu-paper/COMPARISON.md is what its command writes, and says what it should.
+
+usage: paper_test.py PROGRAM
+
+Words must be the same. Numbers of converged solves may differ by 1 %, as last digits do between processors; those of the
+published procedure hang on single unfinished solves, and so do its places in the ranking: there a number is enough.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "results/2upr-rpu-paper"
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e-?\d+)?")
+
+
+def cells(line):
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+
+
+class Paper(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, "-B", FOLDER / "regenerate", folder], check=True,
+                           env={**os.environ, "POESY": PROGRAM})
+            cls.written = (pathlib.Path(folder) / "COMPARISON.md").read_text(encoding="utf-8")
+        cls.kept = (FOLDER / "COMPARISON.md").read_text(encoding="utf-8")
+
+    def compare(self, ours, theirs, exact):
+        self.assertEqual(NUMBER.sub("#", ours), NUMBER.sub("#", theirs))
+        if not exact:
+            return
+        for a, b in zip(map(float, NUMBER.findall(ours)), map(float, NUMBER.findall(theirs))):
+            # A difference in per cent is printed to a tenth, and moves by as much as its figure does.
+            self.assertAlmostEqual(a, b, delta=max(0.01 * abs(b), 1.0 if "%" in theirs else 1e-3), msg=theirs)
+
+    def test_is_what_the_command_writes(self):
+        self.assertEqual(len(self.written.splitlines()), len(self.kept.splitlines()))
+        header = []
+        for ours, theirs in zip(self.written.splitlines(), self.kept.splitlines()):
+            if not theirs.startswith("|"):
+                header = []
+                self.compare(ours, theirs, exact="procedure" not in theirs)
+                continue
+            header = header or cells(theirs)
+            for n, (a, b) in enumerate(zip(cells(ours), cells(theirs))):
+                after = any("procedure" in name for name in header[:n + 1])
+                self.compare(a, b, exact=not after and not ("rank" in header[0] and n == 2))
+
+    def rows(self, heading):
+        section = self.written.split(heading)[1].split("\n## ")[0]
+        return [cells(line) for line in section.splitlines() if line.startswith("|")][2:]
+
+    def test_tables_6_and_7_are_exact(self):
+        for row in self.rows("## Tables 6 and 7"):
+            self.assertEqual([row[2], row[4], row[6]], [row[3], "none", "none"], row)
+
+    def test_table_9(self):
+        rows = self.rows("## Table 9")
+        for row in rows:
+            self.assertLess(abs(float(row[3]) / float(row[2]) - 1.0), 0.03, row)
+        for what in ("maximum", "mean"):
+            self.assertEqual(len({row[3] for row in rows if row[1] == what}), 1, rows)
+
+    def test_angular_figures_of_table_11(self):
+        for row in self.rows("## Table 11"):
+            if row[1] == "printed in Table 10" and row[2].startswith("angular"):
+                self.assertLess(abs(float(row[4]) / float(row[3]) - 1.0), 0.03, row)
+
+    def test_absorbed_errors_leave_rounding(self):
+        for row in self.rows("## Section 5.2"):
+            self.assertLess(float(row[2]), 1e-14, row)
+
+    def test_the_limit_holds(self):
+        for row in self.rows("## Tolerances for a mean"):
+            self.assertEqual(row[3], "holds", row)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()
