@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include "engine/app/command.h"
@@ -81,22 +82,23 @@ std::optional<ReferenceError> reference_of(const Options& options, const StoredR
   return ReferenceError{factor, positive(options.reference->substr(equals + 1), "--reference", named)};
 }
 
-void check_reference(const StoredResult& result, const ResponseStudy& response, const std::string& name,
-                     const std::optional<ReferenceError>& reference) {
+void check_reference(const Options& options, const StoredResult& result, const ResponseStudy& response,
+                     const std::string& name, const std::optional<ReferenceError>& reference) {
   if (!reference) {
     throw InputError({}, fmt::format("--response: no error of this result has an effect on {}", name),
                      "there is nothing to set tolerances by; name another response");
   }
   if (has_effect(response.index[reference->factor])) return;
+  const std::string_view source = options.reference ? "--reference" : "the study's [analysis] reference";
   const std::string& factor = result.factors[reference->factor].name;
   if (std::isnan(response.index[reference->factor])) {
-    throw InputError({}, fmt::format("--reference: the effect of '{}' on {} is not known", factor, name),
-                     "name another");
+    throw InputError({options.result}, fmt::format("{}: the effect of '{}' on {} is not known", source, factor, name),
+                     "name another with --reference");
   }
   throw InputError(
-      {},
-      fmt::format("--reference: '{}' has no effect on {} (index 0), so nothing can be counted from it", factor, name),
-      "name another");
+      {options.result},
+      fmt::format("{}: '{}' has no effect on {} (index 0), so nothing can be counted from it", source, factor, name),
+      "name another with --reference");
 }
 
 void check_prediction(const StoredResult& result, const MeanSquare& response, const std::string& name) {
@@ -129,15 +131,21 @@ LimitTolerances within(const Options& options, const StoredResult& result, const
   return limit_tolerances(study, response, limit);
 }
 
-/// Writes what -d asks for; says what that was.
+/// result.h5 gives result_tolerances in the current folder.
+std::string default_folder(const std::string& result) {
+  return std::filesystem::path(result).stem().string() + "_tolerances";
+}
+
+/// Writes the table and the studies that confirm it; says what that was.
 std::string write_files(const Options& options, const StoredResult& result, const ResponseTolerances& found) {
+  const std::string folder = options.folder.empty() ? default_folder(options.result) : options.folder;
   std::string commands;
   if (found.limit) {
-    for (const std::string& study : write_confirmation(options.folder, result, found, registry())) {
+    for (const std::string& study : write_confirmation(folder, result, found, registry())) {
       commands += "confirm with: poesy run " + study + "\n";
     }
   }
-  return write_tolerances(options.folder, result, found) + "\n" + commands;
+  return write_tolerances(folder, result, found) + "\n" + commands;
 }
 
 /// How a Monte Carlo study settles whether the limit holds.
@@ -153,15 +161,10 @@ int set_tolerances(const Options& options) {
   const NamedUnit& named = result.responses[response];
   const ResponseStudy study = response_study(result.sensitivity, result.factor_sigma, response);
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
-  check_reference(result, study, named.name, reference);
+  check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
   if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
-  std::string text = tolerance_table(result, found) + "\n";
-  if (!options.folder.empty()) {
-    text += write_files(options, result, found);
-  } else if (found.limit) {
-    text += "-d DIR writes this table and the Monte Carlo studies that confirm it\n";
-  }
+  std::string text = tolerance_table(result, found) + "\n" + write_files(options, result, found);
   if (found.limit) text += explanation(result, found);
   std::fputs(text.c_str(), stdout);
   return kDone;
@@ -182,7 +185,9 @@ void add_tolerances(CLI::App& program, Action& action) {
       ->add_option("--reference", options->reference,
                    "error from which equal effects are counted, with its tolerance; default: the study's")
       ->type_name("FACTOR[=TOLERANCE]");
-  command->add_option("-d,--directory", options->folder, "folder for tolerances.csv and the studies that confirm it")
+  command
+      ->add_option("-d,--directory", options->folder,
+                   "folder for tolerances.csv and the studies that confirm it; default: RESULT_tolerances, here")
       ->type_name("DIR");
   command->footer(
       "Example: poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\" -d tolerances");

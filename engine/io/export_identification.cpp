@@ -48,9 +48,8 @@ void write_by_group(TableFolder& folder, const StoredResult& result, const std::
 
 void write_couplings(TableFolder& folder, const StoredResult& result) {
   folder.write("couplings", {"coupling", "group", "first_factor", "second_factor", "poses"}, [&](CsvTable& table) {
-    std::size_t row = 0;
     for (const Coupling& coupling : result.identification.couplings) {
-      table.row(std::to_string(row++),
+      table.row(result.factors[coupling.first].name + "+" + result.factors[coupling.second].name,
                 std::vector{static_cast<double>(coupling.group + 1), static_cast<double>(coupling.first),
                             static_cast<double>(coupling.second), static_cast<double>(coupling.deforming_poses)});
     }

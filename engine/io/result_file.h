@@ -98,12 +98,13 @@ Verification verify_result(const std::string& path);
 ///     factors.csv          factor | standard deviation
 ///     poses.csv            pose | coordinates, condition number
 ///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
-///                               share, equal-effect tolerance in SI and in the units people read ("inf": no limit)
+///                               share, equal-effect tolerance in SI and in the units people read ("inf": no effect)
 ///
 /// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
 /// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and
 ///
-///     evaluate.csv              pose, sample | responses, details, status (position in kStatusNames), iterations
+///     evaluate.csv              pose, sample (or case, pose) | responses, details, status (position in kStatusNames),
+///                               iterations
 ///     joint_displacements.csv   pose | joints
 ///     errors.csv                sample (or pose, row by row, or case) | factors
 ///     cases.csv                 case | poses that count, mean and max of each response; where samples are cases
@@ -112,7 +113,7 @@ Verification verify_result(const std::string& path);
 ///
 ///     identification.csv   factor | verdicts of the single and of both stages, over all groups and for each
 ///     single_below.csv     factor | poses; like it: single_max, not_solved, coupled_below, coupled_reduced
-///     couplings.csv        coupling | group, first and second factor (rows of identification.csv, from 0), poses
+///     couplings.csv        the two factors, "a+b" | group, their rows in identification.csv from 0, poses
 ///
 /// Tables of a Monte Carlo result: poses.csv, factors.csv and
 ///

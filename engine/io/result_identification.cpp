@@ -29,8 +29,9 @@ void add_verdicts(ResultBuilder& result, const IdentificationResult& found) {
 
 void add_counts(ResultBuilder& result, const IdentificationResult& found) {
   const Axes axes{"group", "factor"};
-  result.add("/identification/single_below", axes, found.single_below,
-             {"1", "Poses where the error alone gives no more than rounding"});
+  result.add(
+      "/identification/single_below", axes, found.single_below,
+      {"1", "Poses where the error alone gives no more than rounding; with required_poses of them it is harmless"});
   result.add(
       "/identification/single_max", axes, found.single_max,
       {"SI: unit of the measure of deformation", "Largest deformation by the error alone; NaN where not solved"});

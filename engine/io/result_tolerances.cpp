@@ -82,7 +82,7 @@ void add_columns(ResultBuilder& result, const Columns& columns) {
       "/tolerances/equal_effect", axes, columns.equal_effect,
       {factor_unit,
        "Tolerance that gives every error the reference's effect: index(reference) / index x "
-       "reference_tolerance (Du et al. 2022, Section 6.3, Table 10); infinity: no effect, no limit; NaN: unknown"});
+       "reference_tolerance (Du et al. 2022, Section 6.3, Table 10); infinity: no effect on its own; NaN: unknown"});
   result.add("/tolerances/variance_share", axes, columns.variance_share,
              {"1", "(index x sigma)^2 over its sum, with sigma as set in the study"});
   result.add("/tolerances/rms_effect", axes, columns.rms_effect,

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <functional>
+
 #include "engine/io/study_file_parts.h"
 #include "engine/io/wording.h"
 
@@ -17,7 +20,30 @@ void set_case_errors(const StudyValue& value, std::string_view key, const ModelD
   }
 }
 
-/// The errors of a case: `linear` and `angular` for all, then factor sets, then single factors, each over the last.
+/// The factor sets that a case names, each before those that lie inside it. Throws where two overlap otherwise.
+std::vector<const FactorSet*> sets_in_case(const StudySection& section, const ModelDescription& model) {
+  std::vector<const FactorSet*> sets;
+  for (const FactorSet& set : model.factor_sets) {
+    if (section.find(set.name)) sets.push_back(&set);
+  }
+  std::ranges::stable_sort(sets, std::ranges::greater(), [](const FactorSet* set) { return set->factors.size(); });
+  for (std::size_t wide = 0; wide < sets.size(); ++wide) {
+    for (std::size_t narrow = wide + 1; narrow < sets.size(); ++narrow) {
+      const auto& around = sets[wide]->factors;
+      const auto& inside = sets[narrow]->factors;
+      const auto shared = std::ranges::count_if(
+          inside, [&](FactorIndex factor) { return std::ranges::find(around, factor) != around.end(); });
+      if (shared == 0 || static_cast<std::size_t>(shared) == inside.size()) continue;
+      section.find(sets[narrow]->name)
+          ->fail("shares factors with '" + sets[wide]->name + "', and neither lies inside the other",
+                 "name the factors that both have one by one");
+    }
+  }
+  return sets;
+}
+
+/// The errors of a case: `linear` and `angular` for all, then factor sets from wide to narrow, then single factors,
+/// each over the last.
 std::vector<double> read_case_errors(const StudySection& section, const ModelDescription& model,
                                      std::vector<double> errors) {
   std::vector<std::string_view> known = names(model.factors);
@@ -28,13 +54,13 @@ std::vector<double> read_case_errors(const StudySection& section, const ModelDes
   for (const std::string_view key : {"linear", "angular"}) {
     if (const auto value = section.find(key)) set_case_errors(*value, key, model, errors);
   }
-  for (const FactorSet& set : model.factor_sets) {
-    if (!section.find(set.name)) continue;
-    const StudySection sizes = section.section(set.name);
+  for (const FactorSet* set : sets_in_case(section, model)) {
+    const StudySection sizes = section.section(set->name);
     sizes.allow({"linear", "angular"});
+    if (sizes.empty()) section.find(set->name)->fail("gives no error", "write linear, angular, or both");
     std::vector<double> all = errors;
     for (const std::string& key : sizes.keys()) set_case_errors(*sizes.find(key), key, model, all);
-    for (const FactorIndex factor : set.factors) errors[factor.value] = all[factor.value];
+    for (const FactorIndex factor : set->factors) errors[factor.value] = all[factor.value];
   }
   for (const Factor& factor : model.factors) {
     if (const auto value = section.find(factor.name)) set_case_errors(*value, factor.name, model, errors);

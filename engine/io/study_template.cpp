@@ -147,7 +147,7 @@ std::string sensitivity_keys(const ModelDescription& model) {
   const std::string_view usual = model.find_set("deforming") != nullptr ? "deforming" : "all";
   std::string text = factors_text(model, "The errors that vary, one at a time", usual);
   text += samples_text("for each varied error at each pose");
-  text += "# Optional: errors held constant while the others vary one at a time. Default: none.\n";
+  text += "# Optional: errors held constant while others vary; what varies is not held. Default: none.\n";
   text += background_text(model);
   text += "# Optional: the error from which tolerances of equal effect are counted, and its own tolerance.\n";
   text += "# Default: the error of smallest effect, at 1 mm or 1 deg.\n";

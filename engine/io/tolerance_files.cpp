@@ -40,7 +40,6 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
 
 void set_tolerances(Study& study, std::span<const double> tolerances) {
   for (std::size_t p = 0; p < tolerances.size(); ++p) {
-    if (std::isinf(tolerances[p])) continue;
     study.errors.by_factor[study.analysis.factors[p].value] = Distribution::normal(tolerances[p]);
   }
 }

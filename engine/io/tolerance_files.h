@@ -24,15 +24,14 @@ struct ResponseTolerances {
 ///     `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
 ///
 /// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error;
-/// "inf" says that the error has no effect. Returns the path. Throws FileError.
+/// "inf" says that the error has no effect on its own. Returns the path. Throws FileError.
 std::string write_tolerances(const std::string& folder, const StoredResult& result,
                              const ResponseTolerances& tolerances);
 
 /// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
-/// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. An error
-/// without limit stays as it was. Poses that came from a file are written beside them as confirm_poses.csv. Returns the
-/// paths of the studies. Precondition: tolerances.limit. Throws FileError; InputError when the stored study cannot be
-/// read with this catalog.
+/// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. Poses that
+/// came from a file are written beside them as confirm_poses.csv. Returns the paths of the studies. Precondition:
+/// tolerances.limit. Throws FileError; InputError when the stored study cannot be read with this catalog.
 std::vector<std::string> write_confirmation(const std::string& folder, const StoredResult& result,
                                             const ResponseTolerances& tolerances, const Catalog& catalog);
 

@@ -20,7 +20,7 @@ std::string index_cells(const SensitivityResult& found, std::size_t at, double s
 }
 
 std::string tolerance_cell(double tolerance, const Unit& unit) {
-  if (std::isinf(tolerance)) return fmt::format("  {:>18}", "no limit");
+  if (std::isinf(tolerance)) return fmt::format("  {:>18}", "no effect");
   return fmt::format("  {:>18}", fmt::format("{} {:<3}", number(tolerance / unit.si), unit.name));
 }
 
@@ -41,8 +41,9 @@ std::string limit_lines(const StoredResult& result, const ResponseTolerances& to
   if (!tolerances.limit) return "";
   const NamedUnit& response = result.responses[tolerances.response];
   return fmt::format(
-      "limit: root mean square of {} over samples and poses = {}, so its mean is below; the background alone gives "
-      "{}\n",
+      "limit: predicted root mean square of {} over samples and poses = {}; its mean is below that. The background "
+      "alone gives {}\n"
+      "  an error without effect on its own has its equal tolerance, for it may act together with others\n",
       response.name, response_text(response, tolerances.limit->limit),
       response_text(response, std::sqrt(tolerances.all.mean_square.background)));
 }

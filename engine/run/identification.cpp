@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// Share of the deformation that must remain when an error is set to zero for the error to be without part in it.
+/// An error takes part in a deformation of which at most this share remains when the error is set to zero.
 constexpr double kReduced = 0.1;
 
 /// Errors of one frame that are tried together, as positions among the factors.
@@ -66,8 +66,8 @@ class Identification {
     const auto solved_table = (*solve_)(table);
     if (!solved_table) return std::nullopt;
     found_.poses = solved_table->poses;
-    found_.required_poses =
-        static_cast<std::uint64_t>(std::floor(analysis_->pose_share * static_cast<double>(found_.poses)));
+    found_.required_poses = std::max<std::uint64_t>(
+        1, static_cast<std::uint64_t>(std::llround(analysis_->pose_share * static_cast<double>(found_.poses))));
     found_.solves.merge(solved_table->total());
     const std::size_t all = solved_table->poses * trials.size();
     const auto response = std::span(solved_table->response).subspan(model_->deformation->response * all, all);

@@ -14,9 +14,9 @@ using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTabl
 
 /// Which errors deform the mechanism at all (Du et al. 2022, Section 5.1), for each group of sizes:
 ///
-/// Single stage: each error alone. It deforms when the model's measure of deformation exceeds rounding at more poses
-/// than a share 1 - pose_share of them; a pose that was not solved counts as deformed, for no deformation was shown
-/// there to be absent.
+/// Single stage: each error alone. It is harmless where the model's measure of deformation is no more than rounding at
+/// pose_share of the poses, rounded to whole poses, one at least (657 of 692 at 0.95, as in the paper); else it
+/// deforms. A pose that was not solved counts as deformed, for no deformation was shown there to be absent.
 ///
 /// Coupled stage: for each frame of a limb, all of its errors that did not deform alone, together. Where that deforms,
 /// two that deform as a pair are a coupling, and the verdict names its angular member, or both where they are of one

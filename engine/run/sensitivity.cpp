@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/run/counts.h"
 #include "engine/stats/sensitivity_index.h"
 
 namespace poesy {
@@ -37,18 +38,17 @@ std::vector<double> background_responses(const Plan& plan, const Model& model) {
   const std::size_t responses = model.description().responses.size();
   const std::size_t poses = plan.poses().size();
   const auto evaluator = model.evaluator(plan.solver());
-  std::vector<double> errors(plan.background().begin(), plan.background().end());
-  for (const FactorIndex factor : plan.factors()) errors[factor.value] = 0.0;
   const std::array zero{0.0};
   std::array status{SolveStatus::converged};
   std::array iterations{std::uint32_t{0}};
   std::vector<double> outcome(responses);
   std::vector<double> background(responses * poses);
   for (std::size_t m = 0; m < poses; ++m) {
-    evaluator->evaluate({plan.poses()[PoseIndex(m)], errors, plan.factors().first(1), zero, 1},
+    evaluator->evaluate({plan.poses()[PoseIndex(m)], plan.background(), plan.factors().first(1), zero, 1},
                         {outcome, status, iterations, {}});
     for (std::size_t r = 0; r < responses; ++r) {
-      background[r * poses + m] = solved(status[0]) ? outcome[r] : std::numeric_limits<double>::quiet_NaN();
+      background[r * poses + m] =
+          counts(status[0], plan.not_converged()) ? outcome[r] : std::numeric_limits<double>::quiet_NaN();
     }
   }
   return background;

@@ -104,8 +104,12 @@ Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceE
 }
 
 LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response, double limit) {
-  return {limit, tolerances_within(response, inverse(study.index), limit),
-          tolerances_within(response, study.sigma, limit)};
+  LimitTolerances found{limit, tolerances_within(response, inverse(study.index), limit),
+                        tolerances_within(response, study.sigma, limit)};
+  for (std::size_t p = 0; p < found.equal_effect.size(); ++p) {
+    if (std::isinf(found.equal_effect[p])) found.equal_effect[p] = found.equal_tolerance[p];
+  }
+  return found;
 }
 
 }  // namespace poesy

@@ -6,7 +6,7 @@
 #include <vector>
 
 /// Tolerances from the indices of a sensitivity study. A tolerance here is the standard deviation of a normal error, in
-/// SI; infinity says that the error has no effect and needs no limit, NaN that its effect is not known.
+/// SI; infinity says that the error has no effect on its own, NaN that its effect is not known.
 namespace poesy {
 
 /// Below this, in SI, an index is rounding: solvers work to about 1e-14 rad or m for errors of about 1e-3.
@@ -74,7 +74,9 @@ Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceE
 /// Tolerances that keep the root mean square of a response over samples and poses at a limit, and so its mean below.
 struct LimitTolerances {
   double limit = 0.0;
-  std::vector<double> equal_effect;     ///< [P] every error has the same effect: t_p = k / mu_p
+  /// [P] every error has the same effect: t_p = k / mu_p. One without effect on its own may act together with others,
+  /// so it has its equal tolerance.
+  std::vector<double> equal_effect;
   std::vector<double> equal_tolerance;  ///< [P] the same multiple of every error in the study: t_p = k sigma_p
 };
 

@@ -17,6 +17,7 @@ Plan::Plan(const Study& study, PoseSet poses)
       seed_(study.seed),
       solver_(study.solver),
       not_converged_(study.not_converged) {
+  for (const FactorIndex factor : factors_) background_[factor.value] = 0.0;
   distributions_.reserve(factors_.size());
   for (const FactorIndex factor : factors_) distributions_.push_back(study.errors.by_factor[factor.value]);
 }

@@ -41,7 +41,7 @@ class Plan {
   std::span<const FactorIndex> factors() const { return factors_; }
   /// Distribution of each varied factor, in the order of factors().
   std::span<const Distribution> distributions() const { return distributions_; }
-  /// Constant errors, [F].
+  /// Constant errors, [F]; zero for those that vary, also while another one does.
   std::span<const double> background() const { return background_; }
   const SolverOptions& solver() const { return solver_; }
   NotConverged not_converged() const { return not_converged_; }

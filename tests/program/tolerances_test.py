@@ -53,6 +53,11 @@ class Tolerances(ProgramTest):
             at = list(file["response"].asstr()).index(RESPONSE)
             self.assertEqual([float(row["equal_effect"]) for row in table.values()], list(group["equal_effect"][at]))
 
+    def test_writes_beside_the_result_unless_told_otherwise(self):
+        printed = self.succeeds("tolerances", self.result(), "--response", RESPONSE, "--limit", "0.05 mm")
+        self.assertIn("poesy run r_tolerances/confirm_equal_effect.toml", printed)
+        self.assertEqual(set(self.table("r_tolerances")), {"delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"})
+
     def test_reference_from_the_command_line(self):
         result = self.result()
         self.succeeds("tolerances", result, "--response", RESPONSE, "--reference", "delta_1_1_y=10 um", "-d", "a")
@@ -63,7 +68,7 @@ class Tolerances(ProgramTest):
     def test_no_limit_for_an_error_without_effect(self):
         printed = self.succeeds("tolerances", self.result(), "--response", "angular_deformation", "--reference",
                                 "epsilon_1_4_z", "-d", "out")
-        self.assertIn("no limit", printed)
+        self.assertIn("no effect", printed)
         self.assertEqual(self.table("out")["epsilon_1_1_z"]["equal_effect"], "inf")
 
     def confirm(self, study, limit_mm):
@@ -108,9 +113,10 @@ class Tolerances(ProgramTest):
 
     def test_reference_without_effect(self):
         result = self.result()
-        words = ["--reference: 'epsilon_1_1_z' has no effect on angular_deformation (index 0)", "name another"]
-        self.refuses(result, "--response", "angular_deformation", words=words)
-        self.refuses(result, "--response", "angular_deformation", "--reference", "epsilon_1_1_z", words=words)
+        words = ["'epsilon_1_1_z' has no effect on angular_deformation (index 0)", "name another with --reference"]
+        self.refuses(result, "--response", "angular_deformation", words=["the study's [analysis] reference: ", *words])
+        self.refuses(result, "--response", "angular_deformation", "--reference", "epsilon_1_1_z",
+                     words=["--reference: ", *words])
 
     def test_names_and_files_that_do_not_fit(self):
         result = self.result()

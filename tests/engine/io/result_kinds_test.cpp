@@ -71,6 +71,10 @@ TEST_F(CasesFile, IsExportedWithItsNames) {
   export_tables(path_, tables);
   EXPECT_EQ(test::read_bytes(tables + "/errors.csv"),
             "case,delta_1 [m],epsilon_1 [rad],delta_2 [m]\nfine,0.001,0.002,0.003\ncoarse,0.004,0.005,0.006\n");
+  const std::string solves = test::read_bytes(tables + "/evaluate.csv");
+  EXPECT_EQ(solves.substr(0, 10), "case,pose,");
+  EXPECT_NE(solves.find("\nfine,3,"), std::string::npos);
+  EXPECT_LT(solves.find("\nfine,3,"), solves.find("\ncoarse,0,"));
   const std::string cases = test::read_bytes(tables + "/cases.csv");
   EXPECT_EQ(cases.substr(0, cases.find('\n')),
             "case,poses,angular_deformation_mean [rad],angular_deformation_max [rad],linear_deformation_mean [m],"
@@ -155,7 +159,7 @@ TEST_F(IdentificationFile, IsExportedGroupByGroup) {
             "factor,single,coupled,single_group_1,single_group_2,coupled_group_1,coupled_group_2\n"
             "epsilon_1,1,1,1,1,1,1\ndelta_1,0,1,0,0,1,0\n");
   EXPECT_EQ(test::read_bytes(tables + "/couplings.csv"),
-            "coupling,group,first_factor,second_factor,poses\n0,1,0,1,4\n1,2,1,0,2\n");
+            "coupling,group,first_factor,second_factor,poses\nepsilon_1+delta_1,1,0,1,4\ndelta_1+epsilon_1,2,1,0,2\n");
   EXPECT_EQ(test::read_bytes(tables + "/single_below.csv"), "factor,group_1,group_2\nepsilon_1,0,1\ndelta_1,4,4\n");
 }
 

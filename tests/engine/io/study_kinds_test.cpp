@@ -44,6 +44,34 @@ errors = { epsilon_1 = "1 deg" }
   EXPECT_EQ(cases[2].errors, (std::vector<double>{0.0, kDegree, 7e-3}));
 }
 
+TEST(StudyOfCases, LetsANarrowerSetWinWhateverItsPlaceInTheModel) {
+  const Study study = study_of(R"(kind = "evaluate"
+[[analysis.cases]]
+errors = { all = { linear = "1 mm", angular = "1 deg" }, deforming = { linear = "2 mm" } }
+)");
+  EXPECT_EQ(study.analysis.cases[0].errors, (std::vector<double>{2e-3, kDegree, 1e-3}));
+  Catalog wide_last = test::fake_catalog();
+  std::swap(wide_last.front().description.factor_sets[0], wide_last.front().description.factor_sets[1]);
+  const test::TempFolder folder;
+  const std::string path = folder.write(
+      "study.toml", with_analysis("kind = \"evaluate\"\ncases = [{ errors = { all = { linear = \"1 mm\" }, deforming = "
+                                  "{ linear = \"2 mm\" } } }]\n"));
+  EXPECT_EQ(read_study(path, wide_last, StudyUse::run).analysis.cases[0].errors,
+            (std::vector<double>{2e-3, 0.0, 1e-3}));
+}
+
+TEST(StudyOfCases, RefusesSetsThatOverlap) {
+  Catalog overlapping = test::fake_catalog();
+  overlapping.front().description.factor_sets.push_back({"lengths", "", {FactorIndex(0), FactorIndex(2)}});
+  const test::Marked bad(
+      with_analysis("kind = \"evaluate\"\ncases = [{ errors = { lengths = ^{ linear = \"1 mm\" }, deforming = { linear "
+                    "= \"2 mm\" } } }]"));
+  const test::TempFolder folder;
+  const std::string path = folder.write("study.toml", bad.text);
+  test::expect_input_error([&] { read_study(path, overlapping, StudyUse::run); }, {path, bad.line, bad.column},
+                           {"lengths", "deforming", "neither lies inside"});
+}
+
 TEST(StudyOfCases, NeedsNoCasesForATableOfErrors) {
   EXPECT_TRUE(study_of("kind = \"evaluate\"\n", StudyUse::evaluate).analysis.cases.empty());
 }
@@ -169,6 +197,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadAnalysis{"CaseNameWithComma",
                     kEvaluate + "cases = [{ name = ^\"a,b\", errors = { linear = \"1 mm\" } }]",
                     {"'a,b'", "without commas"}},
+        BadAnalysis{"EmptySetInCase", kEvaluate + "cases = [{ errors = { benign = ^{} } }]", {"benign gives no error"}},
         BadAnalysis{"SetInCaseWithUnknownKey",
                     kEvaluate + "cases = [{ errors = { benign = { ^liner = \"1 mm\" } } }]",
                     {"did you mean 'linear'?"}},

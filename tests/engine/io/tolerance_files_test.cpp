@@ -31,7 +31,7 @@ class ToleranceFiles : public testing::Test {
   /// Tolerances for the first response, epsilon_1 without effect.
   static ResponseTolerances some(bool limit) {
     ResponseTolerances tolerances{0, {ReferenceError{1, 2e-3}, {kInfinity, 2e-3}, {0.0, 1.0}, {}}, std::nullopt};
-    if (limit) tolerances.limit = LimitTolerances{1e-3, {kInfinity, 4e-3}, {0.25, 1e-5}};
+    if (limit) tolerances.limit = LimitTolerances{1e-3, {0.25, 4e-3}, {0.25, 1e-5}};
     return tolerances;
   }
 
@@ -84,8 +84,8 @@ TEST_F(ToleranceFiles, TableReadsWithoutKnowingTheProgram) {
             "factor,kind,limb,unit,display_unit,index_unit,index,index_ci_low,index_ci_high,variance_share,"
             "equal_effect,limit_equal_effect,limit_equal_tolerance,"
             "equal_effect_display,limit_equal_effect_display,limit_equal_tolerance_display\n"
-            "epsilon_1,angular,1,rad,deg,rad/rad,0,6000,7000,0,inf,inf,0.25,inf,inf," +
-                shortest(0.25 / kDegree) +
+            "epsilon_1,angular,1,rad,deg,rad/rad,0,6000,7000,0,inf,0.25,0.25,inf," +
+                shortest(0.25 / kDegree) + "," + shortest(0.25 / kDegree) +
                 "\n"
                 "delta_1,linear,1,m,mm,rad/m,2,6010,7010,1,0.002,0.004,1e-05,2,4,0.01\n");
 }
@@ -111,7 +111,7 @@ TEST_F(ToleranceFiles, ConfirmationVariesTheSameErrorsWithTheirTolerances) {
   EXPECT_EQ(equal_effect.seed, 77U);
   EXPECT_EQ(equal_effect.errors.by_factor[0].shape(), Distribution::Shape::normal);
   EXPECT_EQ(equal_effect.errors.by_factor[0].sigma(), 4e-3);
-  EXPECT_EQ(equal_effect.errors.by_factor[1].shape(), Distribution::Shape::uniform) << "without limit: as it was";
+  EXPECT_EQ(equal_effect.errors.by_factor[1].sigma(), 0.25);
   EXPECT_EQ(equal_effect.errors.by_factor[2].sigma(), 1e-3) << "not varied: as it was";
   const Study equal_tolerance = read_back(paths[1]);
   EXPECT_EQ(equal_tolerance.errors.by_factor[0].sigma(), 1e-5);

@@ -110,6 +110,14 @@ TEST(Identify, AsksForAShareOfThePoses) {
   EXPECT_EQ(identified(deformed_at(2)).single_below[0], 18u);
 }
 
+TEST(Identify, AsksForOnePoseAtLeast) {
+  Analysis hardly = analysis();
+  hardly.pose_share = 0.01;
+  const IdentificationResult found = identified([](auto e, std::size_t) { return std::abs(e[0]); }, hardly);
+  EXPECT_EQ(found.required_poses, 1u);
+  EXPECT_EQ(found.single, (Verdicts{1, 0, 0, 0, 0, 0}));
+}
+
 TEST(Identify, CountsAnUnsolvedPoseAsDeformed) {
   const IdentificationResult found =
       identified([](auto e, std::size_t pose) { return e[0] != 0.0 && pose < 2 ? std::nan("") : 0.0; });
