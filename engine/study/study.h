@@ -20,6 +20,7 @@ namespace poesy {
 struct MechanismChoice {
   const CatalogEntry* entry = nullptr;
   std::vector<double> geometry;
+  std::size_t fidelity = 0;  ///< position among the model's fidelities, 0 where it offers no choice
   Place place;  ///< of the section, for messages about the geometry as a whole
 };
 
