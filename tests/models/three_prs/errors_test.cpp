@@ -21,7 +21,7 @@ std::set<std::size_t> members(const char* set) {
 }
 
 TEST(Factors, AreTheSixtySourcesInTheOrderOfTheOracle) {
-  const nlohmann::json names = oracle().at("names");
+  const nlohmann::json& names = oracle().at("names");
   const std::vector<Factor> list = factors();
   ASSERT_EQ(list.size(), kFactors);
   ASSERT_EQ(names.size(), kSources);
@@ -74,7 +74,7 @@ TEST(FactorSets, CompensableAndNonCompensablePartitionAll) {
 }
 
 TEST(FactorSets, AllIsWhatHasAnEffect) {
-  const nlohmann::json mapping = oracle().at("G");
+  const nlohmann::json& mapping = oracle().at("G");
   for (std::size_t f = 0; f < kFactors; ++f) {
     const bool effect =
         std::ranges::any_of(mapping, [&](const auto& row) { return row[f].template get<double>() != 0.0; });
@@ -84,7 +84,7 @@ TEST(FactorSets, AllIsWhatHasAnEffect) {
 
 TEST(FactorSets, SeparationFollowsTheRowsOfTheMapping) {
   // Section 4.2: compensable sources enter drive rows only, non-compensable ones constraint rows only; c enters both.
-  const nlohmann::json mapping = oracle().at("G");
+  const nlohmann::json& mapping = oracle().at("G");
   const auto enters = [&](std::size_t f, std::size_t first_row) {
     return std::any_of(mapping.begin() + static_cast<std::ptrdiff_t>(first_row),
                        mapping.begin() + static_cast<std::ptrdiff_t>(first_row) + 3,

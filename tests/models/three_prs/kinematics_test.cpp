@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 
 TEST(Oracle, InverseKinematics) {
+  ASSERT_EQ(oracle().at("ik").size(), 7u);
   for (const json& reference : oracle().at("ik")) {
     const Configuration at =
         configuration({}, {reference.at("alpha"), reference.at("beta"), kMm * double(reference.at("z"))});
@@ -38,7 +39,7 @@ Configuration oracle_configuration(const json& reference) {
 void expect_entry(double found, double expected) { EXPECT_NEAR(found, expected, 1e-9 * std::abs(expected) + 1e-14); }
 
 TEST(Oracle, VelocityJacobianAndErrorMapping) {
-  const json reference = oracle();
+  const json& reference = oracle();
   const Configuration at = oracle_configuration(reference);
   const lie::Matrix6<double> J = velocity_jacobian(at);
   const ErrorMapping G = error_mapping({}, at);
@@ -60,6 +61,7 @@ TEST(Oracle, VelocityJacobianAndErrorMapping) {
 }
 
 TEST(Oracle, PosesOfTheTip) {
+  ASSERT_EQ(oracle().at("tip").size(), 6u);
   for (const json& reference : oracle().at("tip")) {
     Geometry geometry;
     geometry.h = kMm * double(reference.at("h"));

@@ -18,7 +18,7 @@ const ModelDescription kModel = catalog_entry().description;
 
 /// "dax1" as the place of a_x_1.
 std::size_t place_of(const std::string& short_name) {
-  const json names = oracle().at("names");
+  const json& names = oracle().at("names");
   const std::string source = short_name.substr(0, short_name.size() - 1);
   const auto found = std::find(names.begin(), names.end(), source);
   return (short_name.back() - '1') * kSources + static_cast<std::size_t>(found - names.begin());
@@ -55,6 +55,7 @@ void expect_motion(const Solved& found, const json& expected) {
 }
 
 TEST(Oracle, ExactAndFirstOrderSolves) {
+  ASSERT_EQ(oracle().at("exact").size(), 38u);
   const auto exact = published("exact");
   const auto first_order = published("first-order");
   for (const json& reference : oracle().at("exact")) {
@@ -196,7 +197,8 @@ TEST(Model, ASampleDoesNotDependOnItsNeighbours) {
   for (double& value : values) value = std::normal_distribution<double>(0.0, 1e-3)(engine);
   const std::vector<double> errors(kFactors, 0.0), pose{-0.2, 0.1, 0.75};
   for (const char* fidelity : {"exact", "first-order"}) {
-    const auto evaluator = published(fidelity)->evaluator({});
+    const auto model = published(fidelity);
+    const auto evaluator = model->evaluator({});
     const auto responses_of = [&](std::size_t first, std::size_t size) {
       std::vector<double> part, responses(12 * size);
       for (std::size_t v = 0; v < varied.size(); ++v) {

@@ -16,10 +16,13 @@ namespace poesy::three_prs {
 
 inline constexpr double kMm = 1e-3;
 
-/// Reference values computed independently, in mm and rad.
-inline nlohmann::json oracle() {
-  std::ifstream file(std::string(POESY_TEST_DATA) + "/kinematics_3prs.json");
-  return nlohmann::json::parse(file);
+/// Reference values computed independently, in mm and rad. Lives as long as the program: tests loop over its parts.
+inline const nlohmann::json& oracle() {
+  static const nlohmann::json values = [] {
+    std::ifstream file(std::string(POESY_TEST_DATA) + "/kinematics_3prs.json");
+    return nlohmann::json::parse(file);
+  }();
+  return values;
 }
 
 inline std::unique_ptr<Model> published(std::string_view fidelity) {
