@@ -21,7 +21,7 @@ struct MechanismChoice {
   const CatalogEntry* entry = nullptr;
   std::vector<double> geometry;
   std::size_t fidelity = 0;  ///< position among the model's fidelities, 0 where it offers no choice
-  Place place;  ///< of the section, for messages about the geometry as a whole
+  Place place;               ///< of the section, for messages about the geometry as a whole
 };
 
 /// How each error source is distributed.
