@@ -18,6 +18,15 @@ std::vector<double> read_geometry(const StudySection& section, const ModelDescri
   return values;
 }
 
+std::size_t read_fidelity(const StudySection& section, const ModelDescription& model) {
+  if (model.fidelities.empty()) {
+    section.refuse("fidelity", "model \"" + model.name + "\", which offers no choice of it");
+    return 0;
+  }
+  const auto value = section.find("fidelity");
+  return value ? value->word(std::vector<std::string_view>(model.fidelities.begin(), model.fidelities.end())) : 0;
+}
+
 Range read_range(const StudyValue& value, Dimension dimension) {
   const std::vector<StudyValue> ends = value.list();
   if (ends.size() != 2) {
@@ -137,7 +146,7 @@ MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog)
   const auto geometry = section.find("geometry");
   choice.place = geometry ? geometry->place() : section.place();
   choice.geometry = read_geometry(section.section("geometry"), choice.entry->description);
-  section.refuse("fidelity", "model \"" + choice.entry->description.name + "\", which offers no choice of it");
+  choice.fidelity = read_fidelity(section, choice.entry->description);
   return choice;
 }
 

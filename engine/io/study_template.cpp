@@ -36,6 +36,10 @@ std::string head(const ModelDescription& model, Analysis::Kind kind) {
 
 std::string mechanism_section(const ModelDescription& model) {
   std::string text = fmt::format("\n[mechanism]\nmodel = {}  # 'poesy models' lists the models\n", quoted(model.name));
+  if (!model.fidelities.empty()) {
+    text += fmt::format("fidelity = {}  # of {}; the first is the default\n", quoted(model.fidelities.front()),
+                        fmt::join(model.fidelities, ", "));
+  }
   if (model.geometry.empty()) return text;
   text += "\n# Optional: what is left out keeps the published value, which is shown here.\n# [mechanism.geometry]\n";
   for (const GeometryParameter& parameter : model.geometry) {

@@ -54,6 +54,9 @@ std::string factors_text(std::span<const FactorIndex> factors, const ModelDescri
 std::string mechanism_text(const Study& study) {
   const ModelDescription& model = study.model();
   std::string text = fmt::format("[mechanism]\nmodel = {}\n", quoted(model.name));
+  if (!model.fidelities.empty()) {
+    text += fmt::format("fidelity = {}\n", quoted(model.fidelities[study.mechanism.fidelity]));
+  }
   if (model.geometry.empty()) return text;
   text += "\n[mechanism.geometry]\n";
   for (std::size_t g = 0; g < model.geometry.size(); ++g) {

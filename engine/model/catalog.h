@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -12,9 +13,10 @@ namespace poesy {
 /// A mechanism that a study may name.
 struct CatalogEntry {
   ModelDescription description;
-  /// Builds the mechanism from the values of description.geometry, in that order (SI).
+  /// Builds the mechanism from the values of description.geometry, in that order (SI), and the position of a fidelity
+  /// among description.fidelities, 0 where there is no choice.
   /// Throws std::invalid_argument with a clause that names the parameter and the rule it breaks.
-  std::function<std::unique_ptr<Model>(std::span<const double> geometry)> build;
+  std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;
 };
 
 using Catalog = std::vector<CatalogEntry>;

@@ -103,6 +103,8 @@ struct ModelDescription {
   std::vector<double> pose_lower;         ///< a workspace inside reach, [pose coordinates], SI
   std::vector<double> pose_upper;
   std::string workspace_note;  ///< where that workspace comes from
+  /// What a study may choose between, from "exact" to "first-order"; the first is the default. Empty: no choice.
+  std::vector<std::string> fidelities;
 
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
   const FactorSet* find_set(std::string_view set_name) const;

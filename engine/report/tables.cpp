@@ -188,6 +188,10 @@ std::string model_text(const ModelDescription& model) {
     text += fmt::format("  {:<16} {:>8.6g} {:<4} {}\n", parameter.name, parameter.published / unit.si, unit.name,
                         parameter.description);
   }
+  if (!model.fidelities.empty()) {
+    text += "\nfidelity (choose it in [mechanism]; the first is the default)\n";
+    for (const std::string& fidelity : model.fidelities) text += "  " + fidelity + "\n";
+  }
   text += "\npose coordinates and default workspace\n";
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];

@@ -70,7 +70,7 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
 
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
   try {
-    return mechanism.entry->build(mechanism.geometry);
+    return mechanism.entry->build(mechanism.geometry, mechanism.fidelity);
   } catch (const std::invalid_argument& reason) {
     throw InputError(mechanism.place, std::string("impossible geometry: ") + reason.what(),
                      "correct it, or leave it out to keep the published value");

@@ -20,7 +20,8 @@ namespace poesy {
 struct MechanismChoice {
   const CatalogEntry* entry = nullptr;
   std::vector<double> geometry;
-  Place place;  ///< of the section, for messages about the geometry as a whole
+  std::size_t fidelity = 0;  ///< position among the model's fidelities, 0 where it offers no choice
+  Place place;               ///< of the section, for messages about the geometry as a whole
 };
 
 /// How each error source is distributed.

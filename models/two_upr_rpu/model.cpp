@@ -118,7 +118,7 @@ void require(bool holds, const char* rule) {
   if (!holds) throw std::invalid_argument(rule);
 }
 
-std::unique_ptr<Model> build(std::span<const double> values) {
+std::unique_ptr<Model> build(std::span<const double> values, std::size_t /*fidelity*/) {
   POESY_EXPECTS(values.size() == 5);
   const Geometry geometry{values[0], values[1], values[2], values[3], values[4]};
   require(geometry.l_A > 0.0, "l_A must be positive");

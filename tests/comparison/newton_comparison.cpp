@@ -299,7 +299,7 @@ int run(std::size_t pairs, std::uint64_t seed, std::size_t threads) {
   const CatalogEntry* entry = find(registry(), "2upr-rpu");
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry->description.geometry) geometry.push_back(parameter.published);
-  const std::unique_ptr<Model> model = entry->build(geometry);
+  const std::unique_ptr<Model> model = entry->build(geometry, 0);
   const PairSource source(*model, seed);
   const std::size_t groups = (pairs + kGroup - 1) / kGroup;
   const Findings found = compare(*model, source, groups, threads);

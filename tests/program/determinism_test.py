@@ -25,6 +25,23 @@ class Determinism(ProgramTest):
         study = STUDY.replace('"sensitivity"', '"monte-carlo"')
         self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 3)}), 1)
 
+    def test_every_fidelity(self):
+        for kind in ("sensitivity", "monte-carlo"):
+            by_fidelity = []
+            for fidelity in ("exact", "first-order"):
+                study = f"""\
+format = "poesy-study"
+version = 1
+mechanism = {{ model = "3-prs", fidelity = "{fidelity}" }}
+poses = {{ count = 5 }}
+errors = {{ linear = {{ distribution = "normal", sigma = "0.1 mm" }} }}
+analysis = {{ kind = "{kind}", samples = 1200 }}
+"""
+                hashes = {self.content_hash(study, "--threads", n) for n in (1, 2, 3)}
+                self.assertEqual(len(hashes), 1, (kind, fidelity))
+                by_fidelity.append(hashes.pop())
+            self.assertNotEqual(*by_fidelity)
+
     def test_identification_and_cases(self):
         head, rest = STUDY.split("[analysis]")
         head = head.replace("count = 6", 'select = "boundary"\ncount = 30')

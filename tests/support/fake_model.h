@@ -113,8 +113,9 @@ inline ModelDescription FakeModel::describe() {
 
 /// The catalog of tests: the fake mechanism alone.
 inline Catalog fake_catalog() {
-  return {{FakeModel::describe(),
-           [](std::span<const double> geometry) { return std::make_unique<FakeModel>(geometry[0]); }}};
+  return {{FakeModel::describe(), [](std::span<const double> geometry, std::size_t /*fidelity*/) {
+             return std::make_unique<FakeModel>(geometry[0]);
+           }}};
 }
 
 }  // namespace poesy::test

@@ -189,7 +189,7 @@ TEST(Template, RunsForAModelWithoutSetsAndGeometry) {
   catalog[0].description.factor_sets.clear();
   catalog[0].description.geometry.clear();
   catalog[0].description.workspace_note = "two\nlines";
-  catalog[0].build = [](std::span<const double>) { return std::make_unique<test::FakeModel>(); };
+  catalog[0].build = [](std::span<const double>, std::size_t) { return std::make_unique<test::FakeModel>(); };
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", template_text(catalog[0], Analysis::Kind::sensitivity));
   const Study study = read_study(path, catalog, StudyUse::run);

@@ -19,7 +19,7 @@ std::unique_ptr<Model> published() {
   const CatalogEntry entry = catalog_entry();
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
-  return entry.build(geometry);
+  return entry.build(geometry, 0);
 }
 
 /// Reference cases computed independently: see the note in the file.
@@ -183,14 +183,14 @@ TEST(Model, SaysWhyAPoseIsOutOfReach) {
 
 TEST(Model, RefusesImpossibleGeometry) {
   const CatalogEntry entry = catalog_entry();
-  EXPECT_THROW(entry.build(std::vector{-0.06, 0.15, 0.025, 0.115, -0.2}), std::invalid_argument);
-  EXPECT_THROW(entry.build(std::vector{0.06, 0.0, 0.025, 0.115, -0.2}), std::invalid_argument);
-  EXPECT_THROW(entry.build(std::vector{0.06, 0.15, 0.025, 0.115, 0.2}), std::invalid_argument);
+  EXPECT_THROW(entry.build(std::vector{-0.06, 0.15, 0.025, 0.115, -0.2}, 0), std::invalid_argument);
+  EXPECT_THROW(entry.build(std::vector{0.06, 0.0, 0.025, 0.115, -0.2}, 0), std::invalid_argument);
+  EXPECT_THROW(entry.build(std::vector{0.06, 0.15, 0.025, 0.115, 0.2}, 0), std::invalid_argument);
 }
 
 TEST(Model, FollowsItsGeometry) {
   const CatalogEntry entry = catalog_entry();
-  const auto larger = entry.build(std::vector{0.08, 0.2, 0.03, 0.12, -0.3});
+  const auto larger = entry.build(std::vector{0.08, 0.2, 0.03, 0.12, -0.3}, 0);
   EXPECT_FALSE(larger->unreachable(std::vector{-0.35, 0.2, -0.3}));
   EXPECT_NE(larger->joint_displacements(std::vector{-0.35, 0.2, -0.3}),
             published()->joint_displacements(std::vector{-0.35, 0.2, -0.3}));

@@ -1,0 +1,93 @@
+#include "models/three_prs/closure.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace poesy::three_prs {
+namespace {
+
+using Vector3 = lie::Vector3<double>;
+using Matrix3 = lie::Matrix3<double>;
+using Matrix6 = lie::Matrix6<double>;
+using Step = lie::Screw<double>;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// The six equations without swings, and their derivative by [delta; dr] with E -> exp(delta) E.
+struct Equations {
+  Step residual;
+  Matrix6 jacobian;
+};
+
+void evaluate(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const PlatformMotion& motion,
+              Equations& equations) {
+  const Vector3 p = r + motion.dr;
+  for (std::size_t i = 0; i < kLimbs; ++i) {
+    const LimbWithErrors& limb = limbs[i];
+    const Vector3 joint = motion.E * limb.joint;
+    const Vector3 rod = p + joint - limb.carriage;
+    const Vector3 axis = limb.base_R_revolute.col(1);
+    const double length = limb.rod.norm();
+    const auto row = static_cast<Eigen::Index>(i);
+    equations.residual[row] = (rod.squaredNorm() - length * length) / (2.0 * length);
+    equations.residual[row + 3] = axis.dot(rod) - limb.rod.y();
+    equations.jacobian.row(row) << joint.cross(rod).transpose() / length, rod.transpose() / length;
+    equations.jacobian.row(row + 3) << joint.cross(axis).transpose(), axis.transpose();
+  }
+}
+
+bool is_singular(const Eigen::PartialPivLU<Matrix6>& factors) {
+  const auto pivots = factors.matrixLU().diagonal().cwiseAbs();
+  return pivots.minCoeff() <= 64.0 * kEpsilon * pivots.maxCoeff();
+}
+
+}  // namespace
+
+LimbWithErrors limb_with_errors(const Geometry& geometry, const Configuration& nominal, std::size_t limb,
+                                std::span<const double, kSources> errors) {
+  const auto vector = [&](Source source) {
+    return Vector3(Eigen::Map<const Vector3>(errors.data() + static_cast<std::size_t>(source)));
+  };
+  const auto scalar = [&](Source source) { return errors[static_cast<std::size_t>(source)]; };
+  const Matrix3 R_i = base_R_limb(limb);
+  const Matrix3 rail = R_i * lie::exp(vector(Source::theta_A));
+  LimbWithErrors out;
+  out.base_R_revolute = rail * lie::exp(vector(Source::theta_B));
+  out.carriage = R_i * (geometry.a * Vector3::UnitX() + vector(Source::a)) +
+                 (nominal.limbs[limb].q + scalar(Source::q)) * rail.col(2) + out.base_R_revolute * vector(Source::b);
+  out.rod = (geometry.l + scalar(Source::l)) * lie::exp(vector(Source::theta_Bp)).col(2);
+  out.joint = nominal.limbs[limb].c + nominal.platform.R * (R_i * vector(Source::c));
+  return out;
+}
+
+Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const SolverOptions& options,
+                    PlatformMotion& motion) {
+  const double rounding = 64.0 * kEpsilon * std::max(1.0, r.norm());
+  Equations equations;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
+    const auto done = static_cast<std::uint32_t>(iteration);
+    evaluate(limbs, r, motion, equations);
+    if (!equations.residual.allFinite()) return {SolveStatus::non_finite, done - 1};
+    const Eigen::PartialPivLU<Matrix6> factors(equations.jacobian);
+    if (is_singular(factors)) return {SolveStatus::singular, done - 1};
+    const Step step = -factors.solve(equations.residual);
+    motion.E = lie::exp(Vector3(step.head<3>())) * motion.E;
+    motion.dr += step.tail<3>();
+    const double change = step.cwiseAbs().maxCoeff();
+    if (change < options.tolerance) return {SolveStatus::converged, done};
+    if (change <= rounding && change >= smallest) return {SolveStatus::stagnated, done};
+    smallest = std::min(smallest, change);
+  }
+  return {SolveStatus::iteration_cap, static_cast<std::uint32_t>(options.max_iterations)};
+}
+
+double swing(const LimbWithErrors& limb, const Vector3& r, const PlatformMotion& motion) {
+  const Vector3 from = limb.rod;
+  const Vector3 to = limb.base_R_revolute.transpose() * (r + motion.dr + motion.E * limb.joint - limb.carriage);
+  return std::atan2(to.x() * from.z() - to.z() * from.x(), to.x() * from.x() + to.z() * from.z());
+}
+
+}  // namespace poesy::three_prs

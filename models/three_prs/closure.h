@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "engine/model/model.h"
+#include "models/three_prs/error_mapping.h"
+
+namespace poesy::three_prs {
+
+/// One limb with its errors, carriage held where the nominal pose has it; base frame, m.
+struct LimbWithErrors {
+  lie::Vector3<double> carriage;         ///< centre of the revolute joint
+  lie::Matrix3<double> base_R_revolute;  ///< its axis is the second column
+  lie::Vector3<double> rod;              ///< from that centre to C_i in the revolute's frame, before it swings
+  lie::Vector3<double> joint;            ///< from P to C_i, at the nominal rotation of the platform
+};
+
+/// A limb at a nominal configuration with its errors [20], as ordered by Source.
+LimbWithErrors limb_with_errors(const Geometry& geometry, const Configuration& nominal, std::size_t limb,
+                                std::span<const double, kSources> errors);
+
+/// Finite motion of the platform from its nominal pose, base frame.
+struct PlatformMotion {
+  lie::Matrix3<double> E;   ///< rotation: the platform stands at E R
+  lie::Vector3<double> dr;  ///< displacement of P, m
+};
+
+struct Closing {
+  SolveStatus status;
+  std::uint32_t iterations;
+};
+
+/// Finds the motion at which all limbs close, to finite size of all errors: the nine equations
+///   r + dr + E R R_i (c0 + dc_i) = R_i (a0 + da_i) + R_i E(tA_i) e3 (q_i + dq_i) + R_i E(tA_i) E(tB_i) db_i
+///                                  + R_i E(tA_i) E(tB_i) Ry(th_i + dphi_i) E(tB'_i) e3 (l + dl_i),  i = 1, 2, 3
+/// of which Eq. 14 is the first order. The swings dphi_i are eliminated exactly: a rod that turns about its revolute
+/// joint keeps its length and its component along the joint. That leaves six equations for E and dr, which Newton
+/// solves with their exact Jacobian; Gauss-Newton is the same there.
+///
+/// Stopping rule. With c_j the largest component of the step j (rad, m), step j ends the solve as
+///   converged      when c_j is below the tolerance;
+///   stagnated      when c_j is at rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
+///   iteration_cap  when j is the allowed number of iterations;
+///   singular       when a pivot of the Jacobian falls to rounding;
+///   non_finite     when an equation's value is not finite.
+/// `motion` is the start on entry, the last iterate on return.
+Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
+                    const SolverOptions& options, PlatformMotion& motion);
+
+/// Swing of a limb's rod from th = 0 in the revolute's frame at this motion, th_i + dphi_i (rad).
+double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
+
+}  // namespace poesy::three_prs

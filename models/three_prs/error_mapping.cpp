@@ -1,0 +1,92 @@
+#include "models/three_prs/error_mapping.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace poesy::three_prs {
+namespace {
+
+using RowVector3 = Eigen::RowVector3d;
+
+/// The columns of one limb's sources in one row of a mapping.
+class LimbRow {
+ public:
+  template <class Mapping>
+  LimbRow(Mapping& mapping, std::size_t row, std::size_t limb)
+      : first_(mapping.row(static_cast<Eigen::Index>(row)).data() + factor_of(limb, Source::a)) {}
+
+  void set(Source source, const RowVector3& entries) {
+    Eigen::Map<RowVector3>(first_ + static_cast<std::size_t>(source)) = entries;
+  }
+  void set(Source source, double entry) { first_[static_cast<std::size_t>(source)] = entry; }
+
+ private:
+  double* first_;
+};
+
+void set_drive_row(LimbRow row, const LimbConfiguration& limb, const RowVector3& w_in_platform_limb) {
+  const double tangent = std::tan(limb.swing);
+  const double secant = 1.0 / std::cos(limb.swing);
+  row.set(Source::a, {tangent, 0.0, 1.0});
+  row.set(Source::q, 1.0);
+  row.set(Source::theta_A, {0.0, limb.q * tangent, 0.0});
+  row.set(Source::b, {tangent, 0.0, 1.0});
+  row.set(Source::l, secant);
+  row.set(Source::c, -secant * w_in_platform_limb);
+}
+
+void set_constraint_row(LimbRow row, const LimbConfiguration& limb, double l, const RowVector3& v_in_platform_limb) {
+  const double down = l * std::cos(limb.swing);
+  const double outwards = l * std::sin(limb.swing);
+  row.set(Source::a, {0.0, 1.0, 0.0});
+  row.set(Source::theta_A, {-(limb.q + down), 0.0, outwards});
+  row.set(Source::b, {0.0, 1.0, 0.0});
+  row.set(Source::theta_B, {-down, 0.0, outwards});
+  row.set(Source::theta_Bp, {-l, 0.0, 0.0});
+  row.set(Source::c, -v_in_platform_limb);
+}
+
+/// What the sources themselves add to the swing, without the platform's motion; d is the direction of the swing.
+void set_swing_row(LimbRow row, const LimbConfiguration& limb, double l, const RowVector3& d_in_platform_limb) {
+  const double cosine = std::cos(limb.swing);
+  const double sine = std::sin(limb.swing);
+  row.set(Source::a, {-cosine / l, 0.0, sine / l});
+  row.set(Source::q, sine / l);
+  row.set(Source::theta_A, {0.0, -1.0 - limb.q * cosine / l, 0.0});
+  row.set(Source::b, {-cosine / l, 0.0, sine / l});
+  row.set(Source::theta_B, {0.0, -1.0, 0.0});
+  row.set(Source::theta_Bp, {0.0, -1.0, 0.0});
+  row.set(Source::c, d_in_platform_limb / l);
+}
+
+}  // namespace
+
+ErrorMapping error_mapping(const Geometry& geometry, const Configuration& nominal) {
+  ErrorMapping G = ErrorMapping::Zero();
+  for (std::size_t i = 0; i < kLimbs; ++i) {
+    const LimbConfiguration& limb = nominal.limbs[i];
+    const lie::Matrix3<double> base_R_platform_limb = nominal.platform.R * base_R_limb(i);
+    set_drive_row({G, i, i}, limb, limb.w.transpose() * base_R_platform_limb);
+    set_constraint_row({G, i + 3, i}, limb, geometry.l, limb.v.transpose() * base_R_platform_limb);
+  }
+  return G;
+}
+
+Effects first_order_effects(const Geometry& geometry, const Configuration& nominal) {
+  Effects effects = Effects::Zero();
+  const ErrorMapping motion = velocity_jacobian(nominal).partialPivLu().solve(error_mapping(geometry, nominal));
+  effects.topRows<6>() = motion;
+  const lie::Matrix3<double> tool_hat = lie::hat<double>(tool(geometry, nominal.platform.R));
+  effects.middleRows<3>(kTip) = motion.bottomRows<3>() - tool_hat * motion.topRows<3>();
+  for (std::size_t i = 0; i < kLimbs; ++i) {
+    const LimbConfiguration& limb = nominal.limbs[i];
+    const lie::Vector3<double> d = limb.v.cross(limb.w);
+    set_swing_row({effects, kSwing + i, i}, limb, geometry.l, d.transpose() * nominal.platform.R * base_R_limb(i));
+    const auto row = kSwing + static_cast<Eigen::Index>(i);
+    effects.row(row) +=
+        (limb.c.cross(d).transpose() * motion.topRows<3>() + d.transpose() * motion.bottomRows<3>()) / geometry.l;
+  }
+  return effects;
+}
+
+}  // namespace poesy::three_prs

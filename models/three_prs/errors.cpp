@@ -1,0 +1,105 @@
+#include "models/three_prs/errors.h"
+
+#include <array>
+#include <string_view>
+
+#include "models/three_prs/kinematics.h"
+
+namespace poesy::three_prs {
+namespace {
+
+/// How the paper sees a source (Section 4.2).
+enum class Role {
+  none,            ///< without effect to first order
+  compensable,     ///< enters the drive rows, except that c enters the constraint rows as well
+  non_compensable  ///< enters the constraint rows
+};
+
+/// One row per component of a source, in the order of Source.
+struct Entry {
+  std::size_t frame;
+  std::string_view source;
+  std::string_view axis;  ///< empty for a scalar
+  Role role;
+};
+constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable},
+                                                {0, "a", "y", Role::non_compensable},
+                                                {0, "a", "z", Role::compensable},
+                                                {1, "q", "", Role::compensable},
+                                                {2, "theta_A", "x", Role::non_compensable},
+                                                {2, "theta_A", "y", Role::compensable},
+                                                {2, "theta_A", "z", Role::non_compensable},
+                                                {3, "b", "x", Role::compensable},
+                                                {3, "b", "y", Role::non_compensable},
+                                                {3, "b", "z", Role::compensable},
+                                                {4, "theta_B", "x", Role::non_compensable},
+                                                {4, "theta_B", "y", Role::none},
+                                                {4, "theta_B", "z", Role::non_compensable},
+                                                {5, "theta_Bp", "x", Role::non_compensable},
+                                                {5, "theta_Bp", "y", Role::none},
+                                                {5, "theta_Bp", "z", Role::none},
+                                                {6, "l", "", Role::compensable},
+                                                {7, "c", "x", Role::compensable},
+                                                {7, "c", "y", Role::compensable},
+                                                {7, "c", "z", Role::compensable}}};
+
+/// What each source is, in the order of frames.
+constexpr std::array<std::string_view, 8> kMeanings{"position error of the rail's upper end A",
+                                                    "error of the carriage's initial position",
+                                                    "attitude error of the rail",
+                                                    "gap of the revolute joint",
+                                                    "attitude error of the revolute joint",
+                                                    "swing angle error of the rod",
+                                                    "error of the rod's length",
+                                                    "position error of the spherical joint C on the platform"};
+
+Factor factor(const Entry& entry, std::size_t limb) {
+  const std::string number = std::to_string(limb + 1);
+  const bool is_angle = entry.source.starts_with("theta");
+  std::string name(entry.source);
+  std::string description(kMeanings[entry.frame]);
+  if (!entry.axis.empty()) {
+    name += "_" + std::string(entry.axis);
+    description += (is_angle ? " about " : " along ") + std::string(entry.axis);
+  }
+  description += " of limb " + number;
+  if (entry.role == Role::none) description += "; without effect on the platform to first order";
+  return {name + "_" + number, is_angle ? Dimension::angle : Dimension::length, limb + 1, entry.frame, description};
+}
+
+template <class Belongs>
+FactorSet subset(const char* name, const char* description, Belongs belongs) {
+  FactorSet set{name, description, {}};
+  for (std::size_t f = 0; f < kFactors; ++f) {
+    if (belongs(kEntries[f % kSources])) set.factors.emplace_back(f);
+  }
+  return set;
+}
+
+}  // namespace
+
+std::vector<Factor> factors() {
+  std::vector<Factor> list;
+  for (std::size_t limb = 0; limb < kLimbs; ++limb) {
+    for (const Entry& entry : kEntries) list.push_back(factor(entry, limb));
+  }
+  return list;
+}
+
+std::vector<FactorSet> factor_sets() {
+  const auto role = [](Role wanted) { return [wanted](const Entry& entry) { return entry.role == wanted; }; };
+  return {
+      subset("all", "all sources that have an effect", [](const Entry& entry) { return entry.role != Role::none; }),
+      subset("compensable", "sources that calibration can remove, by the paper; c in truth only in part",
+             role(Role::compensable)),
+      subset("non-compensable", "sources that manufacture and assembly must keep small", role(Role::non_compensable)),
+      subset("platform-hinges", "hinge positions of both platforms, a and c (FS)",
+             [](const Entry& entry) { return entry.source == "a" || entry.source == "c"; }),
+      subset("initial-position", "initial positions of the carriages, q (T)",
+             [](const Entry& entry) { return entry.source == "q"; }),
+      subset("revolute-gap", "gaps of the revolute joints, b (R)",
+             [](const Entry& entry) { return entry.source == "b"; }),
+      subset("rod-length", "lengths of the rods, l (L)", [](const Entry& entry) { return entry.source == "l"; })};
+}
+
+}  // namespace poesy::three_prs

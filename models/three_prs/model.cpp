@@ -1,0 +1,125 @@
+#include "models/three_prs/model.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "engine/base/contract.h"
+#include "models/three_prs/errors.h"
+#include "models/three_prs/evaluators.h"
+#include "models/three_prs/kinematics.h"
+
+namespace poesy::three_prs {
+namespace {
+
+/// In the order of ModelDescription::fidelities.
+enum class Fidelity : std::size_t { exact, first_order };
+
+ModelDescription describe() {
+  constexpr double kTilt = std::numbers::pi / 9.0;
+  const Geometry published;
+  ModelDescription description;
+  description.name = "3-prs";
+  description.title = "3-PRS parallel mechanism of a hybrid robot (San, Ding, Zhang, Wu 2023, Actuators 12, 324)";
+  description.geometry = {
+      {"a", Dimension::length, published.a, "radius of the circle on which the rails stand"},
+      {"c", Dimension::length, published.c, "radius of the circle of the spherical joints on the platform"},
+      {"l", Dimension::length, published.l, "length of the rods"},
+      {"rail", Dimension::length, published.rail, "travel of the carriages: each q from 0 to this"},
+      {"h", Dimension::length, published.h,
+       "tool tip below P on the platform's axis; the paper prints none, this is the value of our reference numbers"}};
+  description.pose_coordinates = {
+      {"alpha", Dimension::angle, "rotation of the platform about the base's x axis"},
+      {"beta", Dimension::angle, "rotation of the platform about its y axis after alpha"},
+      {"z", Dimension::length, "z of the platform's centre P in the base frame, downwards from the rails' upper ends"}};
+  description.factors = factors();
+  description.factor_sets = factor_sets();
+  description.responses = responses();
+  description.details = details();
+  for (std::size_t i = 1; i <= kLimbs; ++i) {
+    description.joints.push_back({"q_" + std::to_string(i), Dimension::length});
+    description.joints.push_back({"th_" + std::to_string(i), Dimension::angle});
+  }
+  description.pose_lower = {-kTilt, -kTilt, 0.62};
+  description.pose_upper = {kTilt, kTilt, 0.99};
+  description.workspace_note =
+      "The paper states no workspace. This box is chosen: with the published geometry the rails suffice in all of it.";
+  description.fidelities = {"exact", "first-order"};
+  return description;
+}
+
+Pose pose_from(std::span<const double> pose) {
+  POESY_EXPECTS(pose.size() == 3);
+  return {pose[0], pose[1], pose[2]};
+}
+
+bool is_tilt(double angle) { return std::abs(angle) < std::numbers::pi / 2.0; }
+
+class ThreePrs final : public Model {
+ public:
+  ThreePrs(const Geometry& geometry, Fidelity fidelity) : geometry_(geometry), fidelity_(fidelity) {}
+
+  const ModelDescription& description() const override { return description_; }
+
+  std::optional<std::string> unreachable(std::span<const double> pose) const override {
+    const Pose wanted = pose_from(pose);
+    if (!is_tilt(wanted.alpha)) return "alpha must lie between -90 and 90 deg";
+    if (!is_tilt(wanted.beta)) return "beta must lie between -90 and 90 deg";
+    const Configuration nominal = configuration(geometry_, wanted);
+    for (std::size_t i = 0; i < kLimbs; ++i) {
+      if (auto reason = off_rail(nominal.limbs[i].q)) return "limb " + std::to_string(i + 1) + *reason;
+    }
+    return std::nullopt;
+  }
+
+  std::vector<double> joint_displacements(std::span<const double> pose) const override {
+    std::vector<double> list;
+    for (const LimbConfiguration& limb : configuration(geometry_, pose_from(pose)).limbs) {
+      list.push_back(limb.q);
+      list.push_back(limb.swing);
+    }
+    return list;
+  }
+
+  double condition(std::span<const double> pose) const override {
+    return three_prs::condition(geometry_, configuration(geometry_, pose_from(pose)));
+  }
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
+    if (fidelity_ == Fidelity::first_order) return first_order_evaluator(geometry_);
+    return exact_evaluator(geometry_, options);
+  }
+
+ private:
+  std::optional<std::string> off_rail(double q) const {
+    if (!std::isfinite(q)) return ": the rod does not reach from the rail to the platform";
+    if (q < 0.0) return ": the carriage would stand above the upper end of its rail";
+    if (q > geometry_.rail) return ": the carriage would stand below the lower end of its rail";
+    return std::nullopt;
+  }
+
+  Geometry geometry_;
+  Fidelity fidelity_;
+  ModelDescription description_ = describe();
+};
+
+void require(bool holds, const char* rule) {
+  if (!holds) throw std::invalid_argument(rule);
+}
+
+std::unique_ptr<Model> build(std::span<const double> values, std::size_t fidelity) {
+  POESY_EXPECTS(values.size() == 5 && fidelity < 2);
+  const Geometry geometry{values[0], values[1], values[2], values[3], values[4]};
+  require(geometry.a > 0.0, "a must be positive");
+  require(geometry.c > 0.0, "c must be positive");
+  require(geometry.l > std::abs(geometry.a - geometry.c), "l must be greater than the difference of a and c");
+  require(geometry.rail > 0.0, "rail must be positive");
+  require(geometry.h >= 0.0, "h must not be negative");
+  return std::make_unique<ThreePrs>(geometry, static_cast<Fidelity>(fidelity));
+}
+
+}  // namespace
+
+CatalogEntry catalog_entry() { return {describe(), build}; }
+
+}  // namespace poesy::three_prs

@@ -1,0 +1,139 @@
+#include "models/three_prs/kinematics.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include "models/three_prs/error_mapping.h"
+#include "tests/models/three_prs/reference.h"
+
+namespace poesy::three_prs {
+namespace {
+
+using nlohmann::json;
+
+TEST(Oracle, InverseKinematics) {
+  ASSERT_EQ(oracle().at("ik").size(), 7u);
+  for (const json& reference : oracle().at("ik")) {
+    const Configuration at =
+        configuration({}, {reference.at("alpha"), reference.at("beta"), kMm * double(reference.at("z"))});
+    EXPECT_NEAR(at.platform.p.x() / kMm, reference.at("x").get<double>(), 1e-9);
+    EXPECT_NEAR(at.platform.p.y() / kMm, reference.at("y").get<double>(), 1e-9);
+    const double gamma = std::atan2(-at.platform.R(0, 1), at.platform.R(0, 0));
+    EXPECT_NEAR(gamma, reference.at("gamma").get<double>(), 1e-14);
+    for (std::size_t i = 0; i < kLimbs; ++i) {
+      EXPECT_NEAR(at.limbs[i].q / kMm, reference.at("q")[i].get<double>(), 1e-9);
+      EXPECT_NEAR(at.limbs[i].swing, reference.at("theta")[i].get<double>(), 1e-14);
+    }
+  }
+}
+
+Configuration oracle_configuration(const json& reference) {
+  const json& pose = reference.at("pose_for_J");
+  return configuration({}, {pose[0], pose[1], kMm * double(pose[2])});
+}
+
+/// A column of a matrix in mm as one in m.
+void expect_entry(double found, double expected) { EXPECT_NEAR(found, expected, 1e-9 * std::abs(expected) + 1e-14); }
+
+TEST(Oracle, VelocityJacobianAndErrorMapping) {
+  const json& reference = oracle();
+  const Configuration at = oracle_configuration(reference);
+  const lie::Matrix6<double> J = velocity_jacobian(at);
+  const ErrorMapping G = error_mapping({}, at);
+  const Effects M = first_order_effects({}, at);
+  const std::vector<Factor> list = factors();
+  for (std::size_t r = 0; r < 6; ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    for (std::size_t k = 0; k < 6; ++k) {
+      expect_entry(J(row, static_cast<Eigen::Index>(k)), double(reference.at("J")[r][k]) * (k < 3 ? kMm : 1.0));
+    }
+    for (std::size_t f = 0; f < kFactors; ++f) {
+      const auto column = static_cast<Eigen::Index>(f);
+      const double source_unit = list[f].dimension == Dimension::length ? kMm : 1.0;
+      expect_entry(G(row, column), double(reference.at("G")[r][f]) * kMm / source_unit);
+      expect_entry(M(row, column), double(reference.at("M")[r][f]) * (r < 3 ? 1.0 : kMm) / source_unit);
+    }
+  }
+  EXPECT_NEAR(J.determinant() / (kMm * kMm * kMm) / double(reference.at("detJ")), 1.0, 1e-12);
+}
+
+TEST(Oracle, PosesOfTheTip) {
+  ASSERT_EQ(oracle().at("tip").size(), 6u);
+  for (const json& reference : oracle().at("tip")) {
+    Geometry geometry;
+    geometry.h = kMm * double(reference.at("h"));
+    const lie::Vector3<double> tip(kMm * double(reference.at("tip")[0]), kMm * double(reference.at("tip")[1]),
+                                   kMm * double(reference.at("tip")[2]));
+    const Pose pose = pose_of_tip(geometry, tip).value();
+    EXPECT_NEAR(pose.alpha, reference.at("alpha").get<double>(), 1e-12);
+    EXPECT_NEAR(pose.beta, reference.at("beta").get<double>(), 1e-12);
+    EXPECT_NEAR(pose.z / kMm, reference.at("zP").get<double>(), 1e-9);
+    const Configuration at = configuration(geometry, pose);
+    for (std::size_t i = 0; i < kLimbs; ++i) EXPECT_NEAR(at.limbs[i].q / kMm, reference.at("q")[i].get<double>(), 1e-9);
+    EXPECT_LE((at.platform.p + tool(geometry, at.platform.R) - tip).norm(), 1e-15);
+  }
+}
+
+TEST(PoseOfTip, TrajectoryNeedsALongEnoughTool) {
+  // 30 (cos pi t, sin pi t) exists from h = 70.4 mm on.
+  Geometry geometry;
+  for (const auto& [h, exists] : {std::pair(0.0705, true), std::pair(0.0703, false)}) {
+    geometry.h = h;
+    bool all = true;
+    for (int k = 0; k < 360; ++k) {
+      const double angle = k * std::numbers::pi / 180.0;
+      all = all && pose_of_tip(geometry, {0.03 * std::cos(angle), 0.03 * std::sin(angle), 0.8}).has_value();
+    }
+    EXPECT_EQ(all, exists) << h;
+  }
+}
+
+TEST(VelocityJacobian, IsTheDerivativeOfInverseKinematics) {
+  // Fourth-order differences.
+  constexpr double kStep = 1e-3;
+  constexpr std::array kOffsets{-2.0, -1.0, 1.0, 2.0};
+  constexpr std::array kWeights{1.0 / 12.0, -2.0 / 3.0, 2.0 / 3.0, -1.0 / 12.0};
+  for (const std::vector<double>& pose : random_poses(50, 1)) {
+    const Configuration here = configuration({}, {pose[0], pose[1], pose[2]});
+    for (std::size_t k = 0; k < 3; ++k) {
+      lie::Screw<double> twist = lie::Screw<double>::Zero();
+      lie::Screw<double> rates = lie::Screw<double>::Zero();
+      for (std::size_t n = 0; n < kOffsets.size(); ++n) {
+        std::vector<double> moved = pose;
+        moved[k] += kOffsets[n] * kStep;
+        const double weight = kWeights[n] / kStep;
+        const Configuration at = configuration({}, {moved[0], moved[1], moved[2]});
+        twist.head<3>() += weight * lie::log(lie::Matrix3<double>(at.platform.R * here.platform.R.transpose()));
+        twist.tail<3>() += weight * at.platform.p;
+        for (std::size_t i = 0; i < kLimbs; ++i) rates[static_cast<Eigen::Index>(i)] += weight * at.limbs[i].q;
+      }
+      EXPECT_LE((velocity_jacobian(here) * twist - rates).norm(), 1e-8 * rates.norm());
+    }
+  }
+}
+
+TEST(Configuration, LimbsCloseTheirLoops) {
+  const Geometry g;
+  for (const std::vector<double>& pose : random_poses(200, 2)) {
+    const Configuration at = configuration(g, {pose[0], pose[1], pose[2]});
+    for (std::size_t i = 0; i < kLimbs; ++i) {
+      const LimbConfiguration& limb = at.limbs[i];
+      const lie::Vector3<double> carriage = base_R_limb(i) * lie::Vector3<double>(g.a, 0.0, limb.q);
+      EXPECT_LE((at.platform.p + limb.c - carriage - g.l * limb.w).norm(), 1e-15);
+    }
+  }
+}
+
+TEST(Condition, IsInfiniteAtASingularPose) {
+  Geometry geometry;
+  EXPECT_LT(condition(geometry, configuration(geometry, {0.1, -0.2, 0.7})), 20.0);
+  // Rods that lie flat: the platform moves while the carriages stand.
+  geometry.l = geometry.a - geometry.c;
+  EXPECT_EQ(condition(geometry, configuration(geometry, {0.0, 0.0, 0.7})), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace poesy::three_prs
