@@ -24,7 +24,7 @@ const Catalog& catalog() {
 /// All three errors of the fake mechanism, in an order of their own, each with its own size.
 Study study_of(std::size_t poses, std::size_t samples) {
   Study study;
-  study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, {}};
+  study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
   for (const double sigma : {1e-3, 2e-3, 5e-3}) study.errors.by_factor.push_back(Distribution::normal(sigma));
   study.poses.count = poses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};

@@ -19,7 +19,7 @@ const Catalog& catalog() {
 Study study_of(std::size_t poses, std::size_t samples) {
   const Distribution normal = Distribution::normal(1e-3);
   Study study;
-  study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, {}};
+  study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
   study.errors.by_factor = {normal, normal, normal};
   study.poses.count = poses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};

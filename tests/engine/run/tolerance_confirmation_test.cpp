@@ -24,7 +24,7 @@ const Catalog& catalog() {
 /// Varies an error with an effect and one without; another that has an effect is held in the background.
 Study study_with(double background) {
   Study study;
-  study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, {}};
+  study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
   study.errors.by_factor = {Distribution::normal(1e-3), Distribution::uniform(2e-3), Distribution::normal(1e-3)};
   study.poses.count = kPoses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};

@@ -10,13 +10,13 @@ namespace {
 
 TEST(BuildModel, TellsWhereAnImpossibleGeometryStands) {
   const Catalog catalog = test::fake_catalog();
-  const MechanismChoice choice{&catalog[0], {-1.0}, {"study.toml", 5, 12}};
+  const MechanismChoice choice{&catalog[0], {-1.0}, 0, {"study.toml", 5, 12}};
   test::expect_input_error([&] { build_model(choice); }, choice.place, {"arm must be greater than zero"});
 }
 
 TEST(BuildModel, PassesTheGeometryOn) {
   const Catalog catalog = test::fake_catalog();
-  const auto model = build_model({&catalog[0], {0.5}, {}});
+  const auto model = build_model({&catalog[0], {0.5}, 0, {}});
   const std::vector<double> pose{-0.2, 0.1, 0.1};
   const std::vector<double> errors{1e-3, 0.0, 0.0};
   std::vector<double> responses(2);
