@@ -19,7 +19,13 @@ Analysis::Kind kind_named(const std::string& word) {
 }
 
 int print_template(const std::string& model, const std::string& kind) {
-  std::fputs(template_text(find_model(model), kind_named(kind)).c_str(), stdout);
+  const CatalogEntry& entry = find_model(model);
+  const Analysis::Kind wanted = kind_named(kind);
+  if (wanted == Analysis::Kind::identification && !entry.description.deformation) {
+    throw InputError({}, "nothing deforms in model '" + model + "', so it has no identification",
+                     "choose another kind");
+  }
+  std::fputs(template_text(entry, wanted).c_str(), stdout);
   return kDone;
 }
 
