@@ -19,6 +19,15 @@ const FactorSet* ModelDescription::find_set(std::string_view set_name) const {
   return found == factor_sets.end() ? nullptr : &*found;
 }
 
+std::optional<std::vector<double>> Model::pose_from_chart(std::size_t /*chart*/,
+                                                          std::span<const double> /*coordinates*/) const {
+  return std::nullopt;
+}
+
+Separation Model::separation(std::span<const double> /*pose*/) const { return {}; }
+
+double Model::error_bound(FactorIndex /*factor*/) const { return std::numeric_limits<double>::infinity(); }
+
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {
   const auto found = std::find_if(catalog.begin(), catalog.end(),
                                   [&](const CatalogEntry& entry) { return entry.description.name == model_name; });

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +24,7 @@ struct Factor {
   std::size_t limb;     ///< counts from 1, as in the literature
   std::size_t frame;    ///< of the limb, to which the error belongs; those of one frame may work together
   std::string description;
+  std::string axis = {};  ///< "x", "y" or "z" where the error is a component of a vector; empty for a scalar
 };
 
 /// A named subset of a model's factors, in the order of the model's list.
@@ -53,6 +56,24 @@ struct PoseCoordinate {
   std::string description;
 };
 
+/// Other coordinates in which a pose may be given, as many as it has: those of the tool tip, for instance.
+struct PoseChart {
+  std::string name;  ///< "tip"
+  std::vector<PoseCoordinate> coordinates;
+  std::string advice;  ///< what to do where no pose has such coordinates: "lengthen h, or ..."
+};
+
+/// A curve of the literature, run through in time.
+struct NamedCurve {
+  std::string name;
+  std::string description;
+  std::size_t chart;  ///< position among the charts
+  double start;       ///< s, of the whole curve
+  double end;         ///< s
+  /// Chart coordinates at a time (s), SI, relative to an origin that the study chooses.
+  std::function<std::vector<double>(double time)> at;
+};
+
 /// A joint's displacement from the home configuration.
 struct JointDisplacement {
   std::string name;     ///< "q_1_1"
@@ -71,6 +92,21 @@ struct GeometryParameter {
 struct DeformationMeasure {
   std::size_t response;  ///< position among the responses
   double rounding;       ///< a value up to this cannot be told from zero, SI
+};
+
+/// What the actuators have to do with each error's effect, to first order at one pose. Lengths by which the platform
+/// moves, m per SI unit of the error.
+struct Separation {
+  std::vector<double> drive;       ///< [F] the part that enters through the actuated directions
+  std::vector<double> constraint;  ///< [F] the part that enters through the constrained directions
+  std::vector<double> effect;      ///< [F] both together
+  std::vector<double> residual;    ///< [F] what the best correction of the actuators leaves of the effect
+};
+
+/// How a model that separates its errors does so.
+struct SeparationDescription {
+  std::string measure;                 ///< what length Separation speaks of
+  std::vector<std::string> published;  ///< [F] the literature's class of each error, empty where it gives none
 };
 
 /// How a per-sample solve is done.
@@ -105,6 +141,10 @@ struct ModelDescription {
   std::string workspace_note;  ///< where that workspace comes from
   /// What a study may choose between, from "exact" to "first-order"; the first is the default. Empty: no choice.
   std::vector<std::string> fidelities;
+  std::vector<PoseChart> charts;
+  std::vector<NamedCurve> curves;
+  std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
+  std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows; empty: all of them
 
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
   const FactorSet* find_set(std::string_view set_name) const;
@@ -159,6 +199,17 @@ class Model {
   virtual double condition(std::span<const double> pose) const = 0;
 
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
+
+  /// The pose with these coordinates of a chart (SI), whether the mechanism reaches it or not; empty when there is
+  /// none.
+  virtual std::optional<std::vector<double>> pose_from_chart(std::size_t chart,
+                                                             std::span<const double> coordinates) const;
+
+  /// Precondition: the model separates its errors and reaches the pose.
+  virtual Separation separation(std::span<const double> pose) const;
+
+  /// Errors of this magnitude or more make no sense, for they are as large as the part that they are errors of.
+  virtual double error_bound(FactorIndex factor) const;
 
  protected:
   Model() = default;

@@ -64,7 +64,8 @@ Factor factor(const Entry& entry, std::size_t limb) {
   }
   description += " of limb " + number;
   if (entry.role == Role::none) description += "; without effect on the platform to first order";
-  return {name + "_" + number, is_angle ? Dimension::angle : Dimension::length, limb + 1, entry.frame, description};
+  return {name + "_" + number,    is_angle ? Dimension::angle : Dimension::length, limb + 1, entry.frame, description,
+          std::string(entry.axis)};
 }
 
 template <class Belongs>

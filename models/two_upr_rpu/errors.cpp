@@ -52,8 +52,12 @@ Factor factor(const Entry& entry) {
   const std::string where = entry.frame == 0   ? "the base and frame 1"
                             : entry.frame == 4 ? "frame 4 and the platform"
                                                : "frames " + frame + " and " + std::to_string(entry.frame + 1);
-  return {kind + "_" + limb + "_" + frame + "_" + axis, is_linear(entry) ? Dimension::length : Dimension::angle,
-          entry.limb + 1, entry.frame, motion + axis + " between " + where + " of limb " + limb};
+  return {kind + "_" + limb + "_" + frame + "_" + axis,
+          is_linear(entry) ? Dimension::length : Dimension::angle,
+          entry.limb + 1,
+          entry.frame,
+          motion + axis + " between " + where + " of limb " + limb,
+          std::string(1, axis)};
 }
 
 template <class Belongs>
