@@ -43,7 +43,7 @@ void add_show(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("show", "print a result as tables");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
-  command->add_option("--response", options->response, "response to rank by; default: the first that is a length")
+  command->add_option("--response", options->response, "response to rank by; default: the first of the headline that is a length")
       ->type_name("NAME");
   command->footer("Example: poesy show result.h5 --response angular_deformation");
   command->callback([options, &action] { action = [options] { return show(*options); }; });

@@ -55,6 +55,15 @@ std::string_view si_unit(Dimension dimension) {
   return "1";
 }
 
+Dimension dimension_of(std::string_view si_name) {
+  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+    if (si_unit(dimension) == si_name) return dimension;
+  }
+  return Dimension::number;
+}
+
+std::string_view error_kind(Dimension dimension) { return dimension == Dimension::angle ? "angular" : "linear"; }
+
 const Unit& display_unit(Dimension dimension) {
   switch (dimension) {
     case Dimension::length:

@@ -23,6 +23,12 @@ std::span<const Unit> units();
 /// "m", "rad" or "1".
 std::string_view si_unit(Dimension dimension);
 
+/// The dimension of which this is the SI unit; a number for any other text.
+Dimension dimension_of(std::string_view si_name);
+
+/// What errors of this dimension are called: "linear" or "angular".
+std::string_view error_kind(Dimension dimension);
+
 /// The unit in which people read this dimension, "mm", "deg" or "1".
 const Unit& display_unit(Dimension dimension);
 

@@ -63,20 +63,13 @@ std::string column(const std::string& name, const std::string& unit) {
   return unit == "1" ? name : name + " [" + unit + "]";
 }
 
-const Unit& display(const std::string& si_unit_name) {
-  for (const Unit& unit : units()) {
-    if (unit.name == si_unit_name) return display_unit(unit.dimension);
-  }
-  return display_unit(Dimension::number);
-}
-
 void write_factors(TableFolder& folder, const StoredResult& result) {
   const std::vector<std::string> columns{"factor", column("sigma", units_of(result.factors, kSi)),
                                          column("sigma", units_of(result.factors, kDisplay))};
   folder.write("factors", columns, [&](CsvTable& table) {
     for (std::size_t p = 0; p < result.factors.size(); ++p) {
       const double sigma = result.factor_sigma[p];
-      table.row(result.factors[p].name, std::vector{sigma, sigma / display(result.factors[p].unit).si});
+      table.row(result.factors[p].name, std::vector{sigma, sigma / display(result.factors[p]).si});
     }
   });
 }

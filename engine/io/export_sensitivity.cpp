@@ -21,7 +21,7 @@ void write_global(TableFolder& folder, const StoredResult& result) {
       std::vector<double> row;
       for (std::size_t r = 0; r < found.responses; ++r) {
         const std::size_t at = r * found.factors + p;
-        const double to_display = display(result.factors[p].unit).si / display(result.responses[r].unit).si;
+        const double to_display = display(result.factors[p]).si / display(result.responses[r]).si;
         for (const double scale : {1.0, to_display}) {
           row.insert(row.end(),
                      {found.global[at] * scale, found.global_ci_low[at] * scale, found.global_ci_high[at] * scale});

@@ -57,9 +57,6 @@ void make_folder(const std::string& folder);
 /// "name [unit]", or the name alone for a pure number.
 std::string column(const std::string& name, const std::string& unit);
 
-/// The unit in which people read an SI unit: "mm" for "m".
-const Unit& display(const std::string& si_unit_name);
-
 /// "m", or "m or rad" where factors differ.
 template <class UnitName>
 std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_name) {
@@ -74,7 +71,7 @@ std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_
 }
 
 inline const auto kSi = [](const std::string& unit) { return unit; };
-inline const auto kDisplay = [](const std::string& unit) { return std::string(display(unit).name); };
+inline const auto kDisplay = [](const std::string& unit) { return std::string(display_unit(dimension_of(unit)).name); };
 
 /// factors.csv: the standard deviation of each error.
 void write_factors(TableFolder& folder, const StoredResult& result);

@@ -9,8 +9,6 @@ namespace {
 
 using Columns = std::vector<std::string>;
 
-bool is_angular(const NamedUnit& factor) { return factor.unit == si_unit(Dimension::angle); }
-
 /// The lists of tolerances with their names.
 std::vector<std::pair<std::string, const std::vector<double>*>> lists(const ResponseTolerances& tolerances) {
   std::vector<std::pair<std::string, const std::vector<double>*>> all{{"equal_effect", &tolerances.all.equal_effect}};
@@ -42,7 +40,7 @@ void append_row(const StoredResult& result, const ResponseTolerances& tolerances
   const std::size_t at = tolerances.response * found.factors + p;
   row.insert(row.end(),
              {found.global[at], found.global_ci_low[at], found.global_ci_high[at], tolerances.all.variance_share[p]});
-  for (const double scale : {1.0, display(result.factors[p].unit).si}) {
+  for (const double scale : {1.0, display(result.factors[p]).si}) {
     for (const auto& [name, values] : lists(tolerances)) row.push_back((*values)[p] / scale);
   }
 }
@@ -53,7 +51,8 @@ void write_response(TableFolder& folder, const StoredResult& result, const Respo
   add_columns(result, tolerances, name_of, columns);
   folder.write("tolerances_" + result.responses[tolerances.response].name, columns, [&](CsvTable& table) {
     for (std::size_t p = 0; p < result.factors.size(); ++p) {
-      std::vector<double> row{is_angular(result.factors[p]) ? 1.0 : 0.0, static_cast<double>(result.factor_limb[p])};
+      const bool angular = dimension_of(result.factors[p].unit) == Dimension::angle;
+      std::vector<double> row{angular ? 1.0 : 0.0, static_cast<double>(result.factor_limb[p])};
       append_row(result, tolerances, p, row);
       table.row(result.factors[p].name, row);
     }
@@ -82,7 +81,7 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
       const NamedUnit& factor = result.factors[p];
       std::vector<double> row;
       append_row(result, tolerances, p, row);
-      table.row(fmt::format("{},{},{},{},{},{}/{}", factor.name, is_angular(factor) ? "angular" : "linear",
+      table.row(fmt::format("{},{},{},{},{},{}/{}", factor.name, error_kind(dimension_of(factor.unit)),
                             result.factor_limb[p], factor.unit, kDisplay(factor.unit), response.unit, factor.unit),
                 row);
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/units.h"
 #include "engine/model/pose_set.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
@@ -45,6 +46,9 @@ struct NamedUnit {
   std::string unit;  ///< "m", "rad" or "1"
 };
 
+/// The unit in which people read it: mm for m.
+const Unit& display(const NamedUnit& named);
+
 /// What a result file of any kind says, read back. Members that the file does not have are empty.
 /// Where a model has details, evaluation.detail holds their components in the order of `details`.
 struct StoredResult {
@@ -60,7 +64,8 @@ struct StoredResult {
   std::vector<NamedUnit> factors;
   std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;
-  SensitivityResult sensitivity;           ///< `background` is empty in files of older versions
+  std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows: all, unless the model chose
+  SensitivityResult sensitivity;      ///< `background` is empty in files of older versions
   std::vector<std::uint64_t> factor_limb;  ///< [P] of a sensitivity result; empty in files of older versions
   std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
   EvaluationResult evaluation;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -94,6 +95,15 @@ std::vector<NamedUnit> read_named(const h5::File& file, const std::string& group
   return list;
 }
 
+void read_responses(const h5::File& file, StoredResult& result) {
+  result.responses = read_named(file, "/responses", "response");
+  const bool chosen = file.has_attribute("/responses", "headline");
+  const auto shown = chosen ? file.attribute<std::string>("/responses", "headline") : std::vector<std::string>();
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    if (!chosen || std::ranges::find(shown, result.responses[r].name) != shown.end()) result.headline.push_back(r);
+  }
+}
+
 void read_poses(const h5::File& file, StoredResult& result) {
   const std::size_t count = axis_length(file, "pose");
   const auto names = file.attribute<std::string>("/poses", "coordinates");
@@ -133,7 +143,7 @@ StoredResult read_all(const h5::File& file) {
   result.study_text = file.read<std::string>("/study/text").at(0);
   read_poses(file, result);
   result.factors = read_named(file, "/factors", "factor");
-  result.responses = read_named(file, "/responses", "response");
+  read_responses(file, result);
   result.facts = read_facts(file);
   if (result.kind == result_format::kSensitivity) {
     read_sensitivity(file, result);
@@ -150,6 +160,8 @@ StoredResult read_all(const h5::File& file) {
 }
 
 }  // namespace
+
+const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
 
 StoredResult read_result(const std::string& path) {
   return with_result(path, [](const h5::File& file) { return read_all(file); });

@@ -56,7 +56,7 @@ void add_factors(ResultBuilder& result, const Study& study) {
   std::vector<std::uint64_t> limbs;
   for (const FactorIndex index : study.analysis.factors) {
     const Factor& factor = study.model().factors[index.value];
-    kinds.emplace_back(factor.dimension == Dimension::angle ? "angular" : "linear");
+    kinds.emplace_back(error_kind(factor.dimension));
     units.push_back(unit_of(factor));
     limbs.push_back(factor.limb);
   }

@@ -75,12 +75,17 @@ void add_factors(ResultBuilder& result, const std::vector<Factor>& factors) {
   result.add("/factors/unit", {"factor"}, texts(factors, unit_of<Factor>), {"1", "SI unit of the error"});
 }
 
-void add_responses(ResultBuilder& result, const std::vector<Response>& responses) {
+void add_responses(ResultBuilder& result, const ModelDescription& model) {
+  const std::vector<Response>& responses = model.responses;
   const auto names = texts(responses, &Response::name);
   result.add_axis("response", names, {"1", "Name of the response"});
   result.file().make_group("/responses");
   result.add("/responses/name", {"response"}, names, {"1", "Name of the response"});
   result.add("/responses/unit", {"response"}, texts(responses, unit_of<Response>), {"1", "SI unit of the response"});
+  if (model.headline.empty()) return;
+  std::vector<std::string> headline;
+  for (const std::size_t r : model.headline) headline.push_back(responses[r].name);
+  result.file().set_attribute("/responses", "headline", std::span(std::as_const(headline)));
 }
 
 void add_run(ResultBuilder& result, const RunFacts& facts) {
@@ -119,7 +124,7 @@ void compose_and_write(const std::string& path, std::string_view kind, const Stu
     add_study(result, study);
     add_poses(result, study.model(), poses);
     add_factors(result, chosen(study.model(), factors));
-    add_responses(result, study.model().responses);
+    add_responses(result, study.model());
     compose(result);
     add_run(result, facts);
     write_file(path, result.file());

@@ -65,7 +65,7 @@ std::vector<std::string> write_confirmation(const std::string& folder, const Sto
   const NamedUnit& response = result.responses[tolerances.response];
   const std::string limit = response.unit == "1"
                                 ? shortest(tolerances.limit->limit)
-                                : readable_text({tolerances.limit->limit, display(response.unit).dimension});
+                                : readable_text({tolerances.limit->limit, display(response).dimension});
   std::vector<std::string> paths;
   const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
     study.title = "Confirms " + words + " that keep the mean of " + response.name + " below " + limit;

@@ -50,16 +50,19 @@ std::string cases_table(const StoredResult& result) {
   std::size_t width = 4;
   for (const std::string& name : result.cases) width = std::max(width, name.size());
   std::string text = fmt::format("{:<{}}  {:>6}", "case", width, "poses");
-  for (const NamedUnit& response : result.responses) {
+  for (const std::size_t r : result.headline) {
+    const NamedUnit& response = result.responses[r];
     const std::string unit = fmt::format("[{}]", display(response).name);
     text += fmt::format("  {:>27}", fmt::format("{} {}", response.name, unit));
   }
   text += fmt::format("\n{:<{}}  {:>6}", "", width, "");
-  for (std::size_t r = 0; r < result.responses.size(); ++r) text += fmt::format("  {:>13} {:>13}", "mean", "max");
+  for (std::size_t column = 0; column < result.headline.size(); ++column) {
+    text += fmt::format("  {:>13} {:>13}", "mean", "max");
+  }
   text += '\n';
   for (std::size_t c = 0; c < result.cases.size(); ++c) {
     text += fmt::format("{:<{}}  {:>6}", result.cases[c], width, found.count[c]);
-    for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    for (const std::size_t r : result.headline) {
       const double scale = 1.0 / display(result.responses[r]).si;
       const std::size_t at = r * result.cases.size() + c;
       text += fmt::format("  {:>13.6g} {:>13.6g}", found.mean[at] * scale, found.max[at] * scale);

@@ -66,11 +66,11 @@ std::string monte_carlo_table(const StoredResult& result) {
   for (const char* word : {"mean", "std", "min"}) text += cell(word);
   for (const double level : found.levels) text += cell("q_" + shortest(level));
   text += cell("max") + '\n';
-  for (std::size_t r = 0; r < found.responses; ++r) text += overall_row(result, r);
+  for (const std::size_t r : result.headline) text += overall_row(result, r);
   const std::string highest = "q_" + shortest(found.levels.back());
   text += '\n' + name_cells("over the poses", "unit") +
           fmt::format(" {:>13} {:>23} {:>23}\n", "mean of means", "largest mean", "largest " + highest);
-  for (std::size_t r = 0; r < found.responses; ++r) text += poses_row(result, r);
+  for (const std::size_t r : result.headline) text += poses_row(result, r);
   return text;
 }
 

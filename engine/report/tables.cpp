@@ -14,10 +14,10 @@
 namespace poesy {
 namespace {
 
-/// The responses worth a column: those with a dimension, or all when none has one.
+/// The responses worth a column: `first`, and those of the headline that have a dimension.
 std::vector<std::size_t> shown_responses(const StoredResult& result, std::size_t first) {
   std::vector<std::size_t> shown{first};
-  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+  for (const std::size_t r : result.headline) {
     if (r != first && dimension_of(result.responses[r].unit) != Dimension::number) shown.push_back(r);
   }
   return shown;
@@ -70,15 +70,6 @@ SolveCounts all_solves(const StoredResult& result) {
 
 }  // namespace
 
-Dimension dimension_of(std::string_view si_name) {
-  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
-    if (si_unit(dimension) == si_name) return dimension;
-  }
-  return Dimension::number;
-}
-
-const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
-
 std::string count_text(std::uint64_t count) {
   std::string digits = std::to_string(count);
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
@@ -104,10 +95,10 @@ std::string summary_text(const StoredResult& result) {
 }
 
 std::string default_ranking(const StoredResult& result) {
-  for (const NamedUnit& response : result.responses) {
-    if (dimension_of(response.unit) == Dimension::length) return response.name;
+  for (const std::size_t r : result.headline) {
+    if (dimension_of(result.responses[r].unit) == Dimension::length) return result.responses[r].name;
   }
-  return result.responses.empty() ? std::string() : result.responses.front().name;
+  return result.headline.empty() ? std::string() : result.responses[result.headline.front()].name;
 }
 
 std::string ranked_table(const StoredResult& result, std::string_view ranked_by) {

@@ -13,11 +13,11 @@ namespace poesy {
 std::string summary_text(const StoredResult& result);
 
 /// The factors of a sensitivity result, ranked by the spread that each gives one response at the size the study sets
-/// (global index x sigma), with the indices and intervals of all responses that have a dimension, in mm and deg.
+/// (global index x sigma), with the indices and intervals of the headline's responses, in mm and deg.
 /// ranked_by is a response of the result.
 std::string ranked_table(const StoredResult& result, std::string_view ranked_by);
 
-/// The response a result is ranked by unless asked otherwise: the first length, else the first.
+/// The response a result is ranked by unless asked otherwise: the first length of the headline, else its first.
 std::string default_ranking(const StoredResult& result);
 
 /// Per response of an `evaluate` result, the mean and the extremes over all solved samples, and where they are.

@@ -69,13 +69,12 @@ std::string tolerance_table(const StoredResult& result, const ResponseTolerances
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     const NamedUnit& factor = result.factors[p];
     const Unit& unit = display(factor);
-    text += fmt::format("{:<16}  {:<7}  {:>4}  {} {:<7}  {:>5} %", factor.name,
-                        dimension_of(factor.unit) == Dimension::angle ? "angular" : "linear", result.factor_limb[p],
-                        index_cells(found, tolerances.response * found.factors + p, unit.si / response_unit.si),
-                        fmt::format("{}/{}", response_unit.name, unit.name),
-                        std::isnan(tolerances.all.variance_share[p])
-                            ? "-"
-                            : fmt::format("{:.1f}", 100.0 * tolerances.all.variance_share[p]));
+    text += fmt::format(
+        "{:<16}  {:<7}  {:>4}  {} {:<7}  {:>5} %", factor.name, error_kind(dimension_of(factor.unit)),
+        result.factor_limb[p], index_cells(found, tolerances.response * found.factors + p, unit.si / response_unit.si),
+        fmt::format("{}/{}", response_unit.name, unit.name),
+        std::isnan(tolerances.all.variance_share[p]) ? "-"
+                                                     : fmt::format("{:.1f}", 100.0 * tolerances.all.variance_share[p]));
     text += tolerance_cell(tolerances.all.equal_effect[p], unit);
     if (tolerances.limit) {
       text += tolerance_cell(tolerances.limit->equal_effect[p], unit) +

@@ -10,6 +10,7 @@ StoredResult example() {
   result.kind = "monte-carlo";
   result.factors = {{"delta_1", "m"}, {"epsilon_1", "rad"}};
   result.responses = {{"linear_deformation", "m"}, {"ratio", "1"}};
+  result.headline = {0, 1};
   MonteCarloResult& found = result.monte_carlo;
   found.responses = 2;
   found.poses = 3;
@@ -48,6 +49,23 @@ TEST(MonteCarloTable, NamesTheWorstOfThePosesThatAreKnown) {
   result.monte_carlo.mean[0] = std::numeric_limits<double>::quiet_NaN();
   const std::string table = monte_carlo_table(result);
   EXPECT_NE(table.find("pose 1"), std::string::npos) << table;
+}
+
+TEST(MonteCarloTable, ShowsTheHeadlineAlone) {
+  StoredResult result = example();
+  result.headline = {1};
+  const std::string table = monte_carlo_table(result);
+  EXPECT_EQ(table.find("linear_deformation"), std::string::npos) << table;
+  EXPECT_NE(table.find("ratio"), std::string::npos) << table;
+}
+
+TEST(DefaultRanking, IsTheFirstLengthOfTheHeadline) {
+  StoredResult result = example();
+  result.responses = {{"x", "m"}, {"rotation", "rad"}, {"position", "m"}};
+  result.headline = {1, 2};
+  EXPECT_EQ(default_ranking(result), "position");
+  result.headline = {1};
+  EXPECT_EQ(default_ranking(result), "rotation");
 }
 
 TEST(SummaryText, CountsTheSolvesOfAllPoses) {
