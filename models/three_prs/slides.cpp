@@ -1,7 +1,9 @@
 #include "models/three_prs/slides.h"
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "models/three_prs/kinematics.h"
 
