@@ -20,6 +20,7 @@ enum class Source : std::size_t {
 };
 inline constexpr std::size_t kSources = 20;  ///< of one limb
 inline constexpr std::size_t kFactors = 60;
+inline constexpr std::size_t kFrames = 8;  ///< sources of a limb, each a frame of its own
 
 /// Where the components of a limb's source stand among all factors; limbs counted from 0.
 constexpr std::size_t factor_of(std::size_t limb, Source source) {

@@ -15,9 +15,6 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Errors = std::array<double, kFactors>;
 
-constexpr std::size_t kComponents = 9;  ///< responses that are components of vectors: rows kTheta, kDr, kTip
-constexpr std::size_t kResponses = kComponents + 3;
-
 Configuration configuration_at(const Geometry& geometry, std::span<const double> pose) {
   POESY_EXPECTS(pose.size() == 3);
   return configuration(geometry, {pose[0], pose[1], pose[2]});
@@ -57,18 +54,6 @@ void norms(std::span<double> responses, std::size_t first, std::size_t norm, std
   for (std::size_t b = 0; b < count; ++b) {
     out[b] = std::sqrt(x[b] * x[b] + x[b + count] * x[b + count] + x[b + 2 * count] * x[b + 2 * count]);
   }
-}
-
-void all_norms(std::span<double> responses, std::size_t count) {
-  norms(responses, kTheta, kComponents, count);
-  norms(responses, kDr, kComponents + 1, count);
-  norms(responses, kTip, kComponents + 2, count);
-}
-
-bool is_finite(std::span<const double> responses, std::size_t sample, std::size_t count) {
-  return std::isfinite(responses[kComponents * count + sample]) &&
-         std::isfinite(responses[(kComponents + 1) * count + sample]) &&
-         std::isfinite(responses[(kComponents + 2) * count + sample]);
 }
 
 class FirstOrderEvaluator final : public Evaluator {
@@ -171,6 +156,18 @@ std::vector<Response> responses() {
 
 std::vector<Detail> details() {
   return {{"swing", {"limb_1", "limb_2", "limb_3"}, "rad", "additional swing of each rod about its revolute joint"}};
+}
+
+void all_norms(std::span<double> responses, std::size_t count) {
+  norms(responses, kTheta, kComponents, count);
+  norms(responses, kDr, kComponents + 1, count);
+  norms(responses, kTip, kComponents + 2, count);
+}
+
+bool is_finite(std::span<const double> responses, std::size_t sample, std::size_t count) {
+  return std::isfinite(responses[kComponents * count + sample]) &&
+         std::isfinite(responses[(kComponents + 1) * count + sample]) &&
+         std::isfinite(responses[(kComponents + 2) * count + sample]);
 }
 
 std::unique_ptr<Evaluator> first_order_evaluator(const Geometry& geometry) {

@@ -8,12 +8,21 @@
 
 namespace poesy::three_prs {
 
+inline constexpr std::size_t kComponents = 9;  ///< responses that are components of vectors: rows kTheta, kDr, kTip
+inline constexpr std::size_t kResponses = kComponents + 3;
+
 /// What both evaluators give, in this order: theta_x, _y, _z (rotation vector of the platform), x, y, z (displacement
 /// of P), tip_x, _y, _z (of the tool tip), in the base frame, then the norms rotation, position, tip_position.
 std::vector<Response> responses();
 
 /// One detail, `swing`: additional swing dphi_i of the three rods, rad.
 std::vector<Detail> details();
+
+/// Fills the last three rows of responses [12 x B], the norms, from the nine above them.
+void all_norms(std::span<double> responses, std::size_t count);
+
+/// Whether the three norms of a sample, and with them its components, are finite.
+bool is_finite(std::span<const double> responses, std::size_t sample, std::size_t count);
 
 /// [theta; dr] = J^-1 G eps (San et al. 2023, Eq. 18, corrected): one matrix for each block, one product for each
 /// sample. Every sample converges in one iteration; at a singular pose every sample is singular.

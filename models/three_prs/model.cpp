@@ -45,6 +45,7 @@ ModelDescription describe() {
   description.workspace_note =
       "The paper states no workspace. This box is chosen: with the published geometry the rails suffice in all of it.";
   description.fidelities = {"exact", "first-order"};
+  description.headline = {kComponents, kComponents + 1, kComponents + 2};
   return description;
 }
 
