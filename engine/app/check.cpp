@@ -9,6 +9,7 @@
 #include "engine/app/exit_code.h"
 #include "engine/io/study_file.h"
 #include "engine/run/cases.h"
+#include "engine/run/coupling_rows.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/identification.h"
 #include "engine/run/monte_carlo.h"
@@ -115,6 +116,19 @@ Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& pos
           })};
 }
 
+Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingRows rows = coupling_rows(coupling, study.model());
+  const ErrorTable table = coupling_table(coupling, study.model());
+  const std::size_t kept = 6 * sizeof(double) * coupling.sizes() * rows.subsets.size() * study.model().responses.size();
+  return {fmt::format("{} sizes x {} sets of errors x {} poses = {} solves", coupling.sizes(), rows.errors.size(),
+                      poses.size(), table.rows * poses.size()),
+          kept * poses.size(), table_seconds(poses, [&](const PoseSet& some) {
+            static_cast<void>(run_evaluation(model, study.solver, some, table, Pairing::every_pose_with_every_row,
+                                             {1, {}, {}}, Outcomes::responses));
+          })};
+}
+
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
   switch (study.analysis.kind) {
     case Analysis::Kind::sensitivity:
@@ -124,9 +138,11 @@ Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
     case Analysis::Kind::evaluate:
       return cases_outlook(study, model, poses);
     case Analysis::Kind::monte_carlo:
+      return monte_carlo_outlook(study, model, poses);
+    case Analysis::Kind::coupling:
       break;
   }
-  return monte_carlo_outlook(study, model, poses);
+  return coupling_outlook(study, model, poses);
 }
 
 int check(const std::string& path) {

@@ -85,6 +85,8 @@ std::vector<std::string> export_tables(const std::string& result_path, const std
     export_identification(tables, result);
   } else if (result.kind == result_format::kMonteCarlo) {
     export_monte_carlo(tables, result);
+  } else if (result.kind == result_format::kCoupling) {
+    export_coupling(tables, result);
   } else {
     export_evaluation(tables, result);
   }

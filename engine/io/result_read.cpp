@@ -153,6 +153,8 @@ StoredResult read_all(const h5::File& file) {
     read_identification(file, result);
   } else if (result.kind == result_format::kMonteCarlo) {
     read_monte_carlo(file, result);
+  } else if (result.kind == result_format::kCoupling) {
+    read_coupling(file, result);
   } else {
     throw h5::Error("its kind '" + result.kind + "' is unknown");
   }

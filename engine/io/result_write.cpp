@@ -173,6 +173,13 @@ void write_monte_carlo(const std::string& path, const Study& study, const Select
                     [&](ResultBuilder& file) { add_monte_carlo(file, study, result); });
 }
 
+void write_coupling(const std::string& path, const Study& study, const SelectedPoses& poses,
+                    const CouplingResult& result, const RunFacts& facts) {
+  POESY_EXPECTS(result.poses == poses.poses.size());
+  compose_and_write(path, result_format::kCoupling, study, poses, study.analysis.factors, facts,
+                    [&](ResultBuilder& file) { add_coupling(file, study, result); });
+}
+
 void check_result_path(const std::string& path) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "engine/io/study_file.h"
 #include "engine/io/study_file_section.h"
@@ -22,6 +25,12 @@ std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescr
                                   const std::vector<double>& background, StudyUse use);
 /// The groups of kind = "identification".
 std::vector<ErrorSize> read_groups(const StudySection& analysis);
+/// A factor set, "all", or a list of names without repetition.
+std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
+/// The text of `name`, which must not be among those that are taken; `usual` where there is none.
+std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
+/// The keys of kind = "coupling". For StudyUse::evaluate sizes and sources may be missing.
+CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription& model, StudyUse use);
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
 
 }  // namespace poesy

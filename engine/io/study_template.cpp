@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <string>
 
+#include "engine/base/contract.h"
 #include "engine/io/study_file.h"
 #include "engine/io/study_text.h"
 
@@ -196,6 +198,43 @@ std::string evaluate_keys(const ModelDescription& model) {
                     quoted(model.factor_sets.empty() ? factor.name : model.factor_sets.back().name));
 }
 
+/// Whether an error of this dimension is among the literature's sources.
+bool has_source_of(const ModelDescription& model, Dimension dimension) {
+  return std::ranges::any_of(model.sources, [&](const CouplingSource& source) {
+    return std::ranges::any_of(model.find_set(source.set)->factors,
+                               [&](FactorIndex factor) { return model.factors[factor.value].dimension == dimension; });
+  });
+}
+
+std::string coupling_keys(const ModelDescription& model) {
+  const auto sizes = [&](Dimension dimension, const char* line) {
+    return fmt::format("{}{}\n", has_source_of(model, dimension) ? "" : "# ", line);
+  };
+  std::string text =
+      "# Sizes of the errors: each is a run of its own, in which every error is at once as large as that. linear for\n"
+      "# lengths, angular for angles: as many of both, or that alone which the sources have.\n";
+  text += sizes(Dimension::length, "linear = [\"0.1 mm\", \"0.3 mm\", \"0.5 mm\"]") +
+          sizes(Dimension::angle, "angular = [\"0.1 deg\", \"0.3 deg\", \"0.5 deg\"]");
+  text +=
+      "# all: the errors of every limb; a number: of that limb alone; independent: each limb on its own in the worst "
+      "case\n"
+      "# and the root sum square\n"
+      "limbs = \"all\"  # the default\n"
+      "# all: every component of an error; a list such as [\"x\", \"z\"]: those and scalars; independent: each on its "
+      "own,\n"
+      "# as for limbs\n"
+      "components = \"all\"  # the default\n"
+      "\n# 2 to 8 sources of errors: each alone, and every combination of them at once. A factor belongs to one "
+      "source.\n"
+      "# factors: a factor set, or a list of names. Default: the sources shown. Factor sets:\n" +
+      sets_comment(model);
+  for (const CouplingSource& source : model.sources) {
+    text += fmt::format("[[analysis.sources]]\nname = {}\nfactors = {}\n\n", quoted(source.name), quoted(source.set));
+  }
+  text.pop_back();
+  return text;
+}
+
 std::string analysis_section(const ModelDescription& model, Analysis::Kind kind) {
   std::string text = fmt::format("\n[analysis]\nkind = {}{}\n", quoted(name(kind)),
                                  kind == Analysis::Kind::sensitivity ? "  # the default" : "");
@@ -207,9 +246,11 @@ std::string analysis_section(const ModelDescription& model, Analysis::Kind kind)
     case Analysis::Kind::identification:
       return text + identification_keys(model);
     case Analysis::Kind::evaluate:
+      return text + evaluate_keys(model);
+    case Analysis::Kind::coupling:
       break;
   }
-  return text + evaluate_keys(model);
+  return text + coupling_keys(model);
 }
 
 std::string solver_and_run_sections() {
@@ -228,6 +269,7 @@ std::string solver_and_run_sections() {
 
 std::string template_text(const CatalogEntry& entry, Analysis::Kind kind) {
   const ModelDescription& model = entry.description;
+  POESY_EXPECTS(kind != Analysis::Kind::coupling || !model.sources.empty());
   return head(model, kind) + mechanism_section(model) + poses_section(model) + errors_section(model) +
          analysis_section(model, kind) + solver_and_run_sections();
 }

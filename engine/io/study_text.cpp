@@ -139,10 +139,38 @@ std::string case_text(const ErrorCase& one, const ModelDescription& model) {
   return text;
 }
 
+std::string sizes_text(std::string_view key, const std::vector<double>& sizes, Dimension dimension) {
+  if (sizes.empty()) return {};
+  std::string text;
+  for (const double size : sizes) text += (text.empty() ? "" : ", ") + exact_value(size, dimension);
+  return fmt::format("{} = [{}]\n", key, text);
+}
+
+std::string choice_text(ErrorPattern::Choice choice, const std::string& some) {
+  if (choice == ErrorPattern::Choice::some) return some;
+  return choice == ErrorPattern::Choice::all ? "\"all\"" : "\"independent\"";
+}
+
+std::string coupling_text(const CouplingStudy& coupling, const ModelDescription& model) {
+  const ErrorPattern& pattern = coupling.pattern;
+  std::string axes;
+  for (const std::string& axis : pattern.axes) axes += (axes.empty() ? "" : ", ") + quoted(axis);
+  std::string text = sizes_text("linear", coupling.linear, Dimension::length) +
+                     sizes_text("angular", coupling.angular, Dimension::angle);
+  text += fmt::format("limbs = {}\ncomponents = {}\n", choice_text(pattern.limbs, std::to_string(pattern.limb)),
+                      choice_text(pattern.components, "[" + axes + "]"));
+  for (const ErrorSource& source : coupling.sources) {
+    text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", quoted(source.name),
+                        factors_text(source.factors, model));
+  }
+  return text;
+}
+
 std::string analysis_text(const Study& study) {
   using Kind = Analysis::Kind;
   const Analysis& analysis = study.analysis;
   std::string text = fmt::format("[analysis]\nkind = {}\n", quoted(name(analysis.kind)));
+  if (analysis.kind == Kind::coupling) return text + coupling_text(analysis.coupling, study.model());
   if (analysis.kind != Kind::evaluate) text += "factors = " + factors_text(analysis.factors, study.model()) + "\n";
   if (analysis.kind == Kind::sensitivity || analysis.kind == Kind::monte_carlo) {
     text += fmt::format("samples = {}\nconf_level = {}\n", analysis.samples, shortest(analysis.conf_level));

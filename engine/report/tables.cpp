@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/report/coupling_table.h"
 #include "engine/report/display.h"
 #include "engine/stats/tolerance.h"
 
@@ -65,6 +66,7 @@ SolveCounts all_solves(const StoredResult& result) {
   if (result.kind == "sensitivity") return result.sensitivity.total();
   if (result.kind == "identification") return result.identification.solves;
   if (result.kind == "monte-carlo") return result.monte_carlo.total();
+  if (result.kind == "coupling") return result.coupling.found.total();
   return result.evaluation.total();
 }
 
@@ -161,6 +163,7 @@ std::string result_tables(const StoredResult& result, std::string_view ranked_by
   if (result.kind == "sensitivity") return ranked_table(result, ranked_by);
   if (result.kind == "identification") return identification_table(result);
   if (result.kind == "monte-carlo") return monte_carlo_table(result);
+  if (result.kind == "coupling") return coupling_table(result);
   return result.cases.empty() ? evaluation_table(result) : cases_table(result);
 }
 
@@ -194,6 +197,8 @@ std::string model_text(const ModelDescription& model) {
   for (const FactorSet& set : model.factor_sets) {
     text += fmt::format("  {:<16} {:>8} {}\n", set.name, set.factors.size(), set.description);
   }
+  if (!model.sources.empty()) text += "\nsources of errors (of a coupling study that names none)\n";
+  for (const CouplingSource& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
   text += "\nerror factors\n";
   for (const Factor& factor : model.factors) {
     text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);

@@ -44,6 +44,8 @@ ModelDescription describe() {
   description.pose_upper = {kTilt, kTilt, 0.99};
   description.workspace_note =
       "The paper states no workspace. This box is chosen: with the published geometry the rails suffice in all of it.";
+  description.sources = {
+      {"FS", "platform-hinges"}, {"T", "initial-position"}, {"R", "revolute-gap"}, {"L", "rod-length"}};
   description.fidelities = {"exact", "first-order"};
   description.headline = {kComponents, kComponents + 1, kComponents + 2};
   return description;
