@@ -94,7 +94,8 @@ SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& mode
     }
     const double condition = model.condition(*pose);
     if (!(condition <= selection.max_condition)) {
-      refuse("is singular or nearly so: its condition number " + shortest(condition) + " is above max_condition, " +
+      refuse("is singular or nearly so: its condition number " +
+                 readable_text({condition, Dimension::number}, kDigits) + " is above max_condition, " +
                  shortest(selection.max_condition),
              elsewhere + " away from singular poses, or raise max_condition");
     }
