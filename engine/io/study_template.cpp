@@ -93,14 +93,16 @@ std::string curve_example(const NamedCurve& curve, const ModelDescription& model
 }
 
 std::string trajectory_comment(const ModelDescription& model) {
-  std::string text =
-      "# Instead of count, workspace and limits, with select = \"trajectory\": points evenly spaced in time, of\n";
-  if (!model.curves.empty()) text += "# a curve (all but its name may be left out; then as shown), or of\n";
+  std::string text = "# trajectory: instead of count, workspace and limits, with select = \"trajectory\"\n";
+  if (!model.curves.empty())
+    text += "# a curve at times evenly spaced; all but its name may be left out, then as shown:\n";
   for (const NamedCurve& curve : model.curves) text += curve_example(curve, model);
   return text +
-         "# a file beside this study: CSV with a column t (s) and pose coordinates, SI, read between its points by "
-         "modified\n"
-         "# Akima splines (straight lines between two or three); without points and time its own points are the poses\n"
+         "# a file beside this study: CSV with a column t (s) and pose coordinates, SI. Between its points it is read "
+         "by\n"
+         "# modified Akima splines (straight lines where it has two or three). Without points and time its own points "
+         "are\n"
+         "# the poses. What is left out of these two: 201 points, all of the file's time.\n"
          "# trajectory = { file = \"curve.csv\", points = 201, time = [\"0 s\", \"2 s\"] }\n";
 }
 

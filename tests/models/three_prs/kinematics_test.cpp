@@ -91,6 +91,18 @@ TEST(PoseOfTip, TrajectoryNeedsALongEnoughTool) {
   }
 }
 
+TEST(PoseOfTip, FindsTiltsOf40Degrees) {
+  const Geometry g;
+  for (const std::vector<double>& pose : random_poses(2000, 9)) {
+    const lie::Transform<double> platform = base_T_platform(g, {2.0 * pose[0], 2.0 * pose[1], pose[2]});
+    const lie::Vector3<double> tip = platform.p + tool(g, platform.R);
+    const auto found = pose_of_tip(g, tip);
+    ASSERT_TRUE(found) << 2.0 * pose[0] << ' ' << 2.0 * pose[1];
+    const lie::Transform<double> there = base_T_platform(g, *found);
+    EXPECT_LE((there.p + tool(g, there.R) - tip).norm(), 2e-15);
+  }
+}
+
 lie::Vector3<double> carriages(const Geometry& geometry, const Pose& pose) {
   const Configuration at = configuration(geometry, pose);
   return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q};
