@@ -145,6 +145,21 @@ Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
   return coupling_outlook(study, model, poses);
 }
 
+/// What a trajectory asks of the mechanism; empty for other poses.
+std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& model) {
+  if (poses.time.empty()) return {};
+  std::string text = fmt::format("# trajectory: {} poses from {:.6g} s to {:.6g} s", poses.poses.size(),
+                                 poses.time.front(), poses.time.back());
+  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    const std::vector<double> values = poses.poses.column(c);
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    text += fmt::format(", {} {} to {}", coordinate.name, readable_text({*least, coordinate.dimension}, 6),
+                        readable_text({*most, coordinate.dimension}, 6));
+  }
+  return text + "\n";
+}
+
 int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
@@ -159,6 +174,7 @@ int check(const std::string& path) {
                          expected.thread_seconds / static_cast<double>(threads), threads)
                  .c_str(),
              stdout);
+  std::fputs(trajectory_line(poses, study.model()).c_str(), stdout);
   for (const RejectedPoses& rejected : poses.rejected) {
     std::fputs(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason).c_str(), stdout);
   }

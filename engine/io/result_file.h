@@ -75,6 +75,7 @@ struct StoredResult {
   std::vector<NamedUnit> pose_coordinates;
   PoseSet poses;
   std::vector<double> condition;  ///< [M] of each pose; empty in files of older versions
+  std::vector<double> time;       ///< [M] s, ascending, of poses along a trajectory; else empty
   std::vector<NamedUnit> factors;
   std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;
@@ -116,15 +117,15 @@ Verification verify_result(const std::string& path);
 ///     local_RESPONSE.csv   factor | one column a pose, SI
 ///     not_converged.csv    factor | one column a pose
 ///     factors.csv          factor | standard deviation
-///     poses.csv            pose | coordinates, condition number
+///     poses.csv            pose | time (s) on a trajectory, coordinates, condition number
 ///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
 ///                               share, equal-effect tolerance in SI and in the units people read ("inf": no effect)
 ///
 /// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
 /// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and
 ///
-///     evaluate.csv              pose, sample (or case, pose) | responses, details, status (position in kStatusNames),
-///                               iterations
+///     evaluate.csv              pose, sample (or case, pose) | time (s) on a trajectory, responses, details, status
+///                               (position in kStatusNames), iterations
 ///     joint_displacements.csv   pose | joints
 ///     errors.csv                sample (or pose, row by row, or case) | factors
 ///     cases.csv                 case | poses that count, mean and max of each response; where samples are cases

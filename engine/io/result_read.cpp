@@ -116,6 +116,7 @@ void read_poses(const h5::File& file, StoredResult& result) {
     for (std::size_t m = 0; m < count; ++m) values[m * names.size() + c] = column[m];
   }
   result.poses = PoseSet(names.size(), std::move(values));
+  if (file.exists("/poses/time")) result.time = read_exactly<double>(file, "/poses/time", count);
   if (file.exists("/poses/condition")) result.condition = read_exactly<double>(file, "/poses/condition", count);
 }
 

@@ -62,6 +62,9 @@ void add_poses(ResultBuilder& result, const ModelDescription& model, const Selec
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
     result.add("/poses/" + names[c], {"pose"}, poses.column(c), {unit_of(coordinate), coordinate.description});
   }
+  if (!selected.time.empty()) {
+    result.add("/poses/time", {"pose"}, selected.time, {"s", "When the trajectory reaches the pose"});
+  }
   result.add("/poses/condition", {"pose"}, selected.condition,
              {"1", "Condition number of the passive joints' Jacobian; infinity at a singular pose"});
   add_rejected_poses(result, selected.rejected);

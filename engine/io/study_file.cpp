@@ -124,7 +124,7 @@ AtPose at_pose(const Study& study) {
 /// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
-  const double poses = static_cast<double>(from_file ? study.poses.from_file.size() : study.poses.count);
+  const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
   const AtPose asked = at_pose(study);
   if (poses * asked.values > static_cast<double>(kMostCells)) {
     throw InputError(root.section("poses").place(),

@@ -19,6 +19,13 @@ inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;
 MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog);
 /// For StudyUse::evaluate the pose file is not opened.
 PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use);
+/// A file named by the study, relative to the study's folder.
+std::string beside_study(const StudySection& section, const std::string& file);
+double read_max_condition(const StudyValue& value);
+/// What select = "trajectory" has besides; fills in `trajectory`, `count` and `place`. For StudyUse::evaluate the
+/// trajectory may be absent and its file is not opened.
+void read_trajectory_section(const StudySection& poses, const ModelDescription& model, StudyUse use,
+                             PoseSelection& selection);
 ErrorModel read_error_model(const StudySection& root, const ModelDescription& model);
 /// The cases of kind = "evaluate"; what a case does not set has the background's value.
 std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescription& model,

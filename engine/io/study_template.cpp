@@ -30,7 +30,7 @@ std::string title(Analysis::Kind kind) {
 std::string head(const ModelDescription& model, Analysis::Kind kind) {
   return comment(model.name + ": " + model.title) +
          "# Run this study with: poesy run STUDY.toml\n"
-         "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec.\n"
+         "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec, s, ms, min.\n"
          "# A key behind a '#' shows a default or an alternative.\n" +
          fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}  # optional, free text\n",
                      quoted(title(kind) + " of " + model.name));
@@ -68,6 +68,46 @@ std::string joint_list(const ModelDescription& model) {
   return text;
 }
 
+std::string name_list(const std::vector<PoseCoordinate>& coordinates) {
+  std::string text;
+  for (const PoseCoordinate& coordinate : coordinates) text += (text.empty() ? "" : ", ") + coordinate.name;
+  return text;
+}
+
+/// Other coordinates in which a file may give poses.
+std::string charts_comment(const ModelDescription& model) {
+  std::string text;
+  for (const PoseChart& chart : model.charts) {
+    text += comment(fmt::format("  or those of {}: {}", chart.name, name_list(chart.coordinates)));
+  }
+  return text;
+}
+
+std::string curve_example(const NamedCurve& curve, const ModelDescription& model) {
+  std::string origin;
+  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
+    const Dimension dimension = model.charts[curve.chart].coordinates[c].dimension;
+    origin += (c > 0 ? ", " : "") + readable_value(curve.origin[c], dimension);
+  }
+  return fmt::format("# trajectory = {{ curve = {}, origin = [{}], points = 201, time = [{}, {}] }}  # {}\n",
+                     quoted(curve.name), origin, readable_value(curve.start, Dimension::time),
+                     readable_value(curve.end, Dimension::time), curve.description);
+}
+
+std::string trajectory_comment(const ModelDescription& model) {
+  std::string text = "# trajectory: instead of count, workspace and limits, with select = \"trajectory\"\n";
+  if (!model.curves.empty())
+    text += "# a curve at times evenly spaced; all but its name may be left out, then as shown:\n";
+  for (const NamedCurve& curve : model.curves) text += curve_example(curve, model);
+  return text +
+         "# a file beside this study: CSV with a column t (s) and pose coordinates, SI. Between its points it is read "
+         "by\n"
+         "# modified Akima splines (straight lines where it has two or three). Without points and time its own points "
+         "are\n"
+         "# the poses. What is left out of these two: 201 points, all of the file's time.\n"
+         "# trajectory = { file = \"curve.csv\", points = 201, time = [\"0 s\", \"2 s\"] }\n";
+}
+
 std::string poses_section(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
@@ -78,8 +118,10 @@ std::string poses_section(const ModelDescription& model) {
   text += "# boundary: that many points on the boundary of the feasible part of the workspace, uniform by area\n";
   text += "# grid: that many points of a regular grid, or all of one with " + grid_example(model) + "\n";
   text += "# file: poses from CSV, first line the names of all pose coordinates, SI units\n";
+  text += charts_comment(model);
+  text += "# trajectory: poses along a curve, in the order of time\n";
   text += "select = \"interior\"  # the default\n";
-  text += "count = 158  # required for all but file, at least 1\n";
+  text += "count = 158  # required for all but file and trajectory, at least 1\n";
   text += "# A range [lower, upper] for every pose coordinate. Default: the model's own workspace, shown here.\n";
   for (const PoseCoordinate& coordinate : model.pose_coordinates) {
     text += comment(coordinate.name + ": " + coordinate.description);
@@ -96,7 +138,8 @@ std::string poses_section(const ModelDescription& model) {
   text += "# max_condition = 1e8  # poses whose condition number is above it are rejected as singular; the default\n";
   return text +
          "# file = \"poses.csv\"  # instead of count, workspace, limits and max_condition, with select = \"file\"; "
-         "beside this study\n";
+         "beside this study\n" +
+         trajectory_comment(model);
 }
 
 std::string override_example(const ModelDescription& model) {

@@ -84,10 +84,34 @@ std::string limits_text(const PoseSelection& poses, const ModelDescription& mode
   return text + " }";
 }
 
+std::string trajectory_text(const Trajectory& trajectory, const ModelDescription& model) {
+  std::string text;
+  if (trajectory.curve) {
+    const NamedCurve& curve = model.curves[*trajectory.curve];
+    for (std::size_t c = 0; c < trajectory.origin.size(); ++c) {
+      text +=
+          (c > 0 ? ", " : "") + exact_value(trajectory.origin[c], model.charts[curve.chart].coordinates[c].dimension);
+    }
+    text = fmt::format("curve = {}, origin = [{}]", quoted(curve.name), text);
+  } else {
+    text = "file = " + quoted(trajectory.file);
+  }
+  if (trajectory.points > 0) text += fmt::format(", points = {}", trajectory.points);
+  if (trajectory.time) {
+    text += fmt::format(", time = [{}, {}]", exact_value(trajectory.time->start, Dimension::time),
+                        exact_value(trajectory.time->end, Dimension::time));
+  }
+  return "{ " + text + " }";
+}
+
 std::string poses_text(const Study& study) {
   const PoseSelection& poses = study.poses;
   std::string text = fmt::format("[poses]\nselect = {}\n", quoted(name(poses.select)));
   if (poses.select == PoseSelection::Select::file) return text + "file = " + quoted(poses.file) + "\n";
+  if (poses.select == PoseSelection::Select::trajectory) {
+    if (poses.trajectory) text += "trajectory = " + trajectory_text(*poses.trajectory, study.model()) + "\n";
+    return text + "max_condition = " + shortest(poses.max_condition) + "\n";
+  }
   if (!poses.grid_counts.empty()) {
     text += "count = " + grid_text(poses, study.model()) + "\n";
   } else if (poses.count > 0) {

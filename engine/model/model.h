@@ -70,6 +70,8 @@ struct NamedCurve {
   std::size_t chart;  ///< position among the charts
   double start;       ///< s, of the whole curve
   double end;         ///< s
+  /// Where the curve's zero stands unless the study says otherwise, [coordinates of the chart], SI.
+  std::vector<double> origin;
   /// Chart coordinates at a time (s), SI, relative to an origin that the study chooses.
   std::function<std::vector<double>(double time)> at;
 };

@@ -62,6 +62,24 @@ std::size_t response_named(const StoredResult& result, std::string_view name) {
   return static_cast<std::size_t>(found - result.responses.begin());
 }
 
+std::string chart_text(const PoseChart& chart) {
+  std::string text = fmt::format("\nposes may be given by {}\n", chart.name);
+  for (const PoseCoordinate& coordinate : chart.coordinates) {
+    text += fmt::format("  {:<16} {:>8} {}\n", coordinate.name, si_unit(coordinate.dimension), coordinate.description);
+  }
+  return text;
+}
+
+std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
+  const PoseChart& chart = model.charts[curve.chart];
+  std::string origin;
+  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
+    origin += (c > 0 ? ", " : "") + readable_text({curve.origin[c], chart.coordinates[c].dimension});
+  }
+  return fmt::format("  {:<16} {}; t from {} to {} s, by {}, from the origin ({}) unless the study sets it\n",
+                     curve.name, curve.description, curve.start, curve.end, chart.name, origin);
+}
+
 SolveCounts all_solves(const StoredResult& result) {
   if (result.kind == "sensitivity") return result.sensitivity.total();
   if (result.kind == "identification") return result.identification.solves;
@@ -193,7 +211,11 @@ std::string model_text(const ModelDescription& model) {
     text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
                         model.pose_upper[c] / unit.si, unit.name, coordinate.description);
   }
-  text += fmt::format("  {}\n\nfactor sets\n", model.workspace_note);
+  text += fmt::format("  {}\n", model.workspace_note);
+  for (const PoseChart& chart : model.charts) text += chart_text(chart);
+  if (!model.curves.empty()) text += "\ncurves (select = \"trajectory\")\n";
+  for (const NamedCurve& curve : model.curves) text += curve_text(curve, model);
+  text += "\nfactor sets\n";
   for (const FactorSet& set : model.factor_sets) {
     text += fmt::format("  {:<16} {:>8} {}\n", set.name, set.factors.size(), set.description);
   }

@@ -64,4 +64,9 @@ lie::Vector3<double> tool(const Geometry& geometry, const lie::Matrix3<double>& 
 /// between -90 and 90 deg near the upright pose; whether the limbs reach it is not asked.
 std::optional<Pose> pose_of_tip(const Geometry& geometry, const lie::Vector3<double>& tip);
 
+/// Forward kinematics: the pose at which the carriages stand at these q (m), to rounding, by Newton from upright; the
+/// joints of the platform stand below their carriages. Nothing where there is none between -90 and 90 deg near the
+/// upright pose; whether the rails are long enough is not asked.
+std::optional<Pose> pose_of_carriages(const Geometry& geometry, const lie::Vector3<double>& q);
+
 }  // namespace poesy::three_prs
