@@ -115,12 +115,15 @@ auto ClosureKernel<T>::limb_with_errors(const ClosureLimb& limb, std::size_t at)
   Limb out;
   for (int k = 0; k < 3; ++k) {
     out.carriage[k] = b[k];
-    out.axis[k] = T(k == 1 ? 1.0 : 0.0);
     const double* row = limb.base_R_platform_limb + 3 * k;
     out.joint[k] = madd(T(row[2]), c[2], madd(T(row[1]), c[1], madd(T(row[0]), c[0], T(limb.joint[k]))));
   }
   kernel::rotate(theta_B, exp_B, out.carriage);
-  kernel::rotate(theta_B, exp_B, out.axis);
+  // The second column of exp(theta_B).
+  const T scaled = exp_B.b * theta_B[1];
+  out.axis[0] = nmadd(exp_B.a, theta_B[2], scaled * theta_B[0]);
+  out.axis[1] = nmadd(exp_B.b, madd(theta_B[2], theta_B[2], theta_B[0] * theta_B[0]), T(1.0));
+  out.axis[2] = madd(exp_B.a, theta_B[0], scaled * theta_B[2]);
   out.carriage[2] = out.carriage[2] + (T(limb.q) + error[static_cast<std::size_t>(Source::q)]);
   kernel::rotate(theta_A, exp_A, out.carriage);
   kernel::rotate(theta_A, exp_A, out.axis);
