@@ -61,7 +61,7 @@ std::string_view si_unit(Dimension dimension) {
 }
 
 Dimension dimension_of(std::string_view si_name) {
-  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+  for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::time}) {
     if (si_unit(dimension) == si_name) return dimension;
   }
   return Dimension::number;

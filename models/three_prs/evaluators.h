@@ -18,17 +18,12 @@ std::vector<Response> responses();
 /// One detail, `swing`: additional swing dphi_i of the three rods, rad.
 std::vector<Detail> details();
 
-/// Fills the last three rows of responses [12 x B], the norms, from the nine above them.
-void all_norms(std::span<double> responses, std::size_t count);
-
-/// Whether the three norms of a sample, and with them its components, are finite.
-bool is_finite(std::span<const double> responses, std::size_t sample, std::size_t count);
-
 /// [theta; dr] = J^-1 G eps (San et al. 2023, Eq. 18, corrected): one matrix for each block, one product for each
-/// sample. Every sample converges in one iteration; at a singular pose every sample is singular.
+/// sample, by vectors (map_tile). Every sample converges in one iteration; at a singular pose every sample is singular.
 std::unique_ptr<Evaluator> first_order_evaluator(const Geometry& geometry);
 
-/// The closure of all limbs with errors and rotations of finite size (close_limbs), started from the first order.
+/// The closure of all limbs with errors and rotations of finite size (ClosureSolver), started from the first order
+/// (ClosureStart).
 std::unique_ptr<Evaluator> exact_evaluator(const Geometry& geometry, const SolverOptions& options);
 
 }  // namespace poesy::three_prs

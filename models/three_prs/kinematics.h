@@ -4,10 +4,9 @@
 #include <optional>
 
 #include "models/lie/se3.h"
+#include "models/three_prs/sources.h"
 
 namespace poesy::three_prs {
-
-inline constexpr std::size_t kLimbs = 3;
 
 /// Structural parameters (San et al. 2023, Table 1), in m. z points down, from the rails to the platform.
 struct Geometry {

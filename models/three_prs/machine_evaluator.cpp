@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -31,6 +32,29 @@ struct Points {
 Points nominal_points(const Geometry& geometry, std::span<const double> pose) {
   const lie::Transform<double> platform = base_T_platform(geometry, {pose[0], pose[1], pose[2]});
   return {platform.p, platform.p + tool(geometry, platform.R)};
+}
+
+/// The norm of the vector whose three rows begin at `first`, [B].
+void norms(std::span<double> responses, std::size_t first, std::size_t norm, std::size_t count) {
+  const double* x = responses.data() + first * count;
+  double* out = responses.data() + norm * count;
+  for (std::size_t b = 0; b < count; ++b) {
+    out[b] = std::sqrt(x[b] * x[b] + x[b + count] * x[b + count] + x[b + 2 * count] * x[b + 2 * count]);
+  }
+}
+
+/// Fills the last three rows of responses [12 x B] from the nine above them.
+void all_norms(std::span<double> responses, std::size_t count) {
+  norms(responses, kTheta, kComponents, count);
+  norms(responses, kDr, kComponents + 1, count);
+  norms(responses, kTip, kComponents + 2, count);
+}
+
+/// Whether the three norms of a sample, and with them its components, are finite.
+bool is_finite(std::span<const double> responses, std::size_t sample, std::size_t count) {
+  return std::isfinite(responses[kComponents * count + sample]) &&
+         std::isfinite(responses[(kComponents + 1) * count + sample]) &&
+         std::isfinite(responses[(kComponents + 2) * count + sample]);
 }
 
 /// What both fidelities share: the head's part of each sample.
