@@ -92,7 +92,7 @@ constexpr double kSmallestDraw = 0x1p-54;
   return r - polynomial(kAbove, r) / polynomial(kBelow, r);
 }
 
-bool in_middle(double u) { return std::abs(u - 0.5) <= kMiddle; }
+[[gnu::always_inline]] inline bool in_middle(double u) { return std::abs(u - 0.5) <= kMiddle; }
 
 /// The share beyond the value, on its side of zero. 1 - u is exact for u >= 1/2.
 [[gnu::always_inline]] inline double beyond(double u) { return std::min(u, 1.0 - u); }
@@ -118,6 +118,25 @@ POESY_EACH_INSTRUCTION_SET void replace_tails(double sigma, double* shares, std:
   for (std::size_t k = 0; k < count; ++k) shares[k] = sigma * signed_tail(shares[k]);
 }
 
+constexpr std::size_t kMask = 64;
+
+constexpr std::array<std::uint64_t, kMask> kBits = [] {
+  std::array<std::uint64_t, kMask> bits{};
+  for (std::size_t k = 0; k < kMask; ++k) bits[k] = std::uint64_t{1} << k;
+  return bits;
+}();
+
+/// Bit k of mask n is set if share 64 n + k, of `count`, is outside the middle.
+POESY_EACH_INSTRUCTION_SET void mark_tails(const double* shares, std::size_t count, std::uint64_t* masks) {
+  for (std::size_t begin = 0; begin < count; begin += kMask) {
+    std::uint64_t mask = 0;
+    for (std::size_t k = 0; k < std::min(kMask, count - begin); ++k) {
+      mask |= in_middle(shares[begin + k]) ? 0 : kBits[k];
+    }
+    *masks++ = mask;
+  }
+}
+
 }  // namespace
 
 double normal_quantile(double sigma, double u) {
@@ -127,19 +146,24 @@ double normal_quantile(double sigma, double u) {
 }
 
 void normal_quantiles(double sigma, std::span<double> shares) {
-  constexpr std::size_t kBlock = 512;
+  constexpr std::size_t kBlock = 8 * kMask;
+  std::array<std::uint64_t, kBlock / kMask> masks;
   std::array<std::uint16_t, kBlock> places;
   std::array<double, kBlock> tails;
   for (; !shares.empty(); shares = shares.subspan(std::min(kBlock, shares.size()))) {
     const std::span block = shares.first(std::min(kBlock, shares.size()));
+    mark_tails(block.data(), block.size(), masks.data());
     std::size_t count = 0;
-    for (std::size_t k = 0; k < block.size(); ++k) {
-      places[count] = static_cast<std::uint16_t>(k);
-      tails[count] = block[k];
-      count += in_middle(block[k]) ? 0 : 1;
+    double smallest = 1.0;
+    for (std::size_t begin = 0; begin < block.size(); begin += kMask) {
+      for (std::uint64_t mask = masks[begin / kMask]; mask != 0; mask &= mask - 1) {
+        const std::size_t place = begin + static_cast<std::size_t>(std::countr_zero(mask));
+        places[count] = static_cast<std::uint16_t>(place);
+        tails[count++] = block[place];
+        smallest = std::min(smallest, block[place]);
+      }
     }
-    const bool extreme = std::any_of(tails.begin(), tails.begin() + count, [](double u) { return u < kSmallestDraw; });
-    if (extreme) {
+    if (smallest < kSmallestDraw) {
       for (double& u : block) u = normal_quantile(sigma, u);
       continue;
     }
