@@ -42,6 +42,15 @@ void PoseUnitEvaluator::draw(const WorkUnit& unit) {
   }
 }
 
+std::span<const double> PoseUnitEvaluator::only_counting(std::span<const double> outcomes,
+                                                         std::span<const SolveStatus> status) {
+  kept_.clear();
+  for (std::size_t b = 0; b < outcomes.size(); ++b) {
+    if (counts(status[b], plan_->not_converged())) kept_.push_back(outcomes[b]);
+  }
+  return kept_;
+}
+
 PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
   draw(unit);
   const std::span status = std::span(status_).first(unit.count);
@@ -50,21 +59,22 @@ PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
                         std::span(values_).first(plan_->factors().size() * unit.count), unit.count},
                        {std::span(outcome_).first(responses_ * unit.count), status, iterations, {}});
   PoseUnit found;
-  for (std::size_t b = 0; b < unit.count; ++b) found.solves.add(status[b], iterations[b]);
-  found.responses.resize(responses_);
+  std::size_t counting = 0;
+  for (std::size_t b = 0; b < unit.count; ++b) {
+    found.solves.add(status[b], iterations[b]);
+    counting += counts(status[b], plan_->not_converged()) ? 1 : 0;
+  }
+  found.responses.reserve(responses_);
   for (std::size_t r = 0; r < responses_; ++r) {
-    kept_.clear();
-    for (std::size_t b = 0; b < unit.count; ++b) {
-      if (counts(status[b], plan_->not_converged())) kept_.push_back(outcome_[r * unit.count + b]);
-    }
-    found.responses[r].moments = Moments::of(kept_);
-    found.responses[r].sketch.add(kept_);
+    std::span<const double> kept = std::span(outcome_).subspan(r * unit.count, unit.count);
+    if (counting != unit.count) kept = only_counting(kept, status);
+    found.responses.push_back({Moments::of(kept), BucketedValues(kept)});
   }
   return found;
 }
 
 MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis)
-    : samples_(plan.samples()), overall_(responses) {
+    : samples_(plan.samples()), at_pose_(responses), overall_(responses) {
   result_.responses = responses;
   result_.poses = plan.poses().size();
   result_.conf_level = analysis.conf_level;
@@ -78,20 +88,22 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
   result_.count.resize(cells);
   result_.quantiles.resize(cells * result_.levels.size());
   result_.solves.resize(result_.poses);
-  at_pose_.responses.resize(responses);
 }
 
 void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
-  POESY_EXPECTS(pose == pose_ || at_pose_.solves.total() == 0);
+  POESY_EXPECTS(pose == pose_ || solves_at_pose_.total() == 0);
   pose_ = pose;
-  for (std::size_t r = 0; r < overall_.size(); ++r) at_pose_.responses[r].merge(unit.responses[r]);
-  at_pose_.solves.merge(unit.solves);
-  if (at_pose_.solves.total() == samples_) finish_pose();
+  for (std::size_t r = 0; r < overall_.size(); ++r) {
+    at_pose_[r].moments.merge(unit.responses[r].moments);
+    at_pose_[r].sketch.add(unit.responses[r].values);
+  }
+  solves_at_pose_.merge(unit.solves);
+  if (solves_at_pose_.total() == samples_) finish_pose();
 }
 
 void MonteCarloCollector::finish_pose() {
   for (std::size_t r = 0; r < overall_.size(); ++r) {
-    const auto& [moments, sketch] = at_pose_.responses[r];
+    const auto& [moments, sketch] = at_pose_[r];
     const std::size_t cell = r * result_.poses + pose_.value;
     const Interval interval = mean_interval(moments, result_.conf_level);
     result_.mean[cell] = mean_of(moments);
@@ -104,10 +116,11 @@ void MonteCarloCollector::finish_pose() {
     for (std::size_t q = 0; q < result_.levels.size(); ++q) {
       result_.quantiles[cell * result_.levels.size() + q] = sketch.quantile(result_.levels[q]);
     }
-    overall_[r].merge(at_pose_.responses[r]);
+    overall_[r].merge(at_pose_[r]);
   }
-  result_.solves[pose_.value] = at_pose_.solves;
-  at_pose_ = {.responses = std::vector<ResponseSamples>(overall_.size()), .solves = {}};
+  result_.solves[pose_.value] = solves_at_pose_;
+  at_pose_.assign(overall_.size(), {});
+  solves_at_pose_ = {};
 }
 
 MonteCarloResult MonteCarloCollector::result() && {

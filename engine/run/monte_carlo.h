@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -19,9 +20,15 @@ struct ResponseSamples {
   void merge(const ResponseSamples& other);
 };
 
+/// What one work unit contributes to one response.
+struct ResponseUnit {
+  Moments moments;
+  BucketedValues values;
+};
+
 /// What one work unit of a Monte Carlo study contributes.
 struct PoseUnit {
-  std::vector<ResponseSamples> responses;  ///< [R], over the samples that count
+  std::vector<ResponseUnit> responses;  ///< [R], over the samples that count
   SolveCounts solves;
 };
 
@@ -36,6 +43,7 @@ class PoseUnitEvaluator {
 
  private:
   void draw(const WorkUnit& unit);
+  std::span<const double> only_counting(std::span<const double> outcomes, std::span<const SolveStatus> status);
 
   const Plan* plan_;
   std::size_t responses_;
@@ -63,7 +71,8 @@ class MonteCarloCollector {
 
   std::size_t samples_;
   PoseIndex pose_;
-  PoseUnit at_pose_;
+  std::vector<ResponseSamples> at_pose_;  ///< [R]
+  SolveCounts solves_at_pose_;
   std::vector<ResponseSamples> overall_;  ///< [R]
   MonteCarloResult result_;
 };
