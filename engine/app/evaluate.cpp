@@ -39,6 +39,10 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
 
 int evaluate(const Options& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
+  if (study.mechanism.compared) {
+    throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but an evaluation solves at one fidelity",
+                     fmt::format("write one of {}", fmt::join(study.model().fidelities, ", ")));
+  }
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = read_reachable_poses(options.poses, *model);
   const ErrorTable errors = read_errors(options.errors, model->description());

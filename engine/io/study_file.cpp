@@ -97,13 +97,17 @@ struct AtPose {
   std::string_view of_solves;
 };
 
-AtPose at_pose(const Analysis& analysis) {
+AtPose at_pose(const Study& study) {
+  const Analysis& analysis = study.analysis;
   const double factors = static_cast<double>(analysis.factors.size());
   const double samples = static_cast<double>(analysis.samples);
   const double tried = factors * static_cast<double>(analysis.groups.size());
   const double cases = static_cast<double>(analysis.cases.size());
   switch (analysis.kind) {
     case Analysis::Kind::sensitivity:
+      if (study.mechanism.compared) {
+        return {factors, "factors", 2.0 * factors * samples, "factors times samples times two fidelities"};
+      }
       return {factors, "factors", factors * samples, "factors times samples"};
     case Analysis::Kind::identification:
       return {tried, "factors times groups", tried, "factors times groups"};
@@ -119,7 +123,7 @@ AtPose at_pose(const Analysis& analysis) {
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.size() : study.poses.count);
-  const AtPose asked = at_pose(study.analysis);
+  const AtPose asked = at_pose(study);
   if (poses * asked.values > static_cast<double>(kMostCells)) {
     throw InputError(root.section("poses").place(),
                      "poses times " + std::string(asked.of_values) + " is " + shortest(poses * asked.values) +
@@ -131,6 +135,18 @@ void check_size(const StudySection& root, const Study& study) {
                      "poses times " + std::string(asked.of_solves) + " is " + shortest(poses * asked.solves) +
                          ", but at most " + std::to_string(kMostSolves) + " can be solved",
                      "ask for fewer samples");
+  }
+}
+
+/// "both" is for sensitivity studies, and `linearity` for those with "both".
+void check_fidelities(const StudySection& root, const Study& study) {
+  if (!study.mechanism.compared) {
+    root.section("analysis").refuse("linearity", "a study without fidelity = \"both\"");
+  } else if (study.analysis.kind != Analysis::Kind::sensitivity) {
+    const std::vector<std::string>& fidelities = study.model().fidelities;
+    const StudyValue fidelity = root.section("mechanism").require("fidelity", "");
+    fidelity.fail("is \"both\", but kind = \"" + std::string(name(study.analysis.kind)) + "\" solves at one fidelity",
+                  "write \"" + fidelities[0] + "\" or \"" + fidelities[1] + "\", or take kind = \"sensitivity\"");
   }
 }
 
@@ -150,6 +166,7 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
   const StudySection run = root.section("run");
   run.allow({"seed"});
   if (const auto seed = run.find("seed")) study.seed = static_cast<std::uint64_t>(seed->whole_number(0));
+  if (use == StudyUse::run) check_fidelities(root, study);
   check_size(root, study);
   return study;
 }

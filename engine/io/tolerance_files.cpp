@@ -34,6 +34,7 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   }
   study.analysis.kind = Analysis::Kind::monte_carlo;
   study.analysis.reference.reset();
+  study.mechanism.compared.reset();
   if (study.poses.select == PoseSelection::Select::file) study.poses.file = std::string(kPoses) + ".csv";
   return study;
 }

@@ -41,26 +41,6 @@ double share_not_converged(const SensitivityResult& s, std::size_t factor) {
   return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
 }
 
-/// Factors by the spread that each gives the response at the size the study sets: index x sigma(error). Indices alone
-/// do not compare, for some are per m and some per rad.
-std::vector<std::size_t> ranking(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& s = result.sensitivity;
-  std::vector<std::size_t> order(s.factors);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&](std::size_t p) {
-    const double spread = s.global[response * s.factors + p] * result.factor_sigma[p];
-    return std::isnan(spread) ? -1.0 : spread;
-  };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) > key(b); });
-  return order;
-}
-
-std::size_t response_named(const StoredResult& result, std::string_view name) {
-  const auto found = std::find_if(result.responses.begin(), result.responses.end(),
-                                  [&](const NamedUnit& response) { return response.name == name; });
-  return static_cast<std::size_t>(found - result.responses.begin());
-}
-
 SolveCounts all_solves(const StoredResult& result) {
   if (result.kind == "sensitivity") return result.sensitivity.total();
   if (result.kind == "identification") return result.identification.solves;
@@ -78,6 +58,24 @@ Dimension dimension_of(std::string_view si_name) {
 }
 
 const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
+
+std::size_t response_named(const StoredResult& result, std::string_view name) {
+  const auto found = std::find_if(result.responses.begin(), result.responses.end(),
+                                  [&](const NamedUnit& response) { return response.name == name; });
+  return static_cast<std::size_t>(found - result.responses.begin());
+}
+
+std::vector<std::size_t> ranking(const StoredResult& result, std::size_t response) {
+  const SensitivityResult& s = result.sensitivity;
+  std::vector<std::size_t> order(s.factors);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t p) {
+    const double spread = s.global[response * s.factors + p] * result.factor_sigma[p];
+    return std::isnan(spread) ? -1.0 : spread;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) > key(b); });
+  return order;
+}
 
 std::string count_text(std::uint64_t count) {
   std::string digits = std::to_string(count);
@@ -167,7 +165,9 @@ std::string evaluation_table(const StoredResult& result) {
 }
 
 std::string result_tables(const StoredResult& result, std::string_view ranked_by) {
-  if (result.kind == "sensitivity") return ranked_table(result, ranked_by);
+  if (result.kind == "sensitivity") {
+    return ranked_table(result, ranked_by) + separation_table(result, ranked_by) + fidelity_table(result, ranked_by);
+  }
   if (result.kind == "identification") return identification_table(result);
   if (result.kind == "monte-carlo") return monte_carlo_table(result);
   return result.cases.empty() ? evaluation_table(result) : cases_table(result);

@@ -8,6 +8,7 @@
 #include "models/three_prs/errors.h"
 #include "models/three_prs/evaluators.h"
 #include "models/three_prs/kinematics.h"
+#include "models/three_prs/separation.h"
 
 namespace poesy::three_prs {
 namespace {
@@ -45,6 +46,7 @@ ModelDescription describe() {
   description.workspace_note =
       "The paper states no workspace. This box is chosen: with the published geometry the rails suffice in all of it.";
   description.fidelities = {"exact", "first-order"};
+  description.separation = separation_description();
   return description;
 }
 
@@ -88,6 +90,10 @@ class ThreePrs final : public Model {
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     if (fidelity_ == Fidelity::first_order) return first_order_evaluator(geometry_);
     return exact_evaluator(geometry_, options);
+  }
+
+  Separation separation(std::span<const double> pose) const override {
+    return three_prs::separation(geometry_, configuration(geometry_, pose_from(pose)));
   }
 
  private:
