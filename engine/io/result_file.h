@@ -13,8 +13,10 @@
 
 namespace poesy {
 
-/// Writes the result of a sensitivity study. The file appears whole or not at all under its name: written beside it
-/// under a temporary name, synced, renamed. Throws FileError and leaves an existing file as it was.
+/// Writes the result of a sensitivity study: /sensitivity, /tolerances and /solver, and with them /separation where the
+/// model separates its errors and /fidelity where the study compares two fidelities. The file appears whole or not at
+/// all under its name: written beside it under a temporary name, synced, renamed. Throws FileError and leaves an
+/// existing file as it was.
 void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts);
 

@@ -180,8 +180,10 @@ Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) 
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use) {
   check_lines(text, path);
   const toml::table table = parse(text, path);
-  Study study = study_from(StudySection(table, "", {path, 1, 1}), catalog, use);
-  static_cast<void>(build_model(study.mechanism));
+  const StudySection root(table, "", {path, 1, 1});
+  Study study = study_from(root, catalog, use);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  if (use == StudyUse::run) check_error_bounds(root, study, *model);
   return study;
 }
 

@@ -24,4 +24,9 @@ std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescr
 std::vector<ErrorSize> read_groups(const StudySection& analysis);
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
 
+/// Throws InputError at its place for an error of the study that makes no sense on this model (Model::error_bound): the
+/// standard deviation of one that varies, and the size of one that is held, tried, set by a case, or a reference
+/// tolerance.
+void check_error_bounds(const StudySection& root, const Study& study, const Model& model);
+
 }  // namespace poesy

@@ -31,6 +31,12 @@ std::string cells(const StoredResult& result, const std::vector<double>& measure
   return fmt::format("{:>12}  {:<20}", text, std::isinf(value) ? "by the first" : result.responses[*at].name);
 }
 
+std::string verdict(const FidelityResult& found, std::size_t factor) {
+  const std::size_t factors = found.linear.size();
+  if (found.linear[factor] == 0) return "not linear";
+  return largest(found.nonlinearity, factor, factors) ? "linear" : "no effect";
+}
+
 }  // namespace
 
 std::string fidelity_table(const StoredResult& result, std::string_view ranked_by) {
@@ -45,7 +51,7 @@ std::string fidelity_table(const StoredResult& result, std::string_view ranked_b
   for (const std::size_t p : ranking(result, response_named(result, ranked_by))) {
     text += fmt::format("{:>4}  {:<16}  {}  {}  {}\n", ++rank, result.factors[p].name,
                         cells(result, found.relative_discrepancy, p), cells(result, found.nonlinearity, p),
-                        found.linear[p] != 0 ? "linear" : "not linear");
+                        verdict(found, p));
   }
   const auto not_linear = std::ranges::count(found.linear, std::uint8_t{0});
   text += fmt::format("{} of {} errors are not linear: they differ by more than {:.3g} %, at the size the study sets\n",

@@ -20,9 +20,10 @@ namespace poesy {
 struct MechanismChoice {
   const CatalogEntry* entry = nullptr;
   std::vector<double> geometry;
-  std::size_t fidelity = 0;             ///< position among the model's fidelities, 0 where it offers no choice
-  std::optional<std::size_t> compared;  ///< a second fidelity, solved as well and compared with the first
-  Place place;                          ///< of the section, for messages about the geometry as a whole
+  std::size_t fidelity = 0;  ///< position among the model's fidelities, 0 where it offers no choice
+  Place place;               ///< of the section, for messages about the geometry as a whole
+  /// A second fidelity, solved on the same draws as the first and compared with it.
+  std::optional<std::size_t> compared = std::nullopt;
 };
 
 /// How each error source is distributed.

@@ -92,6 +92,15 @@ class ThreePrs final : public Model {
     return exact_evaluator(geometry_, options);
   }
 
+  ErrorBound error_bound(FactorIndex factor) const override {
+    const auto source = static_cast<Source>(factor.value % kSources);
+    if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
+    if (source < Source::q) return {geometry_.a, "the radius a of the rails' circle"};
+    if (source == Source::q) return {geometry_.rail, "the travel of the carriages"};
+    if (source < Source::c) return {geometry_.l, "the length l of the rods"};
+    return {geometry_.c, "the radius c of the spherical joints' circle"};
+  }
+
   Separation separation(std::span<const double> pose) const override {
     return three_prs::separation(geometry_, configuration(geometry_, pose_from(pose)));
   }

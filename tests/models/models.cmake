@@ -10,4 +10,5 @@ poesy_test(two_upr_rpu_test LABELS unit
 poesy_test(three_prs_test LABELS unit
            SOURCES models/three_prs/errors_test.cpp models/three_prs/kinematics_test.cpp
                    models/three_prs/model_test.cpp
+                   models/three_prs/separation_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json)

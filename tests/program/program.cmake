@@ -12,6 +12,7 @@ endfunction()
 program_test(bad_input unit)
 program_test(oracle regression)
 program_test(determinism determinism)
+program_test(fidelity unit)
 program_test(interruption robustness)
 program_test(tolerances unit)
 
