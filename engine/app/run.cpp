@@ -14,8 +14,10 @@
 #include "engine/io/study_file.h"
 #include "engine/run/cases.h"
 #include "engine/run/coupling.h"
+#include "engine/run/fidelity.h"
 #include "engine/run/identification.h"
 #include "engine/run/runner.h"
+#include "engine/run/separation.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -46,14 +48,59 @@ struct Job {
   RunFacts facts(const SolveCounts& solves) const { return run_facts(start, options.threads, solves.total()); }
 };
 
+std::vector<double> sigma_of(const Plan& plan) {
+  std::vector<double> sigma;
+  for (const Distribution& distribution : plan.distributions()) sigma.push_back(distribution.standard_deviation());
+  return sigma;
+}
+
+std::vector<Dimension> response_dimensions(const ModelDescription& model) {
+  std::vector<Dimension> dimensions;
+  for (const Response& response : model.responses) dimensions.push_back(response.dimension);
+  return dimensions;
+}
+
 // Each runs a study of its kind and writes the result: how its solves ended, or nothing when it was interrupted.
+
+/// Options of one of two runs of `plan`, whose progress is shown as that of one run. `before`: solves of the other run,
+/// if it has ended.
+RunOptions as_half(const Plan& plan, const RunOptions& options, const SolveCounts& before) {
+  RunOptions half = options;
+  half.progress = [show = options.progress, solves = before.total(), failed = before.not_converged(),
+                   total = 2 * plan.solves()](const Progress& progress) {
+    show({solves + progress.solves, total, failed + progress.not_converged});
+  };
+  return half;
+}
+
+/// The study at both of its fidelities, on the same draws.
+std::optional<SensitivityResult> run_both_fidelities(const Job& job, const Plan& plan, SolveCounts& solves) {
+  const Analysis& analysis = job.study.analysis;
+  auto first = run_sensitivity(plan, job.model, analysis.conf_level, as_half(plan, job.options, {}));
+  if (!first) return std::nullopt;
+  solves = first->total();
+  const std::unique_ptr<Model> other = build_model(at_compared_fidelity(job.study.mechanism));
+  const auto second = run_sensitivity(plan, *other, analysis.conf_level, as_half(plan, job.options, solves));
+  if (!second) return std::nullopt;
+  solves.merge(second->total());
+  first->fidelity =
+      compare_fidelities(*first, *second, response_dimensions(job.study.model()), sigma_of(plan), analysis.linearity);
+  return first;
+}
 
 std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
-  const auto result = run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
+  SolveCounts solves;
+  auto result = job.study.mechanism.compared
+                    ? run_both_fidelities(job, plan, solves)
+                    : run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
   if (!result) return std::nullopt;
-  write_sensitivity(job.path, job.study, job.poses, *result, job.facts(result->total()));
-  return result->total();
+  if (!result->fidelity) solves = result->total();
+  if (job.model.description().separation) {
+    result->separation = separate_errors(job.model, plan.poses(), plan.factors(), sigma_of(plan));
+  }
+  write_sensitivity(job.path, job.study, job.poses, *result, job.facts(solves));
+  return solves;
 }
 
 std::optional<SolveCounts> run_identification_study(const Job& job) {
