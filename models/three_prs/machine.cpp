@@ -127,7 +127,8 @@ class Machine final : public Model {
     if (factor.value < kFactors) return head_->error_bound(factor);
     const Factor& error = description_.factors[factor.value];
     if (error.dimension != Dimension::length) return Model::error_bound(factor);
-    return error.limb == kLimbs + 1 ? ErrorBound{travel_.x, "travel_x"} : ErrorBound{travel_.y, "travel_y"};
+    return error.limb == kLimbs + 1 ? ErrorBound{travel_.x, "the travel of the X slide"}
+                                    : ErrorBound{travel_.y, "the travel of the Y slide"};
   }
 
  private:
