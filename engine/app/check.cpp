@@ -11,7 +11,6 @@
 #include "engine/run/cases.h"
 #include "engine/run/coupling_rows.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/identification.h"
 #include "engine/run/monte_carlo.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"
@@ -78,9 +77,11 @@ Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSe
 }
 
 /// Bytes that an evaluation of this many rows at each pose keeps.
-std::size_t evaluation_bytes(const ModelDescription& model, std::size_t poses, std::size_t rows) {
+std::size_t evaluation_bytes(const ModelDescription& model, std::size_t poses, std::size_t rows, Outcomes outcomes) {
   std::size_t numbers = model.responses.size();
-  for (const Detail& detail : model.details) numbers += detail.components.size();
+  if (outcomes == Outcomes::with_details) {
+    for (const Detail& detail : model.details) numbers += detail.components.size();
+  }
   return poses * rows * (numbers * sizeof(double) + sizeof(SolveStatus) + sizeof(std::uint32_t));
 }
 
@@ -105,18 +106,17 @@ Outlook identification_outlook(const Study& study, const Model& model, const Pos
   const std::size_t groups = study.analysis.groups.size();
   return {fmt::format("{} errors x {} groups x {} poses = {} solves, and more for couplings", errors, groups,
                       poses.size(), errors * groups * poses.size()),
-          evaluation_bytes(study.model(), poses.size(), errors * groups),
+          evaluation_bytes(study.model(), poses.size(), errors * groups, Outcomes::responses),
           table_seconds(poses, [&](const PoseSet& some) {
-            static_cast<void>(identify(study.analysis, study.model(), [&](const ErrorTable& table) {
-              return run_evaluation(model, study.solver, some, table, Pairing::every_pose_with_every_row, {1, {}, {}});
-            }));
+            static_cast<void>(run_identification(study, model, some, {1, {}, {}}));
           })};
 }
 
 Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const ErrorTable table = case_table(study.analysis.cases);
   return {fmt::format("{} cases x {} poses = {} solves", table.rows, poses.size(), table.rows * poses.size()),
-          evaluation_bytes(study.model(), poses.size(), table.rows), table_seconds(poses, [&](const PoseSet& some) {
+          evaluation_bytes(study.model(), poses.size(), table.rows, Outcomes::with_details),
+          table_seconds(poses, [&](const PoseSet& some) {
             static_cast<void>(
                 run_evaluation(model, study.solver, some, table, Pairing::every_pose_with_every_row, {1, {}, {}}));
           })};

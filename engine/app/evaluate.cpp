@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <limits>
+#include <utility>
 
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
@@ -28,13 +30,27 @@ struct Options {
   bool quiet = false;
 };
 
+/// What happens at a singular pose is data here, and the status of its samples says so: it is warned of, not refused.
+void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses, double max_condition) {
+  for (std::size_t m = 0; m < poses.condition.size(); ++m) {
+    if (poses.condition[m] <= max_condition) continue;
+    std::fputs(fmt::format("poesy: warning: {}:{}: pose {} is singular or nearly so (condition number {:.3g})\n", path,
+                           m + 2, m + 1, poses.condition[m])
+                   .c_str(),
+               stderr);
+  }
+}
+
 SelectedPoses read_reachable_poses(const std::string& path, const Model& model) {
   PoseSelection selection;
+  const double max_condition = std::exchange(selection.max_condition, std::numeric_limits<double>::infinity());
   selection.select = PoseSelection::Select::file;
   selection.file = path;
   selection.from_file = read_poses(path, model.description());
   selection.place = {path, 2, 0};
-  return select_poses(selection, model);
+  SelectedPoses poses = select_poses(selection, model);
+  warn_of_singular_poses(path, poses, max_condition);
+  return poses;
 }
 
 int evaluate(const Options& options) {
@@ -67,6 +83,7 @@ int evaluate(const Options& options) {
   const SolveCounts total = result->total();
   StoredResult shown;
   for (const Response& response : model->description().responses) {
+    shown.headline.push_back(shown.responses.size());
     shown.responses.push_back({response.name, std::string(si_unit(response.dimension))});
   }
   if (!options.result.empty()) {

@@ -15,7 +15,6 @@
 #include "engine/run/cases.h"
 #include "engine/run/coupling.h"
 #include "engine/run/fidelity.h"
-#include "engine/run/identification.h"
 #include "engine/run/runner.h"
 #include "engine/run/separation.h"
 #include "models/registry.h"
@@ -44,8 +43,15 @@ struct Job {
   std::string path;
   RunOptions options;
   std::chrono::steady_clock::time_point start;
+};
 
-  RunFacts facts(const SolveCounts& solves) const { return run_facts(start, options.threads, solves.total()); }
+/// How a study's solves ended, and what they took.
+struct Ended {
+  Ended(const Job& job, const SolveCounts& counts)
+      : solves(counts), facts(run_facts(job.start, job.options.threads, counts.total())) {}
+
+  SolveCounts solves;
+  RunFacts facts;
 };
 
 std::vector<double> sigma_of(const Plan& plan) {
@@ -60,7 +66,7 @@ std::vector<Dimension> response_dimensions(const ModelDescription& model) {
   return dimensions;
 }
 
-// Each runs a study of its kind and writes the result: how its solves ended, or nothing when it was interrupted.
+// Each runs a study of its kind and writes the result; nothing when it was interrupted.
 
 /// Options of one of two runs of `plan`, whose progress is shown as that of one run. `before`: solves of the other run,
 /// if it has ended.
@@ -88,7 +94,7 @@ std::optional<SensitivityResult> run_both_fidelities(const Job& job, const Plan&
   return first;
 }
 
-std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
+std::optional<Ended> run_sensitivity_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
   SolveCounts solves;
   auto result = job.study.mechanism.compared
@@ -99,50 +105,51 @@ std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
   if (job.model.description().separation) {
     result->separation = separate_errors(job.model, plan.poses(), plan.factors(), sigma_of(plan));
   }
-  write_sensitivity(job.path, job.study, job.poses, *result, job.facts(solves));
-  return solves;
+  const Ended ended(job, solves);
+  write_sensitivity(job.path, job.study, job.poses, *result, ended.facts);
+  return ended;
 }
 
-std::optional<SolveCounts> run_identification_study(const Job& job) {
-  const auto result = identify(job.study.analysis, job.model.description(), [&](const ErrorTable& errors) {
-    return run_evaluation(job.model, job.study.solver, job.poses.poses, errors, Pairing::every_pose_with_every_row,
-                          job.options, Outcomes::responses);
-  });
+std::optional<Ended> run_identification_study(const Job& job) {
+  const auto result = run_identification(job.study, job.model, job.poses.poses, job.options);
   if (!result) return std::nullopt;
-  write_identification(job.path, job.study, job.poses, *result, job.facts(result->solves));
-  return result->solves;
+  const Ended ended(job, result->solves);
+  write_identification(job.path, job.study, job.poses, *result, ended.facts);
+  return ended;
 }
 
-std::optional<SolveCounts> run_cases_study(const Job& job) {
+std::optional<Ended> run_cases_study(const Job& job) {
   auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, case_table(job.study.analysis.cases),
                                    Pairing::every_pose_with_every_row, job.options);
   if (!evaluation) return std::nullopt;
-  const SolveCounts solves = evaluation->total();
+  const Ended ended(job, evaluation->total());
   write_cases(job.path, job.study, job.poses, case_result(std::move(*evaluation), job.study.not_converged),
-              job.facts(solves));
-  return solves;
+              ended.facts);
+  return ended;
 }
 
-std::optional<SolveCounts> run_monte_carlo_study(const Job& job) {
+std::optional<Ended> run_monte_carlo_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
   const auto result = run_monte_carlo(plan, job.model, job.study.analysis, job.options);
   if (!result) return std::nullopt;
-  write_monte_carlo(job.path, job.study, job.poses, *result, job.facts(result->total()));
-  return result->total();
+  const Ended ended(job, result->total());
+  write_monte_carlo(job.path, job.study, job.poses, *result, ended.facts);
+  return ended;
 }
 
-std::optional<SolveCounts> run_coupling_study(const Job& job) {
+std::optional<Ended> run_coupling_study(const Job& job) {
   const CouplingStudy& coupling = job.study.analysis.coupling;
   const ModelDescription& model = job.model.description();
   const auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, coupling_table(coupling, model),
                                          Pairing::every_pose_with_every_row, job.options, Outcomes::responses);
   if (!evaluation) return std::nullopt;
   const CouplingResult result = coupling_result(*evaluation, coupling, model, job.study.not_converged);
-  write_coupling(job.path, job.study, job.poses, result, job.facts(result.total()));
-  return result.total();
+  const Ended ended(job, result.total());
+  write_coupling(job.path, job.study, job.poses, result, ended.facts);
+  return ended;
 }
 
-std::optional<SolveCounts> run_study(const Job& job) {
+std::optional<Ended> run_study(const Job& job) {
   switch (job.study.analysis.kind) {
     case Analysis::Kind::sensitivity:
       return run_sensitivity_study(job);
@@ -159,11 +166,10 @@ std::optional<SolveCounts> run_study(const Job& job) {
 }
 
 /// Says what came out; the exit code.
-int finish(const Job& job, const std::string& study_path, const SolveCounts& solves) {
-  const std::uint64_t failed = solves.not_converged();
-  const RunFacts facts = job.facts(solves);
-  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, facts.solves,
-                         facts.wall_seconds, facts.threads, failed)
+int finish(const Job& job, const std::string& study_path, const Ended& ended) {
+  const std::uint64_t failed = ended.solves.not_converged();
+  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, ended.facts.solves,
+                         ended.facts.wall_seconds, ended.facts.threads, failed)
                  .c_str(),
              stdout);
   if (job.study.not_converged != NotConverged::fail || failed == 0) return kDone;
@@ -189,13 +195,13 @@ int run(const Options& options) {
       path,
       {resolved_threads(options.threads), [&](const Progress& progress) { printer(progress); }, &catch_interrupts()},
       std::chrono::steady_clock::now()};
-  const std::optional<SolveCounts> solves = run_study(job);
+  const std::optional<Ended> ended = run_study(job);
   printer.finish();
-  if (!solves) {
+  if (!ended) {
     std::fputs("poesy: interrupted; nothing was written, run the study again\n", stderr);
     return kInterrupted;
   }
-  return finish(job, options.study, *solves);
+  return finish(job, options.study, *ended);
 }
 
 }  // namespace

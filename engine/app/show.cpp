@@ -28,9 +28,16 @@ std::string response_of(const Options& options, const StoredResult& result) {
                    "it has " + known);
 }
 
+/// Lets the tables show this response and no other.
+void show_alone(const std::string& response, StoredResult& result) {
+  const auto at = std::ranges::find(result.responses, response, &NamedUnit::name) - result.responses.begin();
+  result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
+}
+
 int show(const Options& options) {
-  const StoredResult result = read_result(options.result);
+  StoredResult result = read_result(options.result);
   const std::string response = response_of(options, result);
+  if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
   std::fputs(summary_text(result).c_str(), stdout);
   std::fputs("\n", stdout);
   std::fputs(result_tables(result, response).c_str(), stdout);
@@ -43,7 +50,7 @@ void add_show(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("show", "print a result as tables");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
-  command->add_option("--response", options->response, "response to rank by; default: the first of the headline that is a length")
+  command->add_option("--response", options->response, "response to rank by, or to show alone where nothing is ranked")
       ->type_name("NAME");
   command->footer("Example: poesy show result.h5 --response angular_deformation");
   command->callback([options, &action] { action = [options] { return show(*options); }; });

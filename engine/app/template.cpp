@@ -27,7 +27,7 @@ int print_template(const std::string& model, const std::string& kind) {
   }
   if (wanted == Analysis::Kind::coupling && entry.description.sources.empty()) {
     throw InputError({}, "model '" + model + "' suggests no sources of errors, so its coupling has no template",
-                     "choose another kind, or write [[analysis.sources]] in a study of another");
+                     "choose another kind, or write [[analysis.sources]] in a study of this kind");
   }
   std::fputs(template_text(entry, wanted).c_str(), stdout);
   return kDone;

@@ -141,8 +141,10 @@ std::string write_files(const Options& options, const StoredResult& result, cons
   const std::string folder = options.folder.empty() ? default_folder(options.result) : options.folder;
   std::string commands;
   if (found.limit) {
-    for (const std::string& study : write_confirmation(folder, result, found, registry())) {
-      commands += "confirm with: poesy run " + study + "\n";
+    const Confirmation written = write_confirmation(folder, result, found, registry());
+    for (const std::string& study : written.paths) commands += "confirm with: poesy run " + study + "\n";
+    for (const std::string& error : written.cut) {
+      commands += "  these studies cut the tolerance of " + error + ", a quarter of the part that it is an error of\n";
     }
   }
   return write_tolerances(folder, result, found) + "\n" + commands;
@@ -179,7 +181,9 @@ void add_tolerances(CLI::App& program, Action& action) {
   command->add_option("--response", options->response, "response that the tolerances are for")
       ->required()
       ->type_name("NAME");
-  command->add_option("--limit", options->limit, "tolerances that keep the response below this, e.g. \"0.05 mm\"")
+  command
+      ->add_option("--limit", options->limit,
+                   "tolerances that keep the root mean square of the response below this, e.g. \"0.05 mm\"")
       ->type_name("LIMIT");
   command
       ->add_option("--reference", options->reference,

@@ -22,7 +22,9 @@ std::string response_column(const NamedUnit& response, const std::string& quanti
 void write_curves(TableFolder& folder, const StoredResult& result) {
   const StoredCoupling& stored = result.coupling;
   const CouplingResult& found = stored.found;
-  const Columns columns = columns_of(result, {"pose"}, [](const NamedUnit& response, Columns& list) {
+  Columns place{"pose"};
+  if (!result.time.empty()) place.push_back(column("time", "s"));
+  const Columns columns = columns_of(result, place, [](const NamedUnit& response, Columns& list) {
     for (const char* quantity : {"effect", "interaction", "worst_case", "root_sum_square"}) {
       list.push_back(response_column(response, quantity, response.unit));
     }
@@ -34,9 +36,10 @@ void write_curves(TableFolder& folder, const StoredResult& result) {
       const std::size_t z = cell / found.poses / found.subsets;
       const std::size_t k = cell / found.poses % found.subsets;
       std::vector<double> row{stored.linear[z], stored.angular[z], static_cast<double>(cell % found.poses)};
+      if (!result.time.empty()) row.push_back(result.time[cell % found.poses]);
       for (std::size_t at = cell; at < found.effect.size(); at += cells) {
-        row.insert(row.end(), {found.effect[at], found.interaction[at], found.worst_case[at],
-                               found.root_sum_square[at], found.cancellation[at]});
+        row.insert(row.end(), {found.effect[at], found.interaction[at], found.worst_case[at], found.root_sum_square[at],
+                               found.cancellation[at]});
       }
       table.row(stored.subsets[k], row);
     }

@@ -82,8 +82,9 @@ struct StoredResult {
   std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;
   std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows: all, unless the model chose
-  SensitivityResult sensitivity;      ///< `background` is empty in files of older versions
-  std::vector<std::uint64_t> factor_limb;  ///< [P] of a sensitivity result; empty in files of older versions
+  std::vector<std::size_t> signed_headline;  ///< that a summary of coupled sources shows
+  SensitivityResult sensitivity;             ///< `background` is empty in files of older versions
+  std::vector<std::uint64_t> factor_limb;    ///< [P] of a sensitivity result; empty in files of older versions
   std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
   std::string separation_measure;                                  ///< what length sensitivity.separation speaks of
   std::vector<std::string> published_class;  ///< [P] the literature's class of each error, where that is separated
@@ -158,7 +159,8 @@ Verification verify_result(const std::string& path);
 ///
 /// Tables of a coupling result: poses.csv and
 ///
-///     coupling.csv          subset | sizes of the errors, pose, and of each response effect, interaction, worst_case,
+///     coupling.csv          subset | sizes of the errors, pose, time (s) on a trajectory, and of each response effect,
+///                           interaction, worst_case,
 ///                           root_sum_square and cancellation, SI
 ///     coupling_summary.csv  subset | sizes, and of each response the poses behind it, effect_max and its pose,
 ///                           interaction_max, worst_case_max, root_sum_square_max, opposed_share, cancellation_max and

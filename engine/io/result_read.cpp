@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <system_error>
 
 #include "engine/base/error.h"
@@ -97,11 +98,20 @@ std::vector<NamedUnit> read_named(const h5::File& file, const std::string& group
 
 void read_responses(const h5::File& file, StoredResult& result) {
   result.responses = read_named(file, "/responses", "response");
-  const bool chosen = file.has_attribute("/responses", "headline");
-  const auto shown = chosen ? file.attribute<std::string>("/responses", "headline") : std::vector<std::string>();
-  for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    if (!chosen || std::ranges::find(shown, result.responses[r].name) != shown.end()) result.headline.push_back(r);
-  }
+  const auto read_chosen = [&](const std::string& attribute, std::vector<std::size_t> otherwise) {
+    if (!file.has_attribute("/responses", attribute)) return otherwise;
+    std::vector<std::size_t> chosen;
+    for (const std::string& name : file.attribute<std::string>("/responses", attribute)) {
+      const auto found = std::ranges::find(result.responses, name, &NamedUnit::name);
+      if (found == result.responses.end()) throw h5::Error("/responses " + attribute + " names an unknown response");
+      chosen.push_back(static_cast<std::size_t>(found - result.responses.begin()));
+    }
+    return chosen;
+  };
+  std::vector<std::size_t> all(result.responses.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  result.headline = read_chosen("headline", all);
+  result.signed_headline = read_chosen("signed_headline", result.headline);
 }
 
 void read_poses(const h5::File& file, StoredResult& result) {

@@ -85,10 +85,13 @@ void add_responses(ResultBuilder& result, const ModelDescription& model) {
   result.file().make_group("/responses");
   result.add("/responses/name", {"response"}, names, {"1", "Name of the response"});
   result.add("/responses/unit", {"response"}, texts(responses, unit_of<Response>), {"1", "SI unit of the response"});
-  if (model.headline.empty()) return;
-  std::vector<std::string> headline;
-  for (const std::size_t r : model.headline) headline.push_back(responses[r].name);
-  result.file().set_attribute("/responses", "headline", std::span(std::as_const(headline)));
+  const auto add_chosen = [&](const std::string& attribute, const std::vector<std::size_t>& chosen) {
+    std::vector<std::string> list;
+    for (const std::size_t r : chosen) list.push_back(responses[r].name);
+    if (!list.empty()) result.file().set_attribute("/responses", attribute, std::span(std::as_const(list)));
+  };
+  add_chosen("headline", model.headline);
+  add_chosen("signed_headline", model.signed_headline);
 }
 
 void add_run(ResultBuilder& result, const RunFacts& facts) {

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "engine/io/error_bound.h"
 #include "engine/io/study_file_parts.h"
 #include "engine/io/wording.h"
@@ -22,11 +24,14 @@ class Bounds {
   Bounds(const StudySection& root, const Study& study, const Model& model)
       : root_(root), analysis_(root.section("analysis")), study_(study), model_(model) {}
 
-  /// Of the distributions of what varies.
+  /// Of the distributions of what varies: the largest possible error, for a normal its standard deviation.
   void check_distributions() const {
     for (const FactorIndex factor : study_.analysis.factors) {
-      const double sigma = study_.errors.by_factor[factor.value].standard_deviation();
-      const auto problem = beyond_bound(model_, factor, sigma, "a standard deviation");
+      const Distribution& distribution = study_.errors.by_factor[factor.value];
+      const bool bounded = std::isfinite(distribution.half_width());
+      const auto problem =
+          beyond_bound(model_, factor, bounded ? distribution.half_width() : distribution.standard_deviation(),
+                       bounded ? "a largest error" : "a standard deviation");
       if (problem) refuse_distribution(model_.description().factors[factor.value], *problem);
     }
   }
@@ -92,7 +97,7 @@ class Bounds {
     const auto value = own ? own : errors.find(key_of(factor.dimension));
     if (!value) refuse(errors, key_of(factor.dimension), problem);
     const StudySection distribution = value->section();
-    refuse(distribution, distribution.find("sigma") ? "sigma" : "half_width", problem);
+    refuse(distribution, distribution.find("half_width") ? "half_width" : "sigma", problem);
   }
 
   /// At the error itself, at what sets all of its dimension, or at the case, where a factor set does.

@@ -136,9 +136,14 @@ const Factor* first_of(Dimension dimension, const CouplingStudy& study, const Mo
 
 void require_sizes(const StudySection& analysis, std::string_view key, Dimension dimension, const CouplingStudy& study,
                    const ModelDescription& model) {
-  if (analysis.find(key)) return;
   const Factor* factor = first_of(dimension, study, model);
-  if (factor == nullptr) return;
+  const auto value = analysis.find(key);
+  if (value && factor == nullptr) {
+    value->fail("gives sizes, but no source has an error that is " +
+                    std::string(dimension == Dimension::length ? "a " : "an ") + std::string(name(dimension)),
+                "remove it");
+  }
+  if (value || factor == nullptr) return;
   const std::string unit(display_unit(dimension).name);
   throw InputError(analysis.place(),
                    "key '" + std::string(key) + "' is missing in [analysis], for the sources have errors such as '" +

@@ -1,5 +1,6 @@
 #include "engine/io/tolerance_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -13,6 +14,8 @@ namespace poesy {
 namespace {
 
 constexpr const char* kPoses = "confirm_poses";
+/// Four standard deviations of a normal error reach as far as its part is large.
+constexpr double kShareOfPart = 0.25;
 
 void write_poses(TableFolder& folder, const StoredResult& result) {
   std::vector<std::string> columns;
@@ -41,9 +44,17 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   return study;
 }
 
-void set_tolerances(Study& study, std::span<const double> tolerances) {
+/// Names of the errors whose tolerance was cut go to `cut`.
+void set_tolerances(Study& study, const Model& model, std::span<const double> tolerances,
+                    std::vector<std::string>& cut) {
   for (std::size_t p = 0; p < tolerances.size(); ++p) {
-    study.errors.by_factor[study.analysis.factors[p].value] = Distribution::normal(tolerances[p]);
+    const FactorIndex factor = study.analysis.factors[p];
+    const double largest = kShareOfPart * model.error_bound(factor).size;
+    study.errors.by_factor[factor.value] = Distribution::normal(std::min(tolerances[p], largest));
+    if (tolerances[p] <= largest) continue;
+    const Factor& named = study.model().factors[factor.value];
+    const std::string text = named.name + " to " + readable_text({largest, named.dimension});
+    if (std::ranges::find(cut, text) == cut.end()) cut.push_back(text);
   }
 }
 
@@ -57,8 +68,8 @@ std::string write_study(const std::string& folder, const std::string& name, cons
 
 }  // namespace
 
-std::vector<std::string> write_confirmation(const std::string& folder, const StoredResult& result,
-                                            const ResponseTolerances& tolerances, const Catalog& catalog) {
+Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
+                                const ResponseTolerances& tolerances, const Catalog& catalog) {
   POESY_EXPECTS(tolerances.limit.has_value());
   Study study = monte_carlo_study(result, catalog);
   make_folder(folder);
@@ -69,16 +80,17 @@ std::vector<std::string> write_confirmation(const std::string& folder, const Sto
   const std::string limit = response.unit == "1"
                                 ? shortest(tolerances.limit->limit)
                                 : readable_text({tolerances.limit->limit, display(response).dimension});
-  std::vector<std::string> paths;
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  Confirmation written;
   const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
     study.title = "Confirms " + words + " that keep the mean of " + response.name + " below " + limit;
     study.errors = as_studied;
-    set_tolerances(study, values);
-    paths.push_back(write_study(folder, name, study));
+    set_tolerances(study, *model, values, written.cut);
+    written.paths.push_back(write_study(folder, name, study));
   };
   add("confirm_equal_effect", "tolerances of equal effect", tolerances.limit->equal_effect);
   add("confirm_equal_tolerance", "equal tolerances", tolerances.limit->equal_tolerance);
-  return paths;
+  return written;
 }
 
 }  // namespace poesy

@@ -28,11 +28,18 @@ struct ResponseTolerances {
 std::string write_tolerances(const std::string& folder, const StoredResult& result,
                              const ResponseTolerances& tolerances);
 
+/// The studies that confirm tolerances.
+struct Confirmation {
+  std::vector<std::string> paths;
+  std::vector<std::string> cut;  ///< "delta_1_0_y to 15 mm", each once
+};
+
 /// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
 /// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. Poses that
-/// came from a file are written beside them as confirm_poses.csv. Returns the paths of the studies. Precondition:
+/// came from a file are written beside them as confirm_poses.csv. A tolerance of a quarter of the part that it is an
+/// error of (Model::error_bound), or more, makes no sense: the studies take that quarter. Precondition:
 /// tolerances.limit. Throws FileError; InputError when the stored study cannot be read with this catalog.
-std::vector<std::string> write_confirmation(const std::string& folder, const StoredResult& result,
-                                            const ResponseTolerances& tolerances, const Catalog& catalog);
+Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
+                                const ResponseTolerances& tolerances, const Catalog& catalog);
 
 }  // namespace poesy

@@ -160,6 +160,9 @@ struct ModelDescription {
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
   std::vector<CouplingSource> sources;  ///< those of a coupling study that names none; no factor in two of them
   std::vector<std::size_t> headline;    ///< positions of the responses that a summary shows; empty: all of them
+  /// Those that a summary of coupled sources shows, with signs, for a norm cannot tell what cancels; empty: the
+  /// headline.
+  std::vector<std::size_t> signed_headline;
 
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
   const FactorSet* find_set(std::string_view set_name) const;

@@ -33,8 +33,10 @@ std::string subset_row(const StoredResult& result, std::size_t r, std::size_t at
   const CouplingResult& found = stored.found;
   const double rounding = rounding_at(stored, at / found.subsets % found.sizes);
   const auto cell = [&](double value) { return number(value, display(result.responses[r]).si, rounding); };
-  std::string text = fmt::format("{:<{}}  {:>11}  {:>5}", stored.subsets[at % found.subsets], width,
-                                 cell(found.effect_max[at]), found.effect_max_pose[at]);
+  const bool has_effect = found.effect_max[at] > rounding;
+  std::string text =
+      fmt::format("{:<{}}  {:>11}  {:>5}", stored.subsets[at % found.subsets], width, cell(found.effect_max[at]),
+                  has_effect ? std::to_string(found.effect_max_pose[at]) : "-");
   for (const double value : {found.root_sum_square_max[at], found.worst_case_max[at], found.interaction_max[at]}) {
     text += fmt::format("  {:>13}", cell(value));
   }
@@ -70,11 +72,13 @@ std::string coupling_table(const StoredResult& result) {
   for (const std::string& subset : stored.subsets) width = std::max(width, subset.size());
   std::string text = fmt::format(
       "{} sources of errors, alone and together; largest values over {} poses. interaction: together minus the sum of "
-      "each\nalone. opposed: share of the poses where the sum is less than its largest part\n",
+      "each\nalone. opposed: share of the poses where the sum is less than its largest part; a norm, which has no "
+      "sign, cannot "
+      "tell\n",
       stored.sources.size(), stored.found.poses);
   text += incomplete_text(result);
   for (std::size_t z = 0; z < stored.found.sizes; ++z) {
-    for (const std::size_t r : result.headline) text += response_table(result, z, r, width);
+    for (const std::size_t r : result.signed_headline) text += response_table(result, z, r, width);
   }
   return text;
 }

@@ -150,7 +150,7 @@ std::string evaluation_table(const StoredResult& result) {
   std::string text =
       fmt::format("{:<22} {:>6} {:>13} {:>13} {:>13}\n", "response", "unit", "mean", "smallest", "largest");
   const std::size_t all = e.poses * e.samples;
-  for (std::size_t r = 0; r < e.responses; ++r) {
+  for (const std::size_t r : result.headline) {
     double sum = 0.0;
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -lowest;

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/identification.h"
 #include "engine/run/monte_carlo.h"
 #include "engine/run/run_in_order.h"
 #include "engine/run/sensitivity.h"
@@ -147,6 +148,14 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
       [&](std::size_t, const SolveCounts& solves) { counter.add(solves); });
   if (!complete) return std::nullopt;
   return result;
+}
+
+std::optional<IdentificationResult> run_identification(const Study& study, const Model& model, const PoseSet& poses,
+                                                       const RunOptions& options) {
+  return identify(study.analysis, model.description(), [&](const ErrorTable& errors) {
+    return run_evaluation(model, study.solver, poses, errors, Pairing::every_pose_with_every_row, options,
+                          Outcomes::responses);
+  });
 }
 
 }  // namespace poesy

@@ -64,4 +64,8 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
                                                const ErrorTable& errors, Pairing pairing, const RunOptions& options,
                                                Outcomes outcomes = Outcomes::with_details);
 
+/// Identifies which of the study's errors deform the mechanism, see identify(). Empty when stopped.
+std::optional<IdentificationResult> run_identification(const Study& study, const Model& model, const PoseSet& poses,
+                                                       const RunOptions& options);
+
 }  // namespace poesy

@@ -41,6 +41,11 @@ std::string advice(const PoseTable& table, const Model& model) {
   return table.chart ? model.description().charts[*table.chart].advice : std::string();
 }
 
+std::string near_singular(double condition, double largest) {
+  return "is singular or nearly so: its condition number " + readable_text({condition, Dimension::number}, kDigits) +
+         " is above max_condition, " + shortest(largest);
+}
+
 /// A file's poses: refused with their line.
 class FileJudge {
  public:
@@ -54,7 +59,9 @@ class FileJudge {
     if (const auto reason = model_->unreachable(*pose)) {
       refuse(m, "is out of reach: " + *reason, "correct or remove this pose");
     }
-    return model_->condition(*pose);
+    const double condition = model_->condition(*pose);
+    if (condition <= selection_->max_condition) return condition;
+    refuse(m, near_singular(condition, selection_->max_condition), "remove this pose");
   }
 
  private:
@@ -91,9 +98,7 @@ class TrajectoryJudge {
     }
     const double condition = model_->condition(*pose);
     if (condition <= selection_->max_condition) return condition;
-    refuse(m,
-           "is singular or nearly so: its condition number " + readable_text({condition, Dimension::number}, kDigits) +
-               " is above max_condition, " + shortest(selection_->max_condition),
+    refuse(m, near_singular(condition, selection_->max_condition),
            elsewhere_ + " away from singular poses, or raise max_condition");
   }
 

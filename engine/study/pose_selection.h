@@ -32,7 +32,7 @@ struct PoseSelection {
   std::vector<std::size_t> grid_counts;  ///< for `grid`: one number per pose coordinate, or empty
   std::vector<Range> workspace;          ///< one range per pose coordinate; for all that search a box
   std::vector<JointLimit> limits;        ///< for all that search a box
-  double max_condition = 1e8;            ///< poses above it count as singular; for all but `file`
+  double max_condition = 1e8;            ///< poses above it count as singular
   std::string file;                      ///< as written in the study, for `file`
   PoseTable from_file;                   ///< its poses
   std::optional<Trajectory> trajectory;  ///< for `trajectory`; none in a study that is only evaluated and has none
@@ -48,7 +48,7 @@ struct RejectedPoses {
 
 struct SelectedPoses {
   PoseSet poses;
-  std::vector<double> condition;        ///< [M], see Model::condition; infinity only for `file`
+  std::vector<double> condition;        ///< [M], see Model::condition
   std::vector<RejectedPoses> rejected;  ///< most frequent first
   std::vector<double> time;             ///< [M] s, ascending, of a trajectory; else empty
 };
@@ -67,9 +67,9 @@ struct SelectedPoses {
 ///
 /// Throws InputError at the place of the limit that rejected most, or of the selection, when the box gives fewer poses
 /// than wanted (interior and grid: after max(100 000, 100 count) candidates); at count_place when poses of the boundary
-/// coincide to rounding; at the line of a file's first pose that does not exist or that the model cannot reach; for the
-/// first point of a trajectory to which no pose belongs, or one out of reach or above max_condition: at its line where
-/// the poses are a file's own, else at the study's trajectory.
+/// coincide to rounding; at the line of a file's first pose that does not exist, is out of reach or above
+/// max_condition; for the first point of a trajectory to which no pose belongs, or one out of reach or above
+/// max_condition: at its line where the poses are a file's own, else at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 
 }  // namespace poesy

@@ -76,6 +76,7 @@ ModelDescription describe() {
   description.factor_sets = machine_sets(head);
   description.workspace_note += " The travel of the slides and their order, X below Y, are chosen as well.";
   description.charts = {tip_chart(head)};
+  description.sources.push_back({"S", "slides"});
   description.curves.clear();
   description.separation.reset();
   return description;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "engine/base/contract.h"
+#include "models/three_prs/error_mapping.h"
 #include "models/three_prs/errors.h"
 #include "models/three_prs/evaluators.h"
 #include "models/three_prs/kinematics.h"
@@ -81,7 +82,8 @@ ModelDescription describe() {
   description.sources = {
       {"FS", "platform-hinges"}, {"T", "initial-position"}, {"R", "revolute-gap"}, {"L", "rod-length"}};
   description.fidelities = {"exact", "first-order"};
-  description.headline = {kComponents, kComponents + 1, kComponents + 2};
+  description.headline = {kComponents + 2, kComponents, kComponents + 1};
+  description.signed_headline = {kTip, kTip + 1, kTip + 2, kComponents};
   description.charts = charts();
   description.curves = curves();
   description.separation = separation_description();

@@ -15,9 +15,8 @@ using Matrix3 = lie::Matrix3<double>;
 
 constexpr std::size_t kXSlide = kLimbs + 1;
 constexpr std::size_t kYSlide = kLimbs + 2;
-constexpr std::size_t kTranslation = kFrames;
-constexpr std::size_t kRotation = kFrames + 1;
-constexpr std::size_t kSquareness = kFrames + 2;
+/// Frames after the head's, for slides are no copies of one another as limbs are.
+enum Frame : std::size_t { kXTranslation = kFrames, kXRotation, kYTranslation, kYRotation, kSquareness };
 
 struct Entry {
   std::string_view name;
@@ -29,24 +28,24 @@ struct Entry {
 };
 /// In the order of SlideSource.
 constexpr std::array<Entry, kSlideFactors> kEntries{{
-    {"x_position", kXSlide, kTranslation, "x", "EXX", "position error of the X slide along its travel"},
-    {"x_straightness_y", kXSlide, kTranslation, "y", "EYX", "straightness error of the X slide along y"},
-    {"x_straightness_z", kXSlide, kTranslation, "z", "EZX", "straightness error of the X slide along z"},
-    {"x_roll", kXSlide, kRotation, "x", "EAX", "roll of the X slide, about x"},
-    {"x_pitch", kXSlide, kRotation, "y", "EBX", "pitch of the X slide, about y"},
-    {"x_yaw", kXSlide, kRotation, "z", "ECX", "yaw of the X slide, about z"},
-    {"y_straightness_x", kYSlide, kTranslation, "x", "EXY", "straightness error of the Y slide along x"},
-    {"y_position", kYSlide, kTranslation, "y", "EYY", "position error of the Y slide along its travel"},
-    {"y_straightness_z", kYSlide, kTranslation, "z", "EZY", "straightness error of the Y slide along z"},
-    {"y_pitch", kYSlide, kRotation, "x", "EAY", "pitch of the Y slide, about x"},
-    {"y_roll", kYSlide, kRotation, "y", "EBY", "roll of the Y slide, about y"},
-    {"y_yaw", kYSlide, kRotation, "z", "ECY", "yaw of the Y slide, about z"},
+    {"x_position", kXSlide, kXTranslation, "x", "EXX", "position error of the X slide along its travel"},
+    {"x_straightness_y", kXSlide, kXTranslation, "y", "EYX", "straightness error of the X slide along y"},
+    {"x_straightness_z", kXSlide, kXTranslation, "z", "EZX", "straightness error of the X slide along z"},
+    {"x_roll", kXSlide, kXRotation, "x", "EAX", "roll of the X slide, about x"},
+    {"x_pitch", kXSlide, kXRotation, "y", "EBX", "pitch of the X slide, about y"},
+    {"x_yaw", kXSlide, kXRotation, "z", "ECX", "yaw of the X slide, about z"},
+    {"y_straightness_x", kYSlide, kYTranslation, "x", "EXY", "straightness error of the Y slide along x"},
+    {"y_position", kYSlide, kYTranslation, "y", "EYY", "position error of the Y slide along its travel"},
+    {"y_straightness_z", kYSlide, kYTranslation, "z", "EZY", "straightness error of the Y slide along z"},
+    {"y_pitch", kYSlide, kYRotation, "x", "EAY", "pitch of the Y slide, about x"},
+    {"y_roll", kYSlide, kYRotation, "y", "EBY", "roll of the Y slide, about y"},
+    {"y_yaw", kYSlide, kYRotation, "z", "ECY", "yaw of the Y slide, about z"},
     {"squareness", kYSlide, kSquareness, "", "C0Y", "squareness error of the Y slide to the X slide, about z"},
 }};
 
 Factor factor(const Entry& entry) {
   return {std::string(entry.name),
-          entry.frame == kTranslation ? Dimension::length : Dimension::angle,
+          entry.frame == kXTranslation || entry.frame == kYTranslation ? Dimension::length : Dimension::angle,
           entry.slide,
           entry.frame,
           std::string(entry.meaning) + " (" + std::string(entry.symbol) + ")",

@@ -30,7 +30,8 @@ inline constexpr std::size_t kSlideFactors = 13;
 using SlideErrors = std::span<const double, kSlideFactors>;
 
 /// x_position ... squareness, in the order of SlideSource, with the symbols of ISO 230-1 in their descriptions. The X
-/// slide counts as limb 4, the Y slide as limb 5; frames go on after the head's: translation, rotation, squareness.
+/// slide counts as limb 4, the Y slide as limb 5; frames go on after the
+/// head's: translation and rotation of each slide, squareness.
 std::vector<Factor> slide_factors();
 
 /// The head's frame as the slides' errors displace it, exactly: x -> R x + p takes head coordinates of a point to what

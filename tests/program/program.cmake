@@ -24,7 +24,9 @@ set_tests_properties(regression.golden PROPERTIES LABELS regression TIMEOUT 600)
 
 # Four million solves, three times over: too slow under the sanitizers, which see every part of it in other tests.
 if(NOT POESY_SANITIZE)
-  add_test(NAME regression.paper
-           COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/regression/paper_test.py $<TARGET_FILE:poesy>)
-  set_tests_properties(regression.paper PROPERTIES LABELS regression TIMEOUT 600)
+  foreach(paper IN ITEMS paper three_prs_paper)
+    add_test(NAME regression.${paper}
+             COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/regression/${paper}_test.py $<TARGET_FILE:poesy>)
+    set_tests_properties(regression.${paper} PROPERTIES LABELS regression TIMEOUT 600)
+  endforeach()
 endif()

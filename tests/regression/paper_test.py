@@ -6,30 +6,18 @@ Words must be the same. Numbers of converged solves may differ by 1 %, as last d
 published procedure hang on single unfinished solves, and so do its places in the ranking: there a number is enough.
 """
 
-import os
-import pathlib
-import re
-import subprocess
 import sys
-import tempfile
 import unittest
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "results/2upr-rpu-paper"
-NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e-?\d+)?")
+from regenerated import NUMBER, RESULTS, cells, figures_of, regenerated, rows_under
 
-
-def cells(line):
-    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+FOLDER = RESULTS / "2upr-rpu-paper"
 
 
 class Paper(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, "-B", FOLDER / "regenerate", folder], check=True,
-                           env={**os.environ, "POESY": PROGRAM})
-            cls.written = (pathlib.Path(folder) / "COMPARISON.md").read_text(encoding="utf-8")
-            cls.figures = {path.name: path.read_text(encoding="utf-8") for path in (pathlib.Path(folder) / "figures").iterdir()}
+        cls.written, cls.figures = regenerated("2upr-rpu-paper", PROGRAM)
         cls.kept = (FOLDER / "COMPARISON.md").read_text(encoding="utf-8")
 
     def compare(self, ours, theirs, exact):
@@ -54,7 +42,7 @@ class Paper(unittest.TestCase):
                 self.compare(a, b, exact=not after and not ("rank" in header[0] and n == 2))
 
     def test_figures_are_what_the_command_writes(self):
-        kept = {path.name: path.read_text(encoding="utf-8") for path in (FOLDER / "figures").iterdir()}
+        kept = figures_of(FOLDER)
         self.assertEqual(set(self.figures), set(kept))
         for name, text in self.figures.items():
             with self.subTest(name):
@@ -68,8 +56,7 @@ class Paper(unittest.TestCase):
                         self.assertAlmostEqual(x, y, delta=max(0.01 * abs(y), 1e-9), msg=b)
 
     def rows(self, heading):
-        section = self.written.split(heading)[1].split("\n## ")[0]
-        return [cells(line) for line in section.splitlines() if line.startswith("|")][2:]
+        return rows_under(self.written, heading)
 
     def test_tables_6_and_7_are_exact(self):
         for row in self.rows("## Tables 6 and 7"):

@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ErrorBound, SmallerOnesPass) {
   EXPECT_NO_THROW(read("[errors]\nlinear = { distribution = \"normal\", sigma = \"59.9 mm\" }\n"));
-  EXPECT_NO_THROW(read("[errors]\nlinear = { distribution = \"uniform\", half_width = \"100 mm\" }\n"));
+  EXPECT_NO_THROW(read("[errors]\nlinear = { distribution = \"uniform\", half_width = \"59 mm\" }\n"));
   EXPECT_NO_THROW(read("[errors]\noverride = { delta_2 = { distribution = \"normal\", sigma = \"1 m\" } }\n"))
       << "delta_2 does not vary in this study";
 }

@@ -65,10 +65,10 @@ TEST_F(CouplingFile, HasNamedAxesAndSaysWhichErrorIsWhere) {
 
 TEST_F(CouplingFile, KnowsTheResponsesOfASummary) {
   Catalog catalog = test::fake_catalog();
-  catalog.front().description.headline = {1};
+  catalog.front().description.signed_headline = {1};
   example_.study.mechanism.entry = &catalog.front();
   example_.write_coupling(path_);
-  EXPECT_EQ(read_result(path_).headline, std::vector<std::size_t>{1});
+  EXPECT_EQ(read_result(path_).signed_headline, std::vector<std::size_t>{1});
 }
 
 std::string first_lines(const std::string& text, std::size_t count) {

@@ -99,7 +99,7 @@ TEST_F(ToleranceFiles, ConfirmationVariesTheSameErrorsWithTheirTolerances) {
   example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
   example_.study.analysis.background = Background{{FactorIndex(2)}, 1e-3, 0.0};
   example_.study.seed = 77;
-  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_);
+  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   ASSERT_EQ(paths, (std::vector<std::string>{folder_ / "out/confirm_equal_effect.toml",
                                              folder_ / "out/confirm_equal_tolerance.toml"}));
   const Study equal_effect = read_back(paths[0]);
@@ -123,7 +123,7 @@ TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfAFileAlong) {
   example_.study.poses = {};
   example_.study.poses.select = PoseSelection::Select::file;
   example_.study.poses.file = "gone/poses.csv";
-  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_);
+  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   const PoseSet found = read_back(paths[0]).poses.from_file.points;
   ASSERT_EQ(found.size(), example_.poses.poses.size());
   for (std::size_t c = 0; c < found.coordinates(); ++c) EXPECT_EQ(found.column(c), example_.poses.poses.column(c));
@@ -133,7 +133,7 @@ TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfATrajectoryFileAlong) {
   example_.study.poses = {};
   example_.study.poses.select = PoseSelection::Select::trajectory;
   example_.study.poses.trajectory.emplace().file = "gone/curve.csv";
-  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_);
+  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   const Study study = read_back(paths[0]);
   EXPECT_EQ(study.poses.select, PoseSelection::Select::file);
   EXPECT_EQ(study.poses.from_file.points.size(), example_.poses.poses.size());

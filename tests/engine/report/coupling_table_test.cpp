@@ -13,7 +13,7 @@ StoredResult example() {
   StoredResult result;
   result.kind = "coupling";
   result.responses = {{"tilt", "rad"}, {"x", "m"}};
-  result.headline = {1};
+  result.signed_headline = {1};
   StoredCoupling& stored = result.coupling;
   stored.size_names = {"0.1 mm"};
   stored.linear = {1e-4};
