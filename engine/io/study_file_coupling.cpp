@@ -137,18 +137,26 @@ const Factor* first_of(Dimension dimension, const CouplingStudy& study, const Mo
 void require_sizes(const StudySection& analysis, std::string_view key, Dimension dimension, const CouplingStudy& study,
                    const ModelDescription& model) {
   const Factor* factor = first_of(dimension, study, model);
-  const auto value = analysis.find(key);
-  if (value && factor == nullptr) {
-    value->fail("gives sizes, but no source has an error that is " +
-                    std::string(dimension == Dimension::length ? "a " : "an ") + std::string(name(dimension)),
-                "remove it");
-  }
-  if (value || factor == nullptr) return;
+  if (analysis.find(key) || factor == nullptr) return;
   const std::string unit(display_unit(dimension).name);
   throw InputError(analysis.place(),
                    "key '" + std::string(key) + "' is missing in [analysis], for the sources have errors such as '" +
                        factor->name + "'",
                    "write sizes, e.g. " + std::string(key) + " = [\"0.1 " + unit + "\"]");
+}
+
+/// Sizes of a dimension that no error of the sources has, whatever the pattern leaves of them, are a mistake.
+void refuse_idle_sizes(const StudySection& analysis, std::string_view key, Dimension dimension,
+                       const CouplingStudy& study, const ModelDescription& model) {
+  const auto value = analysis.find(key);
+  if (!value) return;
+  for (const ErrorSource& source : study.sources) {
+    for (const FactorIndex factor : source.factors) {
+      if (model.factors[factor.value].dimension == dimension) return;
+    }
+  }
+  value->fail("gives sizes, but no source has an error with that dimension (" + std::string(name(dimension)) + ")",
+              "remove it");
 }
 
 void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study) {
@@ -192,6 +200,8 @@ CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription
   if (use == StudyUse::run) {
     require_sizes(analysis, "linear", Dimension::length, study, model);
     require_sizes(analysis, "angular", Dimension::angle, study, model);
+    refuse_idle_sizes(analysis, "linear", Dimension::length, study, model);
+    refuse_idle_sizes(analysis, "angular", Dimension::angle, study, model);
   }
   return study;
 }

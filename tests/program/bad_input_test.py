@@ -166,6 +166,27 @@ class BadInput(ProgramTest):
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertEqual(done.stderr.count(b"\n"), 1, done.stderr)
 
+    def test_a_singular_pose_of_a_file(self):
+        # Rods as long as the radii differ, on the level: the platform cannot be driven from there.
+        self.write("p.csv", "alpha,beta,z\n0,0,0.3\n")
+        study = """\
+format = "poesy-study"
+version = 1
+mechanism = { model = "3-prs", geometry = { l = "115.0000001 mm" } }
+poses = { select = "file", file = "p.csv" }
+analysis = { factors = "rod-length", samples = 10 }
+"""
+        self.write("s.toml", study)
+        done = self.poesy("run", "s.toml", "--quiet")
+        message = done.stderr.decode()
+        self.assertEqual(done.returncode, 2, message)
+        for word in ("p.csv:2:1", "pose 1 (alpha = 0", "singular", "condition number", "1e+08"):
+            self.assertIn(word, message)
+        self.write("e.csv", "l_1\n1e-4\n")
+        done = self.poesy("evaluate", "s.toml", "--poses", "p.csv", "--errors", "e.csv", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(b"warning: p.csv:2: pose 1 is singular", done.stderr)
+
     def test_files_that_cannot_be_read(self):
         for arguments in [["run", "absent.toml"], ["show", "absent.h5"], ["verify", "absent.h5"]]:
             with self.subTest(arguments):

@@ -53,6 +53,16 @@ class Tolerances(ProgramTest):
             at = list(file["response"].asstr()).index(RESPONSE)
             self.assertEqual([float(row["equal_effect"]) for row in table.values()], list(group["equal_effect"][at]))
 
+    def test_confirmation_stays_within_the_parts(self):
+        # Lengths hardly turn the platform, so their tolerances for an angle outgrow it.
+        template = self.succeeds("template", "2upr-rpu").replace("count = 158", "count = 5").replace("samples = 1000", "samples = 300")
+        self.write("whole.toml", template)
+        self.succeeds("run", "whole.toml", "-o", "w.h5", "--quiet")
+        printed = self.succeeds("tolerances", "w.h5", "--response", "angular_deformation", "--limit", "0.2 deg", "-d", "t")
+        self.assertIn("cut the tolerance of delta_1_0_y to 15 mm", printed)
+        for name in ("equal_effect", "equal_tolerance"):
+            self.succeeds("check", f"t/confirm_{name}.toml")
+
     def test_writes_beside_the_result_unless_told_otherwise(self):
         printed = self.succeeds("tolerances", self.result(), "--response", RESPONSE, "--limit", "0.05 mm")
         self.assertIn("poesy run r_tolerances/confirm_equal_effect.toml", printed)

@@ -83,6 +83,17 @@ INSTANTIATE_TEST_SUITE_P(
                 {"case 'case 1' gives delta_2"}}),
     [](const testing::TestParamInfo<BadSize>& tested) { return std::string(tested.param.name); });
 
+TEST(ErrorBound, OfTheLargestPossibleError) {
+  for (const char* shape : {"uniform", "triangular"}) {
+    EXPECT_THROW(read("[errors]\nlinear = { distribution = \"" + std::string(shape) +
+                      "\", half_width = \"60 mm\" }\n"),
+                 InputError);
+  }
+  EXPECT_THROW(read("[errors]\nlinear = { distribution = \"truncated-normal\", sigma = \"1 mm\", half_width = "
+                    "\"60 mm\" }\n"),
+               InputError);
+}
+
 TEST(ErrorBound, SmallerOnesPass) {
   EXPECT_NO_THROW(read("[errors]\nlinear = { distribution = \"normal\", sigma = \"59.9 mm\" }\n"));
   EXPECT_NO_THROW(read("[errors]\nlinear = { distribution = \"uniform\", half_width = \"59 mm\" }\n"));

@@ -76,6 +76,16 @@ TEST(StudyOfCoupling, KeepsWhatThePatternLeaves) {
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(0), FactorIndex(2)}));
 }
 
+TEST(StudyOfCoupling, RefusesSizesOfNothing) {
+  try {
+    coupling_of("linear = [\"1 mm\"]\nangular = [\"1 deg\"]\n" + kLengths);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no source has an error with that dimension (angle)"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(StudyOfCoupling, NeedsSizesOnlyOfWhatItHas) {
   EXPECT_TRUE(coupling_of("linear = [\"1 mm\"]\n" + kLengths).angular.empty());
   EXPECT_TRUE(coupling_of("linear = [\"1 mm\"]\ncomponents = [\"x\"]\n").angular.empty());

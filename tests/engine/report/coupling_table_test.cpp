@@ -41,7 +41,8 @@ TEST(CouplingTable, ShowsEachHeadlineResponseAtEachSize) {
   EXPECT_EQ(
       result_tables(example(), "x"),
       "2 sources of errors, alone and together; largest values over 4 poses. interaction: together minus the sum "
-      "of each\nalone. opposed: share of the poses where the sum is less than its largest part\n"
+      "of each\nalone. opposed: share of the poses where the sum is less than its largest part; a norm, which has no "
+      "sign, cannot tell\n"
       "\n"
       "0.1 mm: x [mm]\n"
       "subset  max|effect|   pose            rss     worst case    interaction    opposed  cancellation\n"
@@ -54,6 +55,12 @@ TEST(CouplingTable, SaysWherePosesAreLeftOut) {
   StoredResult result = example();
   result.coupling.found.count[4] = 3;
   EXPECT_NE(coupling_table(result).find("some subsets leave out poses"), std::string::npos);
+}
+
+TEST(CouplingTable, NamesNoPoseOfRounding) {
+  StoredResult result = example();
+  result.coupling.found.effect_max[4] = 1e-16;
+  EXPECT_NE(coupling_table(result).find("T                 0      -"), std::string::npos) << coupling_table(result);
 }
 
 TEST(CouplingTable, CallsRoundingZero) {

@@ -427,11 +427,11 @@ TEST(MachineDescription, ExtendsTheHeads) {
   for (std::size_t r = 0; r < 12; ++r) EXPECT_EQ(kMachine.responses[r].name, kHead.responses[r].name);
 }
 
-TEST(MachineDescription, BothMechanismsShowTheNorms) {
+TEST(MachineDescription, BothMechanismsShowTheNormsTheTipFirst) {
   for (const ModelDescription* description : {&kHead, &kMachine}) {
     std::vector<std::string> shown;
     for (const std::size_t r : description->headline) shown.push_back(description->responses.at(r).name);
-    EXPECT_EQ(shown, (std::vector<std::string>{"rotation", "position", "tip_position"}));
+    EXPECT_EQ(shown, (std::vector<std::string>{"tip_position", "rotation", "position"}));
   }
 }
 
