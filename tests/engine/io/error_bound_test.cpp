@@ -85,8 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ErrorBound, OfTheLargestPossibleError) {
   for (const char* shape : {"uniform", "triangular"}) {
-    EXPECT_THROW(read("[errors]\nlinear = { distribution = \"" + std::string(shape) +
-                      "\", half_width = \"60 mm\" }\n"),
+    EXPECT_THROW(read("[errors]\nlinear = { distribution = \"" + std::string(shape) + "\", half_width = \"60 mm\" }\n"),
                  InputError);
   }
   EXPECT_THROW(read("[errors]\nlinear = { distribution = \"truncated-normal\", sigma = \"1 mm\", half_width = "
