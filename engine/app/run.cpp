@@ -9,6 +9,7 @@
 #include "engine/app/facts.h"
 #include "engine/app/interrupt.h"
 #include "engine/app/progress.h"
+#include "engine/app/resumable.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
@@ -26,7 +27,24 @@ struct Options {
   std::size_t threads = 0;
   std::optional<std::uint64_t> seed;
   bool quiet = false;
+  ResumeOptions resume;
+  std::string program;  ///< as it was called
 };
+
+/// The command line that continues this run.
+std::string resume_command(const Options& options) {
+  std::vector<std::string> words{options.program, "run", options.study};
+  const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
+  if (!options.result.empty()) add("-o", options.result);
+  if (options.threads != 0) add("--threads", std::to_string(options.threads));
+  if (options.seed) add("--seed", std::to_string(*options.seed));
+  if (options.resume.every != ResumeOptions().every) add("--checkpoint-every", options.resume.every);
+  if (!options.resume.max_wall.empty()) add("--max-wall", options.resume.max_wall);
+  if (options.resume.keep) words.emplace_back("--keep-checkpoint");
+  if (options.quiet) words.emplace_back("--quiet");
+  words.emplace_back("--resume");
+  return shell_command(words);
+}
 
 /// study.toml gives study.h5 in the current folder.
 std::string default_result(const std::string& study) {
@@ -113,27 +131,48 @@ int finish(const Job& job, const std::string& study_path, const SolveCounts& sol
   return kTooManyNotConverged;
 }
 
+/// run_study, and what is left to say about its checkpoints when it fails.
+std::optional<SolveCounts> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
+  try {
+    const auto solves = run_study(job);
+    printer.finish();
+    return solves;
+  } catch (const BytesError& error) {
+    printer.finish();
+    resumable.refuse_state(error);
+  } catch (const FileError&) {
+    printer.finish();
+    resumable.rescue();
+    throw;
+  }
+}
+
 int run(const Options& options) {
   Study study = read_study(options.study, registry(), StudyUse::run);
   if (options.seed) study.seed = *options.seed;
   const std::string path = options.result.empty() ? default_result(options.study) : options.result;
   check_result_path(path);
+  ResumableRun resumable(options.resume, path, resume_command(options));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);
+  resumable.start(identity_of(study, poses.poses), options.quiet);
   ProgressPrinter printer(options.quiet);
-  const Job job{
-      study,
-      *model,
-      std::move(poses),
-      path,
-      {resolved_threads(options.threads), [&](const Progress& progress) { printer(progress); }, &catch_interrupts()},
-      std::chrono::steady_clock::now()};
-  const std::optional<SolveCounts> solves = run_study(job);
-  printer.finish();
+  const auto on_progress = [&](const Progress& progress) {
+    printer(progress);
+    resumable.check_time();
+  };
+  const Job job{study,
+                *model,
+                std::move(poses),
+                path,
+                {resolved_threads(options.threads), on_progress, &catch_interrupts(), &resumable.checkpoints()},
+                resumable.begin()};
+  const std::optional<SolveCounts> solves = run_to_end(job, resumable, printer);
   if (!solves) {
-    std::fputs("poesy: interrupted; nothing was written, run the study again\n", stderr);
+    resumable.explain_interruption();
     return kInterrupted;
   }
+  resumable.finish();
   return finish(job, options.study, *solves);
 }
 
@@ -152,8 +191,14 @@ void add_run(CLI::App& program, Action& action) {
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7fffffffffffffff}))
       ->type_name("S");
   command->add_flag("--quiet", options->quiet, "no progress");
-  command->footer("Example: poesy run study.toml -o result.h5 --threads 2");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  options->resume.add_to(*command);
+  command->footer(
+      "Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once.\n"
+      "Example: poesy run study.toml -o result.h5 --threads 2");
+  command->callback([options, &program, &action] {
+    options->program = program.get_name();
+    action = [options] { return run(*options); };
+  });
 }
 
 }  // namespace poesy::app

@@ -109,8 +109,10 @@ void add_run(ResultBuilder& result, const RunFacts& facts) {
 
 void write_file(const std::string& path, h5::File& file) {
   file.set_attribute("/", "content_sha256", content_sha256(file));
+  const auto image = file.image();
   FileWriter writer(path);
-  writer.write(file.image());
+  writer.expect(image.size());
+  writer.write(image);
   writer.commit();
 }
 

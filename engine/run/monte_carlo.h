@@ -17,12 +17,18 @@ struct ResponseSamples {
   QuantileSketch sketch;
 
   void merge(const ResponseSamples& other);
+  void write(ByteWriter& to) const;
+  static ResponseSamples read(ByteReader& from);
 };
 
 /// What one work unit of a Monte Carlo study contributes.
 struct PoseUnit {
   std::vector<ResponseSamples> responses;  ///< [R], over the samples that count
   SolveCounts solves;
+
+  void merge(const PoseUnit& other);
+  void write(ByteWriter& to) const;
+  static PoseUnit read(ByteReader& from, std::size_t responses);
 };
 
 /// Solves work units of a Monte Carlo study serially, all factors varying together. Factor f draws from the address
@@ -45,27 +51,6 @@ class PoseUnitEvaluator {
   std::vector<SolveStatus> status_;
   std::vector<std::uint32_t> iterations_;
   std::vector<double> kept_;  ///< one response of the samples that count
-};
-
-/// Puts units together, in the order of the plan. Holds the samples of one pose, as sketches, and those of all poses
-/// together: memory grows neither with the samples nor, but for the result, with the poses.
-class MonteCarloCollector {
- public:
-  MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis);
-
-  /// Units of a pose come one after another.
-  void add(PoseIndex pose, const PoseUnit& unit);
-  /// Precondition: every unit was added.
-  MonteCarloResult result() &&;
-
- private:
-  void finish_pose();
-
-  std::size_t samples_;
-  PoseIndex pose_;
-  PoseUnit at_pose_;
-  std::vector<ResponseSamples> overall_;  ///< [R]
-  MonteCarloResult result_;
 };
 
 }  // namespace poesy

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/bytes.h"
 #include "engine/model/pose_set.h"
 #include "engine/model/status.h"
 
@@ -22,6 +23,9 @@ struct SolveCounts {
   std::uint64_t not_converged() const;
   void add(SolveStatus status, std::uint32_t sample_iterations);
   void merge(const SolveCounts& other);
+
+  void write(ByteWriter& to) const;
+  static SolveCounts read(ByteReader& from);
 };
 
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined.
