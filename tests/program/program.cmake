@@ -13,6 +13,8 @@ program_test(bad_input unit)
 program_test(oracle regression)
 program_test(determinism determinism)
 program_test(interruption robustness)
+program_test(kill robustness)
+program_test(resume robustness)
 program_test(tolerances unit)
 
 add_test(NAME regression.golden
