@@ -1,7 +1,5 @@
 #include <benchmark/benchmark.h>
 
-#include <mutex>
-
 #include "bench/instruction_sets.h"
 #include "bench/published_study.h"
 #include "bench/reference_model.h"
@@ -43,13 +41,7 @@ void all_errors(benchmark::State& state, const std::string& isa, double scale) {
   const Study study = bench::published_study(bench::kPublishedPoses, kCount);
   const auto model = build_model(study.mechanism);
   const PoseSet poses = select_poses(study.poses, *model).poses;
-  std::unique_ptr<Evaluator> evaluator;
-  {
-    static std::mutex environment;
-    const std::lock_guard lock(environment);
-    bench::choose_instruction_set(isa);
-    evaluator = model->evaluator(study.solver);
-  }
+  const std::unique_ptr<Evaluator> evaluator = bench::evaluator_with(isa, *model, study.solver);
   const std::size_t factors = model->description().factors.size();
   std::vector<FactorIndex> varied;
   for (std::size_t f = 0; f < factors; ++f) varied.emplace_back(f);

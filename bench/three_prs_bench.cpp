@@ -1,67 +1,121 @@
 #include <benchmark/benchmark.h>
 
 #include <random>
-#include <string_view>
+#include <string>
 #include <vector>
 
+#include "bench/instruction_sets.h"
 #include "models/registry.h"
+#include "models/three_prs/closure_solver.h"
 
 namespace {
 
 using namespace poesy;
 
+constexpr std::size_t kPoses = 20;
+constexpr std::size_t kBlocks = 2;  // what a core's second cache holds, as after drawing
 constexpr std::size_t kSamples = 1000;
 
-/// Blocks of normal errors of 0.1 mm and 0.1 mrad at one pose, one thread.
-class Blocks {
+/// Every sample by close_limbs.
+class ReferenceEvaluator final : public Evaluator {
  public:
-  Blocks(std::size_t fidelity, std::string_view factors) : entry_(*find(registry(), "3-prs")) {
-    std::vector<double> geometry;
-    for (const GeometryParameter& parameter : entry_.description.geometry) geometry.push_back(parameter.published);
-    model_ = entry_.build(geometry, fidelity);
-    evaluator_ = model_->evaluator({});
-    varied_ = entry_.description.find_set(factors)->factors;
-    errors_.assign(entry_.description.factors.size(), 0.0);
-    responses_.resize(entry_.description.responses.size() * kSamples);
-    std::mt19937_64 engine(1);
-    std::normal_distribution<double> error(0.0, 1e-4);
-    values_.resize(varied_.size() * kSamples);
-    for (double& value : values_) value = error(engine);
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+    using namespace three_prs;
+    const Configuration nominal = configuration({}, {samples.pose[0], samples.pose[1], samples.pose[2]});
+    const ClosureStart start({}, nominal);
+    for (std::size_t b = 0; b < samples.count; ++b) {
+      const auto limbs = limbs_of_sample({}, nominal, samples, b);
+      PlatformMotion motion = start(limbs);
+      const Closing closing = close_limbs(limbs, nominal.platform.p, {}, motion);
+      const lie::Vector3<double> theta = lie::log(motion.E);
+      for (std::size_t k = 0; k < 3; ++k) {
+        outcomes.responses[k * samples.count + b] = theta[static_cast<Eigen::Index>(k)];
+        outcomes.responses[(k + 3) * samples.count + b] = motion.dr[static_cast<Eigen::Index>(k)];
+      }
+      outcomes.status[b] = closing.status;
+      outcomes.iterations[b] = closing.iterations;
+    }
   }
-
-  void evaluate() {
-    evaluator_->evaluate({pose_, errors_, varied_, values_, kSamples}, {responses_, status_, iterations_, {}});
-  }
-
-  double mean_iterations() const {
-    double sum = 0.0;
-    for (const std::uint32_t iterations : iterations_) sum += iterations;
-    return sum / kSamples;
-  }
-
- private:
-  const CatalogEntry& entry_;
-  std::unique_ptr<Model> model_;
-  std::unique_ptr<Evaluator> evaluator_;
-  std::vector<FactorIndex> varied_;
-  std::vector<double> pose_{0.1, -0.2, 0.8}, errors_, values_, responses_;
-  std::vector<SolveStatus> status_ = std::vector<SolveStatus>(kSamples);
-  std::vector<std::uint32_t> iterations_ = std::vector<std::uint32_t>(kSamples);
 };
 
-void solves(benchmark::State& state, std::size_t fidelity, std::string_view factors) {
-  Blocks blocks(fidelity, factors);
-  for (auto _ : state) {
-    blocks.evaluate();
-    benchmark::ClobberMemory();
+/// A set of factors, and how its samples are solved.
+struct Case {
+  std::size_t fidelity;
+  std::string isa;  ///< "scalar" for the reference
+  std::vector<FactorIndex> varied;
+};
+
+std::unique_ptr<Evaluator> evaluator_of(const Case& which, const ModelDescription& description) {
+  if (which.isa == "scalar") return std::make_unique<ReferenceEvaluator>();
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : description.geometry) geometry.push_back(parameter.published);
+  const auto model = find(registry(), description.name)->build(geometry, which.fidelity);
+  return bench::evaluator_with(which.isa, *model, {});
+}
+
+/// Blocks of normal errors of 0.1 mm and 0.1 mrad at pose after pose.
+void solves(benchmark::State& state, const Case& which) {
+  const ModelDescription& description = find(registry(), "3-prs")->description;
+  const std::unique_ptr<Evaluator> evaluator = evaluator_of(which, description);
+  std::mt19937_64 engine(1);
+  std::vector<double> poses;
+  for (std::size_t n = 0; n < 3 * kPoses; ++n) {
+    poses.push_back(
+        std::uniform_real_distribution<double>(description.pose_lower[n % 3], description.pose_upper[n % 3])(engine));
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSamples));
-  state.counters["iterations"] = blocks.mean_iterations();
+  std::normal_distribution<double> error(0.0, 1e-4);
+  const std::size_t size = which.varied.size() * kSamples;
+  std::vector<double> values(kBlocks * size);
+  for (double& value : values) value = error(engine);
+  const std::vector<double> errors(description.factors.size(), 0.0);
+  std::vector<double> responses(description.responses.size() * kSamples);
+  std::vector<SolveStatus> status(kSamples);
+  std::vector<std::uint32_t> iterations(kSamples);
+  double total = 0.0, iterated = 0.0;
+  std::size_t n = 0;
+  for (auto _ : state) {
+    evaluator->evaluate({std::span(poses).subspan(3 * (n % kPoses), 3), errors, which.varied,
+                         std::span(values).subspan(n % kBlocks * size, size), kSamples},
+                        {responses, status, iterations, {}});
+    benchmark::ClobberMemory();
+    if (n < kPoses) {
+      for (const std::uint32_t each : iterations) iterated += each;
+      total += kSamples;
+    }
+    ++n;
+  }
+  state.counters["solves/s"] = benchmark::Counter(static_cast<double>(n * kSamples), benchmark::Counter::kIsRate);
+  state.counters["iterations/solve"] = benchmark::Counter(iterated / total, benchmark::Counter::kAvgThreads);
+}
+
+void add(const std::string& name, const Case& which) {
+  benchmark::RegisterBenchmark(("3-prs/" + name + "/" + which.isa).c_str(),
+                               [=](benchmark::State& state) { solves(state, which); })
+      ->ThreadRange(1, 2)
+      ->UseRealTime()
+      ->MeasureProcessCPUTime()
+      ->Unit(benchmark::kMicrosecond);
+}
+
+void add_all() {
+  constexpr std::size_t kExact = 0, kFirstOrder = 1;
+  const ModelDescription& description = find(registry(), "3-prs")->description;
+  const std::vector<FactorIndex>& all = description.find_set("all")->factors;
+  const std::vector<FactorIndex> one{*description.find_factor("theta_A_x_2")};
+  add("exact, 51 errors", {kExact, "scalar", all});
+  add("exact, 1 error", {kExact, "scalar", one});
+  for (const std::string& isa : bench::instruction_sets()) {
+    add("exact, 51 errors", {kExact, isa, all});
+    add("exact, 1 error", {kExact, isa, one});
+    add("first order, 51 errors", {kFirstOrder, isa, all});
+  }
 }
 
 }  // namespace
 
-BENCHMARK_CAPTURE(solves, exact_all_errors, 0, "all")->UseRealTime()->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(solves, exact_three_errors, 0, "rod-length")->UseRealTime()->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(solves, first_order_all_errors, 1, "all")->UseRealTime()->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(solves, first_order_three_errors, 1, "rod-length")->UseRealTime()->MeasureProcessCPUTime();
+int main(int argc, char** argv) {
+  add_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -9,6 +9,7 @@
 #include "engine/app/exit_code.h"
 #include "engine/io/study_file.h"
 #include "engine/run/cases.h"
+#include "engine/run/coupling_rows.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/identification.h"
 #include "engine/run/monte_carlo.h"
@@ -115,6 +116,19 @@ Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& pos
           })};
 }
 
+Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingRows rows = coupling_rows(coupling, study.model());
+  const ErrorTable table = coupling_table(coupling, study.model());
+  const std::size_t kept = 6 * sizeof(double) * coupling.sizes() * rows.subsets.size() * study.model().responses.size();
+  return {fmt::format("{} sizes x {} sets of errors x {} poses = {} solves", coupling.sizes(), rows.errors.size(),
+                      poses.size(), table.rows * poses.size()),
+          kept * poses.size(), table_seconds(poses, [&](const PoseSet& some) {
+            static_cast<void>(run_evaluation(model, study.solver, some, table, Pairing::every_pose_with_every_row,
+                                             {1, {}, {}}, Outcomes::responses));
+          })};
+}
+
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
   switch (study.analysis.kind) {
     case Analysis::Kind::sensitivity:
@@ -124,9 +138,26 @@ Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
     case Analysis::Kind::evaluate:
       return cases_outlook(study, model, poses);
     case Analysis::Kind::monte_carlo:
+      return monte_carlo_outlook(study, model, poses);
+    case Analysis::Kind::coupling:
       break;
   }
-  return monte_carlo_outlook(study, model, poses);
+  return coupling_outlook(study, model, poses);
+}
+
+/// What a trajectory asks of the mechanism; empty for other poses.
+std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& model) {
+  if (poses.time.empty()) return {};
+  std::string text = fmt::format("# trajectory: {} poses from {:.6g} s to {:.6g} s", poses.poses.size(),
+                                 poses.time.front(), poses.time.back());
+  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    const std::vector<double> values = poses.poses.column(c);
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    text += fmt::format(", {} {} to {}", coordinate.name, readable_text({*least, coordinate.dimension}, 6),
+                        readable_text({*most, coordinate.dimension}, 6));
+  }
+  return text + "\n";
 }
 
 int check(const std::string& path) {
@@ -143,6 +174,7 @@ int check(const std::string& path) {
                          expected.thread_seconds / static_cast<double>(threads), threads)
                  .c_str(),
              stdout);
+  std::fputs(trajectory_line(poses, study.model()).c_str(), stdout);
   for (const RejectedPoses& rejected : poses.rejected) {
     std::fputs(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason).c_str(), stdout);
   }

@@ -1,9 +1,5 @@
 #include "engine/app/duration.h"
 
-#include <array>
-#include <string_view>
-#include <utility>
-
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/io/wording.h"
@@ -11,16 +7,14 @@
 namespace poesy::app {
 
 double parse_duration(const std::string& text, const std::string& option) {
-  constexpr std::array<std::pair<std::string_view, double>, 3> kUnits{{{"min", 60.0}, {"s", 1.0}, {"h", 3600.0}}};
-  for (const auto& [unit, seconds] : kUnits) {
-    if (!text.ends_with(unit)) continue;
-    std::string_view number(text);
-    number.remove_suffix(unit.size());
-    while (number.ends_with(' ')) number.remove_suffix(1);
-    const auto value = parse_number(number);
-    if (value && *value > 0.0) return *value * seconds;
+  constexpr std::string_view kRemedy = "give a time greater than zero with s, min or h, such as \"10 min\"";
+  try {
+    const Quantity quantity = parse_quantity(text);
+    if (quantity.dimension == Dimension::time && quantity.si > 0.0) return quantity.si;
+  } catch (const QuantityError&) {
+    // The same answer for all that is no time.
   }
-  throw InputError({}, option + " is '" + printable(text) + "'", "give a time with s, min or h, such as \"10 min\"");
+  throw InputError({}, option + " is '" + printable(text) + "'", kRemedy);
 }
 
 }  // namespace poesy::app

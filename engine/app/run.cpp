@@ -14,6 +14,7 @@
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
 #include "engine/run/cases.h"
+#include "engine/run/coupling.h"
 #include "engine/run/identification.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"
@@ -101,6 +102,17 @@ std::optional<SolveCounts> run_monte_carlo_study(const Job& job) {
   return result->total();
 }
 
+std::optional<SolveCounts> run_coupling_study(const Job& job) {
+  const CouplingStudy& coupling = job.study.analysis.coupling;
+  const ModelDescription& model = job.model.description();
+  const auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, coupling_table(coupling, model),
+                                         Pairing::every_pose_with_every_row, job.options, Outcomes::responses);
+  if (!evaluation) return std::nullopt;
+  const CouplingResult result = coupling_result(*evaluation, coupling, model, job.study.not_converged);
+  write_coupling(job.path, job.study, job.poses, result, job.facts(result.total()));
+  return result.total();
+}
+
 std::optional<SolveCounts> run_study(const Job& job) {
   switch (job.study.analysis.kind) {
     case Analysis::Kind::sensitivity:
@@ -110,9 +122,11 @@ std::optional<SolveCounts> run_study(const Job& job) {
     case Analysis::Kind::evaluate:
       return run_cases_study(job);
     case Analysis::Kind::monte_carlo:
+      return run_monte_carlo_study(job);
+    case Analysis::Kind::coupling:
       break;
   }
-  return run_monte_carlo_study(job);
+  return run_coupling_study(job);
 }
 
 /// Says what came out; the exit code.

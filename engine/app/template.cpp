@@ -25,6 +25,10 @@ int print_template(const std::string& model, const std::string& kind) {
     throw InputError({}, "nothing deforms in model '" + model + "', so it has no identification",
                      "choose another kind");
   }
+  if (wanted == Analysis::Kind::coupling && entry.description.sources.empty()) {
+    throw InputError({}, "model '" + model + "' suggests no sources of errors, so its coupling has no template",
+                     "choose another kind, or write [[analysis.sources]] in a study of another");
+  }
   std::fputs(template_text(entry, wanted).c_str(), stdout);
   return kDone;
 }
@@ -36,7 +40,7 @@ void add_template(CLI::App& program, Action& action) {
   auto kind = std::make_shared<std::string>("sensitivity");
   CLI::App* command = program.add_subcommand("template", "print a complete, commented study file");
   command->add_option("model", *model, "mechanism")->required()->type_name("MODEL");
-  command->add_option("kind", *kind, "kind of study: sensitivity, identification, evaluate or monte-carlo")
+  command->add_option("kind", *kind, "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling")
       ->type_name("KIND");
   command->footer("Example: poesy template 2upr-rpu > study.toml");
   command->callback([model, kind, &action] { action = [model, kind] { return print_template(*model, *kind); }; });

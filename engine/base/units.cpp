@@ -10,13 +10,17 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-constexpr std::array<Unit, 7> kUnits{{{"m", Dimension::length, 1.0},
-                                      {"mm", Dimension::length, 1e-3},
-                                      {"um", Dimension::length, 1e-6},
-                                      {"rad", Dimension::angle, 1.0},
-                                      {"mrad", Dimension::angle, 1e-3},
-                                      {"deg", Dimension::angle, kDegree},
-                                      {"arcsec", Dimension::angle, kDegree / 3600.0}}};
+constexpr std::array<Unit, 11> kUnits{{{"m", Dimension::length, 1.0},
+                                       {"mm", Dimension::length, 1e-3},
+                                       {"um", Dimension::length, 1e-6},
+                                       {"rad", Dimension::angle, 1.0},
+                                       {"mrad", Dimension::angle, 1e-3},
+                                       {"deg", Dimension::angle, kDegree},
+                                       {"arcsec", Dimension::angle, kDegree / 3600.0},
+                                       {"s", Dimension::time, 1.0},
+                                       {"ms", Dimension::time, 1e-3},
+                                       {"min", Dimension::time, 60.0},
+                                       {"h", Dimension::time, 3600.0}}};
 constexpr Unit kOne{"1", Dimension::number, 1.0};
 
 std::string_view trimmed(std::string_view text) {
@@ -49,6 +53,8 @@ std::string_view si_unit(Dimension dimension) {
       return "m";
     case Dimension::angle:
       return "rad";
+    case Dimension::time:
+      return "s";
     case Dimension::number:
       break;
   }
@@ -56,7 +62,7 @@ std::string_view si_unit(Dimension dimension) {
 }
 
 Dimension dimension_of(std::string_view si_name) {
-  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+  for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::time}) {
     if (si_unit(dimension) == si_name) return dimension;
   }
   return Dimension::number;
@@ -70,6 +76,8 @@ const Unit& display_unit(Dimension dimension) {
       return kUnits[1];
     case Dimension::angle:
       return kUnits[5];
+    case Dimension::time:
+      return kUnits[7];
     case Dimension::number:
       break;
   }
@@ -82,6 +90,8 @@ std::string_view name(Dimension dimension) {
       return "length";
     case Dimension::angle:
       return "angle";
+    case Dimension::time:
+      return "time";
     case Dimension::number:
       break;
   }
@@ -130,11 +140,11 @@ std::string to_text(Quantity quantity) {
   return shortest(quantity.si) + " " + std::string(si_unit(quantity.dimension));
 }
 
-std::string readable_text(Quantity quantity) {
+std::string readable_text(Quantity quantity, int digits) {
   const Unit& unit = display_unit(quantity.dimension);
   std::array<char, 32> text{};
   const auto [end, failure] =
-      std::to_chars(text.data(), text.data() + text.size(), quantity.si / unit.si, std::chars_format::general, 12);
+      std::to_chars(text.data(), text.data() + text.size(), quantity.si / unit.si, std::chars_format::general, digits);
   const std::string number = failure == std::errc() ? std::string(text.data(), end) : std::string("nan");
   return unit.dimension == Dimension::number ? number : number + " " + std::string(unit.name);
 }

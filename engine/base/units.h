@@ -8,19 +8,19 @@
 
 namespace poesy {
 
-enum class Dimension { length, angle, number };
+enum class Dimension { length, angle, time, number };
 
-/// A unit that may stand in a study file: its name and its size in SI (m, rad).
+/// A unit that may stand in a study file: its name and its size in SI (m, rad, s).
 struct Unit {
   std::string_view name;
   Dimension dimension;
   double si;
 };
 
-/// m, mm, um, rad, mrad, deg, arcsec.
+/// m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.
 std::span<const Unit> units();
 
-/// "m", "rad" or "1".
+/// "m", "rad", "s" or "1".
 std::string_view si_unit(Dimension dimension);
 
 /// The dimension of which this is the SI unit; a number for any other text.
@@ -29,10 +29,10 @@ Dimension dimension_of(std::string_view si_name);
 /// What errors of this dimension are called: "linear" or "angular".
 std::string_view error_kind(Dimension dimension);
 
-/// The unit in which people read this dimension, "mm", "deg" or "1".
+/// The unit in which people read this dimension, "mm", "deg", "s" or "1".
 const Unit& display_unit(Dimension dimension);
 
-/// "length" or "angle" or "number".
+/// "length", "angle", "time" or "number".
 std::string_view name(Dimension dimension);
 
 struct Quantity {
@@ -59,7 +59,7 @@ std::string shortest(double value);
 /// A quantity for a study file, exact when read back: "0.001 m", "0.5 rad".
 std::string to_text(Quantity quantity);
 
-/// A quantity in the unit in which people read it, to 12 digits: "80 mm", "1 deg".
-std::string readable_text(Quantity quantity);
+/// A quantity in the unit in which people read it, to this many digits: "80 mm", "1 deg".
+std::string readable_text(Quantity quantity, int digits = 12);
 
 }  // namespace poesy

@@ -14,6 +14,7 @@ std::string cell(double value) { return std::isnan(value) ? "NaN" : shortest(val
 
 void write_poses(TableFolder& folder, const StoredResult& result) {
   std::vector<std::string> columns{"pose"};
+  if (!result.time.empty()) columns.push_back(column("time", "s"));
   for (const NamedUnit& coordinate : result.pose_coordinates) {
     columns.push_back(column(coordinate.name, coordinate.unit));
   }
@@ -21,7 +22,9 @@ void write_poses(TableFolder& folder, const StoredResult& result) {
   folder.write("poses", columns, [&](CsvTable& table) {
     for (std::size_t m = 0; m < result.poses.size(); ++m) {
       const auto pose = result.poses[PoseIndex(m)];
-      std::vector<double> row(pose.begin(), pose.end());
+      std::vector<double> row;
+      if (!result.time.empty()) row.push_back(result.time[m]);
+      row.insert(row.end(), pose.begin(), pose.end());
       if (!result.condition.empty()) row.push_back(result.condition[m]);
       table.row(std::to_string(m), row);
     }
@@ -85,6 +88,8 @@ std::vector<std::string> export_tables(const std::string& result_path, const std
     export_identification(tables, result);
   } else if (result.kind == result_format::kMonteCarlo) {
     export_monte_carlo(tables, result);
+  } else if (result.kind == result_format::kCoupling) {
+    export_coupling(tables, result);
   } else {
     export_evaluation(tables, result);
   }

@@ -20,6 +20,7 @@ std::vector<std::string> component_units(const std::string& text, std::size_t co
 std::vector<std::string> solve_columns(const StoredResult& result) {
   std::vector<std::string> columns{"pose", "sample"};
   if (!result.cases.empty()) columns = {"case", "pose"};
+  if (!result.time.empty()) columns.push_back(column("time", "s"));
   for (const NamedUnit& response : result.responses) columns.push_back(column(response.name, response.unit));
   for (const Detail& detail : result.details) {
     const auto units = component_units(detail.unit, detail.components.size());
@@ -31,8 +32,10 @@ std::vector<std::string> solve_columns(const StoredResult& result) {
   return columns;
 }
 
-std::vector<double> solve_row(const EvaluationResult& found, double second, std::size_t at) {
+std::vector<double> solve_row(const StoredResult& result, double second, std::size_t at) {
+  const EvaluationResult& found = result.evaluation;
   std::vector<double> row{second};
+  if (!result.time.empty()) row.push_back(result.time[at / found.samples]);
   for (std::size_t r = 0; r < found.responses; ++r) row.push_back(found.response[r * found.status.size() + at]);
   const auto detail = std::span(found.detail).subspan(at * found.details, found.details);
   row.insert(row.end(), detail.begin(), detail.end());
@@ -46,11 +49,11 @@ void write_solves(TableFolder& folder, const StoredResult& result) {
   const EvaluationResult& found = result.evaluation;
   folder.write("evaluate", solve_columns(result), [&](CsvTable& table) {
     for (std::size_t at = 0; result.cases.empty() && at < found.status.size(); ++at) {
-      table.row(std::to_string(at / found.samples), solve_row(found, static_cast<double>(at % found.samples), at));
+      table.row(std::to_string(at / found.samples), solve_row(result, static_cast<double>(at % found.samples), at));
     }
     for (std::size_t c = 0; c < result.cases.size(); ++c) {
       for (std::size_t m = 0; m < found.poses; ++m) {
-        table.row(result.cases[c], solve_row(found, static_cast<double>(m), m * found.samples + c));
+        table.row(result.cases[c], solve_row(result, static_cast<double>(m), m * found.samples + c));
       }
     }
   });

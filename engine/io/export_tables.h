@@ -82,5 +82,6 @@ void export_tolerances(TableFolder& folder, const StoredResult& result);
 void export_evaluation(TableFolder& folder, const StoredResult& result);
 void export_identification(TableFolder& folder, const StoredResult& result);
 void export_monte_carlo(TableFolder& folder, const StoredResult& result);
+void export_coupling(TableFolder& folder, const StoredResult& result);
 
 }  // namespace poesy

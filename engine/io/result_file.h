@@ -35,6 +35,10 @@ void write_identification(const std::string& path, const Study& study, const Sel
 void write_monte_carlo(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const MonteCarloResult& result, const RunFacts& facts);
 
+/// Writes the result of a coupling study, in the same way.
+void write_coupling(const std::string& path, const Study& study, const SelectedPoses& poses,
+                    const CouplingResult& result, const RunFacts& facts);
+
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
 /// folder does not exist or something other than a plain file stands there, FileError when the folder cannot be
 /// written.
@@ -49,10 +53,20 @@ struct NamedUnit {
 /// The unit in which people read it: mm for m.
 const Unit& display(const NamedUnit& named);
 
+/// What a coupling study found, with the names of its axes.
+struct StoredCoupling {
+  CouplingResult found;
+  std::vector<std::string> size_names;  ///< [Z] "0.1 mm"
+  std::vector<double> linear;           ///< [Z] m; NaN where no error is a length
+  std::vector<double> angular;          ///< [Z] rad; NaN where no error is an angle
+  std::vector<std::string> sources;
+  std::vector<std::string> subsets;  ///< [K] "FS+T"
+};
+
 /// What a result file of any kind says, read back. Members that the file does not have are empty.
 /// Where a model has details, evaluation.detail holds their components in the order of `details`.
 struct StoredResult {
-  std::string kind;  ///< "sensitivity", "identification", "evaluate" or "monte-carlo"
+  std::string kind;  ///< "sensitivity", "identification", "evaluate", "monte-carlo" or "coupling"
   std::string title;
   std::string model;
   std::string study_text;
@@ -61,6 +75,7 @@ struct StoredResult {
   std::vector<NamedUnit> pose_coordinates;
   PoseSet poses;
   std::vector<double> condition;  ///< [M] of each pose; empty in files of older versions
+  std::vector<double> time;       ///< [M] s, ascending, of poses along a trajectory; else empty
   std::vector<NamedUnit> factors;
   std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;
@@ -78,6 +93,7 @@ struct StoredResult {
   IdentificationResult identification;
   std::vector<ErrorSize> groups;  ///< of the identification
   MonteCarloResult monte_carlo;
+  StoredCoupling coupling;
   RunFacts facts;
 };
 
@@ -101,15 +117,15 @@ Verification verify_result(const std::string& path);
 ///     local_RESPONSE.csv   factor | one column a pose, SI
 ///     not_converged.csv    factor | one column a pose
 ///     factors.csv          factor | standard deviation
-///     poses.csv            pose | coordinates, condition number
+///     poses.csv            pose | time (s) on a trajectory, coordinates, condition number
 ///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
 ///                               share, equal-effect tolerance in SI and in the units people read ("inf": no effect)
 ///
 /// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
 /// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and
 ///
-///     evaluate.csv              pose, sample (or case, pose) | responses, details, status (position in kStatusNames),
-///                               iterations
+///     evaluate.csv              pose, sample (or case, pose) | time (s) on a trajectory, responses, details, status
+///                               (position in kStatusNames), iterations
 ///     joint_displacements.csv   pose | joints
 ///     errors.csv                sample (or pose, row by row, or case) | factors
 ///     cases.csv                 case | poses that count, mean and max of each response; where samples are cases
@@ -125,6 +141,15 @@ Verification verify_result(const std::string& path);
 ///     monte_carlo_RESPONSE.csv   pose | mean, mean_ci_low, mean_ci_high, std, min, max, count, q_0.05 ... (quantiles)
 ///     overall.csv                response | mean, std, min, max, count, q_0.05 ... over the samples of all poses, SI
 ///     not_converged.csv          pose | not_converged, iterations_mean, iterations_max, solves_STATUS
+///
+/// Tables of a coupling result: poses.csv and
+///
+///     coupling.csv          subset | sizes of the errors, pose, and of each response effect, interaction, worst_case
+///     and
+///                           root_sum_square, SI
+///     coupling_summary.csv  subset | sizes, and of each response the poses behind it, effect_max and its pose,
+///                           interaction_max, worst_case_max, root_sum_square_max, opposed_share, cancellation_max and
+///                           its pose
 ///
 /// Returns the paths of the files written. Throws FileError.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);

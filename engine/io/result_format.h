@@ -15,6 +15,7 @@ inline constexpr std::string_view kSensitivity = "sensitivity";
 inline constexpr std::string_view kEvaluate = "evaluate";
 inline constexpr std::string_view kIdentification = "identification";
 inline constexpr std::string_view kMonteCarlo = "monte-carlo";
+inline constexpr std::string_view kCoupling = "coupling";
 
 inline constexpr std::string_view kRowByRow = "row-by-row";
 inline constexpr std::string_view kEveryPoseWithEveryRow = "every-pose-with-every-row";

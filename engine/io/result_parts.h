@@ -76,4 +76,8 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
 /// Fills in `monte_carlo` and `factor_sigma`.
 void read_monte_carlo(const h5::File& file, StoredResult& result);
 
+void add_coupling(ResultBuilder& result, const Study& study, const CouplingResult& found);
+/// Fills in `coupling`.
+void read_coupling(const h5::File& file, StoredResult& result);
+
 }  // namespace poesy

@@ -116,6 +116,7 @@ void read_poses(const h5::File& file, StoredResult& result) {
     for (std::size_t m = 0; m < count; ++m) values[m * names.size() + c] = column[m];
   }
   result.poses = PoseSet(names.size(), std::move(values));
+  if (file.exists("/poses/time")) result.time = read_exactly<double>(file, "/poses/time", count);
   if (file.exists("/poses/condition")) result.condition = read_exactly<double>(file, "/poses/condition", count);
 }
 
@@ -153,6 +154,8 @@ StoredResult read_all(const h5::File& file) {
     read_identification(file, result);
   } else if (result.kind == result_format::kMonteCarlo) {
     read_monte_carlo(file, result);
+  } else if (result.kind == result_format::kCoupling) {
+    read_coupling(file, result);
   } else {
     throw h5::Error("its kind '" + result.kind + "' is unknown");
   }

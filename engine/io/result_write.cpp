@@ -62,6 +62,9 @@ void add_poses(ResultBuilder& result, const ModelDescription& model, const Selec
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
     result.add("/poses/" + names[c], {"pose"}, poses.column(c), {unit_of(coordinate), coordinate.description});
   }
+  if (!selected.time.empty()) {
+    result.add("/poses/time", {"pose"}, selected.time, {"s", "When the trajectory reaches the pose"});
+  }
   result.add("/poses/condition", {"pose"}, selected.condition,
              {"1", "Condition number of the passive joints' Jacobian; infinity at a singular pose"});
   add_rejected_poses(result, selected.rejected);
@@ -173,6 +176,13 @@ void write_monte_carlo(const std::string& path, const Study& study, const Select
   POESY_EXPECTS(result.poses == poses.poses.size());
   compose_and_write(path, result_format::kMonteCarlo, study, poses, study.analysis.factors, facts,
                     [&](ResultBuilder& file) { add_monte_carlo(file, study, result); });
+}
+
+void write_coupling(const std::string& path, const Study& study, const SelectedPoses& poses,
+                    const CouplingResult& result, const RunFacts& facts) {
+  POESY_EXPECTS(result.poses == poses.poses.size());
+  compose_and_write(path, result_format::kCoupling, study, poses, study.analysis.factors, facts,
+                    [&](ResultBuilder& file) { add_coupling(file, study, result); });
 }
 
 void check_result_path(const std::string& path) {

@@ -10,6 +10,7 @@
 #include "engine/io/study_file_section.h"
 #include "engine/io/text_file.h"
 #include "engine/io/wording.h"
+#include "engine/run/coupling_rows.h"
 
 namespace poesy {
 namespace {
@@ -97,7 +98,8 @@ struct AtPose {
   std::string_view of_solves;
 };
 
-AtPose at_pose(const Analysis& analysis) {
+AtPose at_pose(const Study& study) {
+  const Analysis& analysis = study.analysis;
   const double factors = static_cast<double>(analysis.factors.size());
   const double samples = static_cast<double>(analysis.samples);
   const double tried = factors * static_cast<double>(analysis.groups.size());
@@ -110,16 +112,20 @@ AtPose at_pose(const Analysis& analysis) {
     case Analysis::Kind::evaluate:
       return {cases, "cases", cases, "cases"};
     case Analysis::Kind::monte_carlo:
+      return {static_cast<double>(analysis.quantiles.size()), "quantiles", samples, "samples"};
+    case Analysis::Kind::coupling:
       break;
   }
-  return {static_cast<double>(analysis.quantiles.size()), "quantiles", samples, "samples"};
+  const std::size_t rows = coupling_rows(analysis.coupling, study.model()).errors.size();
+  const auto sets = static_cast<double>(analysis.coupling.sizes() * rows);
+  return {sets, "sizes times sets of sources", sets, "sizes times sets of sources"};
 }
 
 /// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
-  const double poses = static_cast<double>(from_file ? study.poses.from_file.size() : study.poses.count);
-  const AtPose asked = at_pose(study.analysis);
+  const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
+  const AtPose asked = at_pose(study);
   if (poses * asked.values > static_cast<double>(kMostCells)) {
     throw InputError(root.section("poses").place(),
                      "poses times " + std::string(asked.of_values) + " is " + shortest(poses * asked.values) +

@@ -27,6 +27,7 @@ Study study_of_text(const std::string& text, const std::string& path, const Cata
 std::string resolved_text(const Study& study);
 
 /// A complete, commented study of this kind and mechanism that runs as it is.
+/// Precondition: the mechanism offers this kind (something deforms, for identification; sources, for coupling).
 std::string template_text(const CatalogEntry& entry, Analysis::Kind kind);
 
 }  // namespace poesy

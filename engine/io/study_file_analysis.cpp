@@ -5,6 +5,7 @@
 
 #include "engine/io/study_file_parts.h"
 #include "engine/io/wording.h"
+#include "engine/run/coupling_rows.h"
 
 namespace poesy {
 namespace {
@@ -29,21 +30,6 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   std::vector<std::string_view> known = names(model.factor_sets);
   if (model.find_set("all") == nullptr) known.push_back("all");
   value.fail("is '" + printable(written) + "', which is no factor set of the model", suggestion(written, known));
-}
-
-std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model) {
-  if (value.is_text()) return factors_of_set(value, model);
-  std::vector<FactorIndex> factors;
-  for (const StudyValue& element : value.list()) {
-    const FactorIndex factor = factor_named(element, model);
-    if (std::find(factors.begin(), factors.end(), factor) != factors.end()) {
-      element.fail("names '" + model.factors[factor.value].name + "' a second time, but factors must differ",
-                   "remove one of them");
-    }
-    factors.push_back(factor);
-  }
-  if (factors.empty()) value.fail("is empty", "name at least one factor, or a factor set");
-  return factors;
 }
 
 std::optional<Background> read_background(const StudySection& analysis, const ModelDescription& model) {
@@ -118,7 +104,12 @@ void refuse_keys_of_other_kinds(const StudySection& section, Analysis::Kind kind
                                 Key{"quantiles", {Kind::monte_carlo}},
                                 Key{"groups", {Kind::identification}},
                                 Key{"pose_share", {Kind::identification}},
-                                Key{"cases", {Kind::evaluate}}};
+                                Key{"cases", {Kind::evaluate}},
+                                Key{"linear", {Kind::coupling}},
+                                Key{"angular", {Kind::coupling}},
+                                Key{"limbs", {Kind::coupling}},
+                                Key{"components", {Kind::coupling}},
+                                Key{"sources", {Kind::coupling}}};
   for (const Key& key : kKeys) {
     if (std::ranges::find(key.kinds, kind) != key.kinds.end()) continue;
     section.refuse(key.name, "kind = \"" + std::string(name(kind)) + "\"");
@@ -133,11 +124,26 @@ std::vector<FactorIndex> usual_factors(Analysis::Kind kind, const ModelDescripti
 
 }  // namespace
 
+std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model) {
+  if (value.is_text()) return factors_of_set(value, model);
+  std::vector<FactorIndex> factors;
+  for (const StudyValue& element : value.list()) {
+    const FactorIndex factor = factor_named(element, model);
+    if (std::find(factors.begin(), factors.end(), factor) != factors.end()) {
+      element.fail("names '" + model.factors[factor.value].name + "' a second time, but factors must differ",
+                   "remove one of them");
+    }
+    factors.push_back(factor);
+  }
+  if (factors.empty()) value.fail("is empty", "name at least one factor, or a factor set");
+  return factors;
+}
+
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use) {
   using Kind = Analysis::Kind;
   const StudySection section = root.section("analysis");
   section.allow({"kind", "factors", "samples", "conf_level", "background", "reference", "quantiles", "groups",
-                 "pose_share", "cases"});
+                 "pose_share", "cases", "linear", "angular", "limbs", "components", "sources"});
   Analysis analysis;
   analysis.kind = read_kind(section, model, use);
   if (use == StudyUse::run) refuse_keys_of_other_kinds(section, analysis.kind);
@@ -155,6 +161,10 @@ Analysis read_analysis(const StudySection& root, const ModelDescription& model, 
   if (analysis.kind == Kind::identification) analysis.groups = read_groups(section);
   if (analysis.kind == Kind::evaluate) {
     analysis.cases = read_cases(section, model, background_errors(analysis.background, model), use);
+  }
+  if (analysis.kind == Kind::coupling) {
+    analysis.coupling = read_coupling(section, model, use);
+    analysis.factors = coupling_factors(analysis.coupling, model);
   }
   return analysis;
 }

@@ -68,24 +68,19 @@ std::vector<double> read_case_errors(const StudySection& section, const ModelDes
   return errors;
 }
 
-/// The text of `name`, which no other of its kind may have.
-template <class Named>
-std::string read_name(const StudySection& section, const std::vector<Named>& others, const std::string& usual) {
+}  // namespace
+
+std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual) {
   const auto value = section.find("name");
   const std::string name = value ? value->text() : usual;
   if (value && (name.empty() || name.find_first_of(",;\"\n\r\t") != std::string::npos)) {
     value->fail("is '" + printable(name) + "'",
                 "a name is plain text without commas and quotes, for it stands in tables");
   }
-  for (const Named& other : others) {
-    if (other.name != name) continue;
-    if (value) value->fail("is '" + printable(name) + "', which another one has", "give each a name of its own");
-    throw InputError(section.place(), "it has no name, and '" + name + "' is taken", "write name = \"...\"");
-  }
-  return name;
+  if (std::ranges::find(taken, name) == taken.end()) return name;
+  if (value) value->fail("is '" + printable(name) + "', which another one has", "give each a name of its own");
+  throw InputError(section.place(), "it has no name, and '" + name + "' is taken", "write name = \"...\"");
 }
-
-}  // namespace
 
 std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescription& model,
                                   const std::vector<double>& background, StudyUse use) {
@@ -94,7 +89,7 @@ std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescr
     for (const StudyValue& one : value->list()) {
       const StudySection section = one.section();
       section.allow({"name", "errors"});
-      const std::string name = read_name(section, cases, "case " + std::to_string(cases.size() + 1));
+      const std::string name = read_name(section, names(cases), "case " + std::to_string(cases.size() + 1));
       const StudySection errors =
           section.require("errors", "write e.g. errors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }").section();
       if (errors.empty()) {
@@ -117,7 +112,7 @@ std::vector<ErrorSize> read_groups(const StudySection& analysis) {
     for (const StudyValue& one : value->list()) {
       const StudySection section = one.section();
       section.allow({"name", "linear", "angular"});
-      const std::string name = read_name(section, groups, "group " + std::to_string(groups.size() + 1));
+      const std::string name = read_name(section, names(groups), "group " + std::to_string(groups.size() + 1));
       const auto size = [&](std::string_view key, Dimension dimension) {
         return section.require(key, "a group sets both").positive_quantity(dimension);
       };

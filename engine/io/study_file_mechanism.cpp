@@ -63,8 +63,7 @@ void read_pose_file(const StudySection& section, const ModelDescription& model, 
   for (const char* key : {"count", "workspace", "limits", "max_condition"}) section.refuse(key, "select = \"file\"");
   selection.file = section.require("file", "write file = \"poses.csv\"").text();
   if (use == StudyUse::evaluate) return;
-  const std::filesystem::path folder = std::filesystem::path(section.place().file).parent_path();
-  const std::string path = (folder / selection.file).string();
+  const std::string path = beside_study(section, selection.file);
   selection.from_file = read_poses(path, model);
   selection.place = {path, 2, 1};
 }
@@ -77,12 +76,6 @@ std::vector<JointLimit> read_limits(const StudySection& section, const ModelDesc
     if (value) limits.push_back({joint, read_range(*value, model.joints[joint].dimension), value->place()});
   }
   return limits;
-}
-
-double read_max_condition(const StudyValue& value) {
-  const double number = value.number();
-  if (!(number > 1.0)) value.fail("is " + shortest(number), "it must be greater than 1, e.g. 1e6");
-  return number;
 }
 
 /// A whole number, or for a grid a table with a number for every pose coordinate.
@@ -118,22 +111,27 @@ void read_box(const StudySection& section, const ModelDescription& model, StudyU
   read_count(section.require("count", "write how many poses, e.g. count = 158"), model, selection);
 }
 
-PoseSelection::Select read_select(const StudySection& section, StudyUse use) {
+PoseSelection::Select read_select(const StudySection& section) {
   using Select = PoseSelection::Select;
   constexpr std::array kSelects{Select::interior, Select::file, Select::boundary, Select::grid, Select::trajectory};
   const auto value = section.find("select");
   if (!value) return Select::interior;
   std::vector<std::string_view> words;
   for (const Select select : kSelects) words.push_back(name(select));
-  const Select select = kSelects[value->word(words)];
-  if (use == StudyUse::run && select == Select::trajectory) {
-    value->fail("is \"trajectory\", which is not available yet in this version",
-                "use \"interior\", \"boundary\", \"grid\" or \"file\"");
-  }
-  return select;
+  return kSelects[value->word(words)];
 }
 
 }  // namespace
+
+std::string beside_study(const StudySection& section, const std::string& file) {
+  return (std::filesystem::path(section.place().file).parent_path() / file).string();
+}
+
+double read_max_condition(const StudyValue& value) {
+  const double number = value.number();
+  if (!(number > 1.0)) value.fail("is " + shortest(number), "it must be greater than 1, e.g. 1e6");
+  return number;
+}
 
 MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog) {
   const StudySection section = root.require("mechanism", "add the section [mechanism] with the key model").section();
@@ -156,12 +154,14 @@ PoseSelection read_pose_selection(const StudySection& root, const ModelDescripti
   section.allow({"select", "count", "workspace", "limits", "max_condition", "file", "trajectory"});
   PoseSelection selection;
   selection.place = section.place();
-  selection.select = read_select(section, use);
+  selection.select = read_select(section);
   if (selection.select != PoseSelection::Select::trajectory) {
     section.refuse("trajectory", "select = \"" + std::string(name(selection.select)) + "\"");
   }
   if (selection.select == PoseSelection::Select::file) {
     read_pose_file(section, model, use, selection);
+  } else if (selection.select == PoseSelection::Select::trajectory) {
+    read_trajectory_section(section, model, use, selection);
   } else {
     read_box(section, model, use, selection);
   }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "engine/io/study_file.h"
 #include "engine/io/study_file_section.h"
@@ -16,12 +19,25 @@ inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;
 MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog);
 /// For StudyUse::evaluate the pose file is not opened.
 PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use);
+/// A file named by the study, relative to the study's folder.
+std::string beside_study(const StudySection& section, const std::string& file);
+double read_max_condition(const StudyValue& value);
+/// What select = "trajectory" has besides; fills in `trajectory`, `count` and `place`. For StudyUse::evaluate the
+/// trajectory may be absent and its file is not opened.
+void read_trajectory_section(const StudySection& poses, const ModelDescription& model, StudyUse use,
+                             PoseSelection& selection);
 ErrorModel read_error_model(const StudySection& root, const ModelDescription& model);
 /// The cases of kind = "evaluate"; what a case does not set has the background's value.
 std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescription& model,
                                   const std::vector<double>& background, StudyUse use);
 /// The groups of kind = "identification".
 std::vector<ErrorSize> read_groups(const StudySection& analysis);
+/// A factor set, "all", or a list of names without repetition.
+std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
+/// The text of `name`, which must not be among those that are taken; `usual` where there is none.
+std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
+/// The keys of kind = "coupling". For StudyUse::evaluate sizes and sources may be missing.
+CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription& model, StudyUse use);
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
 
 }  // namespace poesy

@@ -34,17 +34,19 @@ std::string described(const toml::node& node) {
   }
 }
 
-std::string unit_remedy(std::string_view text) {
+std::string example(Dimension dimension) { return "\"1 " + std::string(display_unit(dimension).name) + "\""; }
+
+std::string unit_remedy(std::string_view text, Dimension dimension) {
   const std::string_view written = text.substr(text.find_last_of("0123456789. ") + 1);
   std::vector<std::string_view> known;
-  for (const Unit& unit : units()) known.push_back(unit.name);
+  for (const Unit& unit : units()) {
+    if (unit.dimension == dimension) known.push_back(unit.name);
+  }
   if (std::find(known.begin(), known.end(), written) == known.end()) {
     if (const std::string hint = suggestion(written, known); hint.starts_with("did you mean")) return hint;
   }
-  return "write a number and a unit, e.g. \"1 mm\"";
+  return "write a number and a unit, e.g. " + example(dimension);
 }
-
-std::string example(Dimension dimension) { return "\"1 " + std::string(display_unit(dimension).name) + "\""; }
 
 }  // namespace
 
@@ -88,9 +90,10 @@ double StudyValue::quantity(Dimension dimension) const {
     const Quantity quantity = parse_quantity(written);
     if (quantity.dimension == dimension) return quantity.si;
   } catch (const QuantityError& reason) {
-    fail(std::string("cannot be read: ") + reason.what(), unit_remedy(written));
+    fail(std::string("cannot be read: ") + reason.what(), unit_remedy(written, dimension));
   }
-  fail("is '" + written + "', but must be " + (dimension == Dimension::angle ? "an angle" : "a length"),
+  fail("is '" + written + "', but must be " + (dimension == Dimension::angle ? "an " : "a ") +
+           std::string(name(dimension)),
        "write it like " + example(dimension));
 }
 

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <string>
 
+#include "engine/base/contract.h"
 #include "engine/io/study_file.h"
 #include "engine/io/study_text.h"
 
@@ -28,7 +30,7 @@ std::string title(Analysis::Kind kind) {
 std::string head(const ModelDescription& model, Analysis::Kind kind) {
   return comment(model.name + ": " + model.title) +
          "# Run this study with: poesy run STUDY.toml\n"
-         "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec.\n"
+         "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.\n"
          "# A key behind a '#' shows a default or an alternative.\n" +
          fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}  # optional, free text\n",
                      quoted(title(kind) + " of " + model.name));
@@ -66,6 +68,46 @@ std::string joint_list(const ModelDescription& model) {
   return text;
 }
 
+std::string name_list(const std::vector<PoseCoordinate>& coordinates) {
+  std::string text;
+  for (const PoseCoordinate& coordinate : coordinates) text += (text.empty() ? "" : ", ") + coordinate.name;
+  return text;
+}
+
+/// Other coordinates in which a file may give poses.
+std::string charts_comment(const ModelDescription& model) {
+  std::string text;
+  for (const PoseChart& chart : model.charts) {
+    text += comment(fmt::format("  or those of {}: {}", chart.name, name_list(chart.coordinates)));
+  }
+  return text;
+}
+
+std::string curve_example(const NamedCurve& curve, const ModelDescription& model) {
+  std::string origin;
+  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
+    const Dimension dimension = model.charts[curve.chart].coordinates[c].dimension;
+    origin += (c > 0 ? ", " : "") + readable_value(curve.origin[c], dimension);
+  }
+  return fmt::format("# trajectory = {{ curve = {}, origin = [{}], points = 201, time = [{}, {}] }}  # {}\n",
+                     quoted(curve.name), origin, readable_value(curve.start, Dimension::time),
+                     readable_value(curve.end, Dimension::time), curve.description);
+}
+
+std::string trajectory_comment(const ModelDescription& model) {
+  std::string text = "# trajectory: instead of count, workspace and limits, with select = \"trajectory\"\n";
+  if (!model.curves.empty())
+    text += "# a curve at times evenly spaced; all but its name may be left out, then as shown:\n";
+  for (const NamedCurve& curve : model.curves) text += curve_example(curve, model);
+  return text +
+         "# a file beside this study: CSV with a column t (s) and pose coordinates, SI. Between its points it is read "
+         "by\n"
+         "# modified Akima splines (straight lines where it has two or three). Without points and time its own points "
+         "are\n"
+         "# the poses. What is left out of these two: 201 points, all of the file's time.\n"
+         "# trajectory = { file = \"curve.csv\", points = 201, time = [\"0 s\", \"2 s\"] }\n";
+}
+
 std::string poses_section(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
@@ -76,8 +118,10 @@ std::string poses_section(const ModelDescription& model) {
   text += "# boundary: that many points on the boundary of the feasible part of the workspace, uniform by area\n";
   text += "# grid: that many points of a regular grid, or all of one with " + grid_example(model) + "\n";
   text += "# file: poses from CSV, first line the names of all pose coordinates, SI units\n";
+  text += charts_comment(model);
+  text += "# trajectory: poses along a curve, in the order of time\n";
   text += "select = \"interior\"  # the default\n";
-  text += "count = 158  # required for all but file, at least 1\n";
+  text += "count = 158  # required for all but file and trajectory, at least 1\n";
   text += "# A range [lower, upper] for every pose coordinate. Default: the model's own workspace, shown here.\n";
   for (const PoseCoordinate& coordinate : model.pose_coordinates) {
     text += comment(coordinate.name + ": " + coordinate.description);
@@ -94,7 +138,8 @@ std::string poses_section(const ModelDescription& model) {
   text += "# max_condition = 1e8  # poses whose condition number is above it are rejected as singular; the default\n";
   return text +
          "# file = \"poses.csv\"  # instead of count, workspace, limits and max_condition, with select = \"file\"; "
-         "beside this study\n";
+         "beside this study\n" +
+         trajectory_comment(model);
 }
 
 std::string override_example(const ModelDescription& model) {
@@ -196,6 +241,43 @@ std::string evaluate_keys(const ModelDescription& model) {
                     quoted(model.factor_sets.empty() ? factor.name : model.factor_sets.back().name));
 }
 
+/// Whether an error of this dimension is among the literature's sources.
+bool has_source_of(const ModelDescription& model, Dimension dimension) {
+  return std::ranges::any_of(model.sources, [&](const CouplingSource& source) {
+    return std::ranges::any_of(model.find_set(source.set)->factors,
+                               [&](FactorIndex factor) { return model.factors[factor.value].dimension == dimension; });
+  });
+}
+
+std::string coupling_keys(const ModelDescription& model) {
+  const auto sizes = [&](Dimension dimension, const char* line) {
+    return fmt::format("{}{}\n", has_source_of(model, dimension) ? "" : "# ", line);
+  };
+  std::string text =
+      "# Sizes of the errors: each is a run of its own, in which every error is at once as large as that. linear for\n"
+      "# lengths, angular for angles: as many of both, or that alone which the sources have.\n";
+  text += sizes(Dimension::length, "linear = [\"0.1 mm\", \"0.3 mm\", \"0.5 mm\"]") +
+          sizes(Dimension::angle, "angular = [\"0.1 deg\", \"0.3 deg\", \"0.5 deg\"]");
+  text +=
+      "# all: the errors of every limb; a number: of that limb alone; independent: each limb on its own in the worst "
+      "case\n"
+      "# and the root sum square\n"
+      "limbs = \"all\"  # the default\n"
+      "# all: every component of an error; a list such as [\"x\", \"z\"]: those and scalars; independent: each on its "
+      "own,\n"
+      "# as for limbs\n"
+      "components = \"all\"  # the default\n"
+      "\n# 2 to 8 sources of errors: each alone, and every combination of them at once. A factor belongs to one "
+      "source.\n"
+      "# factors: a factor set, or a list of names. Default: the sources shown. Factor sets:\n" +
+      sets_comment(model);
+  for (const CouplingSource& source : model.sources) {
+    text += fmt::format("[[analysis.sources]]\nname = {}\nfactors = {}\n\n", quoted(source.name), quoted(source.set));
+  }
+  text.pop_back();
+  return text;
+}
+
 std::string analysis_section(const ModelDescription& model, Analysis::Kind kind) {
   std::string text = fmt::format("\n[analysis]\nkind = {}{}\n", quoted(name(kind)),
                                  kind == Analysis::Kind::sensitivity ? "  # the default" : "");
@@ -207,9 +289,11 @@ std::string analysis_section(const ModelDescription& model, Analysis::Kind kind)
     case Analysis::Kind::identification:
       return text + identification_keys(model);
     case Analysis::Kind::evaluate:
+      return text + evaluate_keys(model);
+    case Analysis::Kind::coupling:
       break;
   }
-  return text + evaluate_keys(model);
+  return text + coupling_keys(model);
 }
 
 std::string solver_and_run_sections() {
@@ -228,6 +312,7 @@ std::string solver_and_run_sections() {
 
 std::string template_text(const CatalogEntry& entry, Analysis::Kind kind) {
   const ModelDescription& model = entry.description;
+  POESY_EXPECTS(kind != Analysis::Kind::coupling || !model.sources.empty());
   return head(model, kind) + mechanism_section(model) + poses_section(model) + errors_section(model) +
          analysis_section(model, kind) + solver_and_run_sections();
 }

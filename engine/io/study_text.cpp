@@ -84,10 +84,34 @@ std::string limits_text(const PoseSelection& poses, const ModelDescription& mode
   return text + " }";
 }
 
+std::string trajectory_text(const Trajectory& trajectory, const ModelDescription& model) {
+  std::string text;
+  if (trajectory.curve) {
+    const NamedCurve& curve = model.curves[*trajectory.curve];
+    for (std::size_t c = 0; c < trajectory.origin.size(); ++c) {
+      text +=
+          (c > 0 ? ", " : "") + exact_value(trajectory.origin[c], model.charts[curve.chart].coordinates[c].dimension);
+    }
+    text = fmt::format("curve = {}, origin = [{}]", quoted(curve.name), text);
+  } else {
+    text = "file = " + quoted(trajectory.file);
+  }
+  if (trajectory.points > 0) text += fmt::format(", points = {}", trajectory.points);
+  if (trajectory.time) {
+    text += fmt::format(", time = [{}, {}]", exact_value(trajectory.time->start, Dimension::time),
+                        exact_value(trajectory.time->end, Dimension::time));
+  }
+  return "{ " + text + " }";
+}
+
 std::string poses_text(const Study& study) {
   const PoseSelection& poses = study.poses;
   std::string text = fmt::format("[poses]\nselect = {}\n", quoted(name(poses.select)));
   if (poses.select == PoseSelection::Select::file) return text + "file = " + quoted(poses.file) + "\n";
+  if (poses.select == PoseSelection::Select::trajectory) {
+    if (poses.trajectory) text += "trajectory = " + trajectory_text(*poses.trajectory, study.model()) + "\n";
+    return text + "max_condition = " + shortest(poses.max_condition) + "\n";
+  }
   if (!poses.grid_counts.empty()) {
     text += "count = " + grid_text(poses, study.model()) + "\n";
   } else if (poses.count > 0) {
@@ -139,10 +163,38 @@ std::string case_text(const ErrorCase& one, const ModelDescription& model) {
   return text;
 }
 
+std::string sizes_text(std::string_view key, const std::vector<double>& sizes, Dimension dimension) {
+  if (sizes.empty()) return {};
+  std::string text;
+  for (const double size : sizes) text += (text.empty() ? "" : ", ") + exact_value(size, dimension);
+  return fmt::format("{} = [{}]\n", key, text);
+}
+
+std::string choice_text(ErrorPattern::Choice choice, const std::string& some) {
+  if (choice == ErrorPattern::Choice::some) return some;
+  return choice == ErrorPattern::Choice::all ? "\"all\"" : "\"independent\"";
+}
+
+std::string coupling_text(const CouplingStudy& coupling, const ModelDescription& model) {
+  const ErrorPattern& pattern = coupling.pattern;
+  std::string axes;
+  for (const std::string& axis : pattern.axes) axes += (axes.empty() ? "" : ", ") + quoted(axis);
+  std::string text = sizes_text("linear", coupling.linear, Dimension::length) +
+                     sizes_text("angular", coupling.angular, Dimension::angle);
+  text += fmt::format("limbs = {}\ncomponents = {}\n", choice_text(pattern.limbs, std::to_string(pattern.limb)),
+                      choice_text(pattern.components, "[" + axes + "]"));
+  for (const ErrorSource& source : coupling.sources) {
+    text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", quoted(source.name),
+                        factors_text(source.factors, model));
+  }
+  return text;
+}
+
 std::string analysis_text(const Study& study) {
   using Kind = Analysis::Kind;
   const Analysis& analysis = study.analysis;
   std::string text = fmt::format("[analysis]\nkind = {}\n", quoted(name(analysis.kind)));
+  if (analysis.kind == Kind::coupling) return text + coupling_text(analysis.coupling, study.model());
   if (analysis.kind != Kind::evaluate) text += "factors = " + factors_text(analysis.factors, study.model()) + "\n";
   if (analysis.kind == Kind::sensitivity || analysis.kind == Kind::monte_carlo) {
     text += fmt::format("samples = {}\nconf_level = {}\n", analysis.samples, shortest(analysis.conf_level));

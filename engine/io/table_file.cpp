@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -91,6 +92,61 @@ std::vector<std::string_view> read_header(Lines& lines, std::span<const std::str
   return columns;
 }
 
+/// Whether a table of poses has a column of times.
+enum class Timed { no, yes };
+
+constexpr std::string_view kTime = "t";
+
+std::vector<std::string_view> header(const std::vector<PoseCoordinate>& coordinates, Timed timed) {
+  std::vector<std::string_view> columns;
+  columns.reserve(coordinates.size() + 1);
+  if (timed == Timed::yes) columns.push_back(kTime);
+  for (const PoseCoordinate& coordinate : coordinates) columns.push_back(coordinate.name);
+  return columns;
+}
+
+/// The columns that a table of poses may have: one list for the pose's own coordinates, then one for each chart.
+std::vector<std::vector<std::string_view>> possible_headers(const ModelDescription& model, Timed timed) {
+  std::vector<std::vector<std::string_view>> headers{header(model.pose_coordinates, timed)};
+  for (const PoseChart& chart : model.charts) headers.push_back(header(chart.coordinates, timed));
+  return headers;
+}
+
+std::string one_of(const std::vector<std::vector<std::string_view>>& headers) {
+  std::string text;
+  for (const auto& header : headers) {
+    text += text.empty() ? "" : " | ";
+    for (const std::string_view name : header) text += (name == header.front() ? "" : ",") + std::string(name);
+  }
+  return text;
+}
+
+bool contains(std::span<const std::string_view> list, std::string_view name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// The position of the header whose names these columns are, in any order.
+std::size_t header_of(std::span<const std::string_view> columns,
+                      const std::vector<std::vector<std::string_view>>& headers, const std::string& path) {
+  const auto missing = [&](const std::vector<std::string_view>& header) {
+    return std::find_if(header.begin(), header.end(), [&](auto name) { return !contains(columns, name); });
+  };
+  const std::vector<std::string_view>* unfinished = nullptr;
+  for (std::size_t k = 0; k < headers.size(); ++k) {
+    const auto fits = [&](std::string_view column) { return contains(headers[k], column); };
+    if (!std::all_of(columns.begin(), columns.end(), fits)) continue;
+    if (missing(headers[k]) == headers[k].end()) return k;
+    if (unfinished == nullptr) unfinished = &headers[k];
+  }
+  const std::string possible = headers.size() == 1 ? "" : "; possible are " + one_of(headers);
+  if (unfinished == nullptr) {
+    throw InputError({path, 1, 1}, "the columns mix coordinates that do not belong together",
+                     "name the columns of one kind only: " + one_of(headers));
+  }
+  throw InputError({path, 1, 1}, "column '" + std::string(*missing(*unfinished)) + "' is missing",
+                   "name every pose coordinate of the model in the first line" + possible);
+}
+
 double number(const Cell& cell, std::string_view column) {
   if (const auto value = parse_number(cell.text)) return *value;
   throw InputError(cell.place,
@@ -122,24 +178,71 @@ std::vector<double> read_rows(Lines& lines, std::span<const std::string_view> co
   return values;
 }
 
-}  // namespace
-
-PoseSet read_poses(const std::string& path, const ModelDescription& model) {
-  const std::vector<std::string_view> known = names(model.pose_coordinates);
-  Lines lines(path, "table of poses");
-  const std::vector<std::string_view> columns = read_header(lines, known, "pose coordinate");
-  for (const std::string_view coordinate : known) {
-    if (std::find(columns.begin(), columns.end(), coordinate) != columns.end()) continue;
-    throw InputError({path, 1, 1}, "column '" + std::string(coordinate) + "' is missing",
-                     "name every pose coordinate of the model in the first line");
+/// The names of all possible columns, each once.
+std::vector<std::string_view> all_names(const std::vector<std::vector<std::string_view>>& headers) {
+  std::vector<std::string_view> list;
+  for (const auto& header : headers) {
+    std::copy_if(header.begin(), header.end(), std::back_inserter(list),
+                 [&](std::string_view name) { return !contains(list, name); });
   }
+  return list;
+}
+
+/// Takes the times, the column before all others, apart from the coordinates. Throws unless they ascend.
+std::vector<double> take_times(std::vector<double>& values, std::size_t width, const std::string& path) {
+  std::vector<double> time;
+  std::vector<double> rest;
+  for (std::size_t row = 0; row * width < values.size(); ++row) {
+    const double t = values[row * width];
+    if (row > 0 && !(t > time.back())) {
+      const std::string line = std::to_string(row + 1);
+      throw InputError({path, row + 2, 1},
+                       t == time.back()
+                           ? "t = " + shortest(t) + " s stands here a second time, after line " + line
+                           : "t = " + shortest(t) + " s follows t = " + shortest(time.back()) + " s of line " + line,
+                       "sort the rows by t, each time once");
+    }
+    time.push_back(t);
+    rest.insert(rest.end(), values.begin() + std::ptrdiff_t(row * width + 1),
+                values.begin() + std::ptrdiff_t((row + 1) * width));
+  }
+  values = std::move(rest);
+  return time;
+}
+
+TimedPoints read_points(Lines& lines, const std::string& path, const ModelDescription& model, Timed timed) {
+  const auto headers = possible_headers(model, timed);
+  const std::vector<std::string_view> columns =
+      read_header(lines, all_names(headers), timed == Timed::yes ? "time or pose coordinate" : "pose coordinate");
+  const std::size_t kind = header_of(columns, headers, path);
+  const std::vector<std::string_view>& wanted = headers[kind];
   const std::vector<double> written = read_rows(lines, columns);
   std::vector<double> values(written.size());
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    const auto target = static_cast<std::size_t>(std::find(known.begin(), known.end(), columns[k]) - known.begin());
+    const auto target = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), columns[k]) - wanted.begin());
     for (std::size_t row = 0; row < values.size(); row += columns.size()) values[row + target] = written[row + k];
   }
-  return PoseSet(known.size(), std::move(values));
+  TimedPoints points;
+  if (timed == Timed::yes) points.time = take_times(values, wanted.size(), path);
+  if (kind > 0) points.table.chart = kind - 1;
+  points.table.points = PoseSet(coordinates(model, points.table.chart).size(), std::move(values));
+  return points;
+}
+
+}  // namespace
+
+PoseTable read_poses(const std::string& path, const ModelDescription& model) {
+  Lines lines(path, "table of poses");
+  return read_points(lines, path, model, Timed::no).table;
+}
+
+TimedPoints read_trajectory(const std::string& path, const ModelDescription& model) {
+  Lines lines(path, "trajectory");
+  TimedPoints points = read_points(lines, path, model, Timed::yes);
+  if (points.time.size() < 2) {
+    throw InputError(lines.next_place(), "the trajectory has only one row", "write at least two rows, or use a pose");
+  }
+  return points;
 }
 
 ErrorTable read_errors(const std::string& path, const ModelDescription& model) {

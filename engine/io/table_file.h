@@ -5,14 +5,20 @@
 #include "engine/model/model.h"
 #include "engine/model/pose_set.h"
 #include "engine/run/runner.h"
+#include "engine/study/trajectory.h"
 
 namespace poesy {
 
-/// Reads poses from CSV: the first line names all of the model's pose coordinates, in any order; then one
-/// pose a line, SI. Throws InputError with line and column for a missing, extra or repeated column, a cell that is not
-/// a finite number, a line with too few or many cells, or no data; FileError when the file cannot be read. The poses
-/// come back in the model's order of coordinates. Does not ask whether the model reaches them.
-PoseSet read_poses(const std::string& path, const ModelDescription& model);
+/// Reads poses from CSV: the first line names all of the model's pose coordinates, or all coordinates of one of its
+/// charts, in any order; then one pose a line, SI. Throws InputError with line and column for a missing, extra or
+/// repeated column, columns that mix coordinates, a cell that is not a finite number, a line with too few or many
+/// cells, or no data; FileError when the file cannot be read. The points come back in the model's order of
+/// coordinates. Does not ask whether the model has and reaches such poses.
+PoseTable read_poses(const std::string& path, const ModelDescription& model);
+
+/// Reads a trajectory from CSV: as read_poses, with a column "t" (s) besides. Also throws InputError for times that do
+/// not ascend strictly, and for a single row.
+TimedPoints read_trajectory(const std::string& path, const ModelDescription& model);
 
 /// Reads errors from CSV: the first line names factors of the model, any subset in any order; then one sample
 /// a line, SI. Errors as read_poses; an unknown factor is an InputError too.

@@ -34,6 +34,8 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   }
   study.analysis.kind = Analysis::Kind::monte_carlo;
   study.analysis.reference.reset();
+  const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
+  if (along_file) study.poses.select = PoseSelection::Select::file;
   if (study.poses.select == PoseSelection::Select::file) study.poses.file = std::string(kPoses) + ".csv";
   return study;
 }

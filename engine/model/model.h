@@ -70,6 +70,8 @@ struct NamedCurve {
   std::size_t chart;  ///< position among the charts
   double start;       ///< s, of the whole curve
   double end;         ///< s
+  /// Where the curve's zero stands unless the study says otherwise, [coordinates of the chart], SI.
+  std::vector<double> origin;
   /// Chart coordinates at a time (s), SI, relative to an origin that the study chooses.
   std::function<std::vector<double>(double time)> at;
 };
@@ -124,6 +126,12 @@ struct SolverOptions {
   int max_iterations = 50;
 };
 
+/// A factor set that the literature judges as one source of errors.
+struct CouplingSource {
+  std::string name;  ///< short, for it is joined to others: "FS"
+  std::string set;   ///< name of the factor set
+};
+
 /// Everything about a mechanism that can be read without solving it.
 struct ModelDescription {
   std::string name;   ///< as written in a study file
@@ -144,7 +152,8 @@ struct ModelDescription {
   std::vector<PoseChart> charts;
   std::vector<NamedCurve> curves;
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
-  std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows; empty: all of them
+  std::vector<CouplingSource> sources;  ///< those of a coupling study that names none; no factor in two of them
+  std::vector<std::size_t> headline;    ///< positions of the responses that a summary shows; empty: all of them
 
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
   const FactorSet* find_set(std::string_view set_name) const;

@@ -1,16 +1,16 @@
 #include "engine/random/distribution.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "engine/base/contract.h"
+#include "engine/base/instruction_sets.h"
+#include "engine/random/normal_quantile.h"
 
 namespace poesy {
 
@@ -21,48 +21,6 @@ namespace {
 
 // Double arithmetic is exact enough here and much faster than Boost's default of long double.
 using DoublePolicy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
-
-constexpr double kNormalMiddle = 0.425;
-
-/// Quantile of the standard normal for a share 1/2 + q with |q| <= kNormalMiddle, without a logarithm: Wichura 1988,
-/// Appl. Stat. 37, 477-484, algorithm AS 241, PPND16, within about 1e-16 of the value.
-double normal_middle(double q) {
-  constexpr double kCentre = 0.180625;  // 0.425^2
-  const double r = kCentre - q * q;
-  const double above =
-      (((((((2.5090809287301226727e3 * r + 3.3430575583588128105e4) * r + 6.7265770927008700853e4) * r +
-           4.5921953931549871457e4) *
-              r +
-          1.3731693765509461125e4) *
-             r +
-         1.9715909503065514427e3) *
-            r +
-        1.3314166789178437745e2) *
-           r +
-       3.3871328727963666080);
-  const double below =
-      (((((((5.2264952788528545610e3 * r + 2.8729085735721942674e4) * r + 3.9307895800092710610e4) * r +
-           2.1213794301586595867e4) *
-              r +
-          5.3941960214247511077e3) *
-             r +
-         6.8718700749205790830e2) *
-            r +
-        4.2313330701600911252e1) *
-           r +
-       1.0);
-  return q * above / below;
-}
-
-struct NormalTail {
-  double sigma;
-
-  double operator()(double t) const {
-    const double q = 0.5 - t;
-    if (q <= kNormalMiddle) return sigma * normal_middle(q);
-    return sigma * (std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * t, DoublePolicy{}));
-  }
-};
 
 struct TruncatedNormalTail {
   TruncatedNormalTail(double parent_sigma, double cut)
@@ -101,54 +59,20 @@ struct TriangularTail {
 template <class Tail>
 double quantile_of(const Tail& tail, double u) {
   POESY_EXPECTS(u > 0.0 && u < 1.0);
-  return u < 0.5 ? -tail(u) : tail(1.0 - u);
+  return std::copysign(tail(std::min(u, 1.0 - u)), u - 0.5);
 }
 
-// A copy of the function for each instruction set, chosen when the program is loaded; without contraction of
-// multiply-adds (see engine/CMakeLists.txt) all give the same bits. Sanitizers do not get on with the choosing.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define POESY_EACH_INSTRUCTION_SET __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define POESY_EACH_INSTRUCTION_SET
-#endif
-
-/// out[k] = normal_middle(uniforms[k] - 1/2), which is of use in the middle only.
-POESY_EACH_INSTRUCTION_SET void normal_middles(const double* uniforms, double sigma, std::size_t count, double* out) {
-  for (std::size_t k = 0; k < count; ++k) out[k] = sigma * normal_middle(uniforms[k] - 0.5);
+template <class Tail>
+void replace_by_quantiles(const Tail& tail, std::span<double> uniforms) {
+  for (double& u : uniforms) u = quantile_of(tail, u);
 }
 
-/// As quantile_of for each, bit for bit: the middle of a block by vectors, then what lies in its tails one by one.
-void normal_quantiles(double sigma, std::span<double> uniforms) {
-  constexpr std::size_t kBlock = 256;
-  std::array<double, kBlock> middles;
-  std::array<std::uint16_t, kBlock> tails;
-  for (; !uniforms.empty(); uniforms = uniforms.subspan(std::min(kBlock, uniforms.size()))) {
-    const std::span block = uniforms.first(std::min(kBlock, uniforms.size()));
-    normal_middles(block.data(), sigma, block.size(), middles.data());
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < block.size(); ++k) {
-      tails[count] = static_cast<std::uint16_t>(k);
-      count += std::abs(block[k] - 0.5) <= kNormalMiddle ? 0 : 1;
-    }
-    for (std::size_t n = 0; n < count; ++n) middles[tails[n]] = quantile_of(NormalTail{sigma}, block[tails[n]]);
-    std::copy_n(middles.begin(), block.size(), block.begin());
-  }
+POESY_EACH_INSTRUCTION_SET void uniform_quantiles(double half_width, std::span<double> uniforms) {
+  replace_by_quantiles(UniformTail{half_width}, uniforms);
 }
 
-/// Calls visit with the quantile functor of a distribution.
-template <class Visit>
-auto with_tail(const Distribution& distribution, const Visit& visit) {
-  switch (distribution.shape()) {
-    case Distribution::Shape::normal:
-      return visit(NormalTail{distribution.sigma()});
-    case Distribution::Shape::truncated_normal:
-      return visit(TruncatedNormalTail(distribution.sigma(), distribution.half_width()));
-    case Distribution::Shape::uniform:
-      return visit(UniformTail{distribution.half_width()});
-    case Distribution::Shape::triangular:
-      return visit(TriangularTail{distribution.half_width()});
-  }
-  throw std::logic_error("unknown shape of distribution");
+POESY_EACH_INSTRUCTION_SET void triangular_quantiles(double half_width, std::span<double> uniforms) {
+  replace_by_quantiles(TriangularTail{half_width}, uniforms);
 }
 
 void expect_positive(const char* parameter, double value) {
@@ -203,14 +127,31 @@ Distribution Distribution::triangular(double half_width) {
 }
 
 double Distribution::quantile(double u) const {
-  return with_tail(*this, [u](const auto& tail) { return quantile_of(tail, u); });
+  switch (shape_) {
+    case Shape::normal:
+      return normal_quantile(sigma_, u);
+    case Shape::truncated_normal:
+      return quantile_of(TruncatedNormalTail(sigma_, half_width_), u);
+    case Shape::uniform:
+      return quantile_of(UniformTail{half_width_}, u);
+    case Shape::triangular:
+      return quantile_of(TriangularTail{half_width_}, u);
+  }
+  throw std::logic_error("unknown shape of distribution");
 }
 
 void Distribution::transform(std::span<double> uniforms) const {
-  if (shape_ == Shape::normal) return normal_quantiles(sigma_, uniforms);
-  with_tail(*this, [uniforms](const auto& tail) {
-    for (double& u : uniforms) u = quantile_of(tail, u);
-  });
+  switch (shape_) {
+    case Shape::normal:
+      return normal_quantiles(sigma_, uniforms);
+    case Shape::truncated_normal:
+      return replace_by_quantiles(TruncatedNormalTail(sigma_, half_width_), uniforms);
+    case Shape::uniform:
+      return uniform_quantiles(half_width_, uniforms);
+    case Shape::triangular:
+      return triangular_quantiles(half_width_, uniforms);
+  }
+  throw std::logic_error("unknown shape of distribution");
 }
 
 std::string_view name(Distribution::Shape shape) {

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/report/coupling_table.h"
 #include "engine/report/display.h"
 #include "engine/stats/tolerance.h"
 
@@ -61,10 +62,29 @@ std::size_t response_named(const StoredResult& result, std::string_view name) {
   return static_cast<std::size_t>(found - result.responses.begin());
 }
 
+std::string chart_text(const PoseChart& chart) {
+  std::string text = fmt::format("\nposes may be given by {}\n", chart.name);
+  for (const PoseCoordinate& coordinate : chart.coordinates) {
+    text += fmt::format("  {:<16} {:>8} {}\n", coordinate.name, si_unit(coordinate.dimension), coordinate.description);
+  }
+  return text;
+}
+
+std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
+  const PoseChart& chart = model.charts[curve.chart];
+  std::string origin;
+  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
+    origin += (c > 0 ? ", " : "") + readable_text({curve.origin[c], chart.coordinates[c].dimension});
+  }
+  return fmt::format("  {:<16} {}; t from {} to {} s, by {}, from the origin ({}) unless the study sets it\n",
+                     curve.name, curve.description, curve.start, curve.end, chart.name, origin);
+}
+
 SolveCounts all_solves(const StoredResult& result) {
   if (result.kind == "sensitivity") return result.sensitivity.total();
   if (result.kind == "identification") return result.identification.solves;
   if (result.kind == "monte-carlo") return result.monte_carlo.total();
+  if (result.kind == "coupling") return result.coupling.found.total();
   return result.evaluation.total();
 }
 
@@ -161,6 +181,7 @@ std::string result_tables(const StoredResult& result, std::string_view ranked_by
   if (result.kind == "sensitivity") return ranked_table(result, ranked_by);
   if (result.kind == "identification") return identification_table(result);
   if (result.kind == "monte-carlo") return monte_carlo_table(result);
+  if (result.kind == "coupling") return coupling_table(result);
   return result.cases.empty() ? evaluation_table(result) : cases_table(result);
 }
 
@@ -190,10 +211,16 @@ std::string model_text(const ModelDescription& model) {
     text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
                         model.pose_upper[c] / unit.si, unit.name, coordinate.description);
   }
-  text += fmt::format("  {}\n\nfactor sets\n", model.workspace_note);
+  text += fmt::format("  {}\n", model.workspace_note);
+  for (const PoseChart& chart : model.charts) text += chart_text(chart);
+  if (!model.curves.empty()) text += "\ncurves (select = \"trajectory\")\n";
+  for (const NamedCurve& curve : model.curves) text += curve_text(curve, model);
+  text += "\nfactor sets\n";
   for (const FactorSet& set : model.factor_sets) {
     text += fmt::format("  {:<16} {:>8} {}\n", set.name, set.factors.size(), set.description);
   }
+  if (!model.sources.empty()) text += "\nsources of errors (of a coupling study that names none)\n";
+  for (const CouplingSource& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
   text += "\nerror factors\n";
   for (const Factor& factor : model.factors) {
     text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);

@@ -5,41 +5,6 @@
 
 namespace poesy {
 
-void ResponseSamples::merge(const ResponseSamples& other) {
-  moments.merge(other.moments);
-  sketch.merge(other.sketch);
-}
-
-void ResponseSamples::write(ByteWriter& to) const {
-  moments.write(to);
-  sketch.write(to);
-}
-
-ResponseSamples ResponseSamples::read(ByteReader& from) {
-  ResponseSamples samples;
-  samples.moments = Moments::read(from);
-  samples.sketch = QuantileSketch::read(from);
-  return samples;
-}
-
-void PoseUnit::merge(const PoseUnit& other) {
-  if (responses.empty()) responses.resize(other.responses.size());
-  for (std::size_t r = 0; r < responses.size(); ++r) responses[r].merge(other.responses[r]);
-  solves.merge(other.solves);
-}
-
-void PoseUnit::write(ByteWriter& to) const {
-  for (const ResponseSamples& response : responses) response.write(to);
-  solves.write(to);
-}
-
-PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses) {
-  PoseUnit unit;
-  for (std::size_t r = 0; r < responses; ++r) unit.responses.push_back(ResponseSamples::read(from));
-  unit.solves = SolveCounts::read(from);
-  return unit;
-}
-
 PoseUnitEvaluator::PoseUnitEvaluator(const Plan& plan, const Model& model)
     : plan_(&plan),
       responses_(model.description().responses.size()),
@@ -59,6 +24,15 @@ void PoseUnitEvaluator::draw(const WorkUnit& unit) {
   }
 }
 
+std::span<const double> PoseUnitEvaluator::only_counting(std::span<const double> outcomes,
+                                                         std::span<const SolveStatus> status) {
+  kept_.clear();
+  for (std::size_t b = 0; b < outcomes.size(); ++b) {
+    if (counts(status[b], plan_->not_converged())) kept_.push_back(outcomes[b]);
+  }
+  return kept_;
+}
+
 PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
   draw(unit);
   const std::span status = std::span(status_).first(unit.count);
@@ -67,15 +41,16 @@ PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
                         std::span(values_).first(plan_->factors().size() * unit.count), unit.count},
                        {std::span(outcome_).first(responses_ * unit.count), status, iterations, {}});
   PoseUnit found;
-  for (std::size_t b = 0; b < unit.count; ++b) found.solves.add(status[b], iterations[b]);
-  found.responses.resize(responses_);
+  std::size_t counting = 0;
+  for (std::size_t b = 0; b < unit.count; ++b) {
+    found.solves.add(status[b], iterations[b]);
+    counting += counts(status[b], plan_->not_converged()) ? 1 : 0;
+  }
+  found.responses.reserve(responses_);
   for (std::size_t r = 0; r < responses_; ++r) {
-    kept_.clear();
-    for (std::size_t b = 0; b < unit.count; ++b) {
-      if (counts(status[b], plan_->not_converged())) kept_.push_back(outcome_[r * unit.count + b]);
-    }
-    found.responses[r].moments = Moments::of(kept_);
-    found.responses[r].sketch.add(kept_);
+    std::span<const double> kept = std::span(outcome_).subspan(r * unit.count, unit.count);
+    if (counting != unit.count) kept = only_counting(kept, status);
+    found.responses.push_back({Moments::of(kept), BucketedValues(kept)});
   }
   return found;
 }

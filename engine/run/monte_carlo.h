@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -11,24 +12,16 @@
 
 namespace poesy {
 
-/// What some of the samples at a pose contribute to one response.
-struct ResponseSamples {
+/// What one work unit contributes to one response.
+struct ResponseUnit {
   Moments moments;
-  QuantileSketch sketch;
-
-  void merge(const ResponseSamples& other);
-  void write(ByteWriter& to) const;
-  static ResponseSamples read(ByteReader& from);
+  BucketedValues values;
 };
 
 /// What one work unit of a Monte Carlo study contributes.
 struct PoseUnit {
-  std::vector<ResponseSamples> responses;  ///< [R], over the samples that count
+  std::vector<ResponseUnit> responses;  ///< [R], over the samples that count
   SolveCounts solves;
-
-  void merge(const PoseUnit& other);
-  void write(ByteWriter& to) const;
-  static PoseUnit read(ByteReader& from, std::size_t responses);
 };
 
 /// Solves work units of a Monte Carlo study serially, all factors varying together. Factor f draws from the address
@@ -42,6 +35,7 @@ class PoseUnitEvaluator {
 
  private:
   void draw(const WorkUnit& unit);
+  std::span<const double> only_counting(std::span<const double> outcomes, std::span<const SolveStatus> status);
 
   const Plan* plan_;
   std::size_t responses_;

@@ -32,6 +32,44 @@ void check_whole(const SolveCounts& solves, std::size_t most_samples) {
 
 }  // namespace
 
+void ResponseSamples::merge(const ResponseSamples& other) {
+  moments.merge(other.moments);
+  sketch.merge(other.sketch);
+}
+
+void ResponseSamples::write(ByteWriter& to) const {
+  moments.write(to);
+  sketch.write(to);
+}
+
+ResponseSamples ResponseSamples::read(ByteReader& from) {
+  ResponseSamples samples;
+  samples.moments = Moments::read(from);
+  samples.sketch = QuantileSketch::read(from);
+  return samples;
+}
+
+void PoseSamples::add(const PoseUnit& unit) {
+  responses.resize(unit.responses.size());
+  for (std::size_t r = 0; r < responses.size(); ++r) {
+    responses[r].moments.merge(unit.responses[r].moments);
+    responses[r].sketch.add(unit.responses[r].values);
+  }
+  solves.merge(unit.solves);
+}
+
+void PoseSamples::write(ByteWriter& to) const {
+  for (const ResponseSamples& response : responses) response.write(to);
+  solves.write(to);
+}
+
+PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
+  PoseSamples samples;
+  for (std::size_t r = 0; r < responses; ++r) samples.responses.push_back(ResponseSamples::read(from));
+  samples.solves = SolveCounts::read(from);
+  return samples;
+}
+
 MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis)
     : plan_(&plan), responses_(responses), overall_(responses), kept_(plan.poses().size()) {
   result_.responses = responses;
@@ -50,11 +88,11 @@ void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
   POESY_EXPECTS(pose == pose_);
   if (at_pose_.solves.total() == 0 && !kept_[pose.value].bytes.empty()) {
     ByteReader from(kept_[pose.value].bytes);
-    at_pose_ = PoseUnit::read(from, responses_);
+    at_pose_ = PoseSamples::read(from, responses_);
   }
   const bool whole = unit.solves.total() == Plan::kUnitSamples;
   if (!whole) keep();
-  at_pose_.merge(unit);
+  at_pose_.add(unit);
   if (at_pose_.solves.total() < plan_->samples()) return;
   if (whole) keep();
   finish_pose();
@@ -179,7 +217,7 @@ void MonteCarloCollector::restore(std::span<const std::byte> state) {
   for (std::size_t m = 0; m < pose_.value; ++m) read_finished(from, m);
   for (ResponseSamples& response : overall_) response = ResponseSamples::read(from);
   if (from.number_up_to(pose_.value < result_.poses ? 1 : 0) == 1) {
-    at_pose_ = PoseUnit::read(from, responses_);
+    at_pose_ = PoseSamples::read(from, responses_);
     check_whole(at_pose_.solves, samples - 1);
   }
   for (std::size_t m = 0; m < kept_.size(); ++m) read_kept(from, m, m < pose_.value ? samples : samples - 1);
@@ -195,7 +233,7 @@ void MonteCarloCollector::read_kept(ByteReader& from, std::size_t pose, std::siz
   const std::span<const std::byte> bytes = from.block();
   if (bytes.empty()) return;
   ByteReader unit(bytes);
-  const SolveCounts solves = PoseUnit::read(unit, responses_).solves;
+  const SolveCounts solves = PoseSamples::read(unit, responses_).solves;
   unit.expect_end();
   check_whole(solves, most_samples);
   set_kept(pose, {solves, Bytes(bytes.begin(), bytes.end())});

@@ -11,6 +11,26 @@
 
 namespace poesy {
 
+/// One response of some samples.
+struct ResponseSamples {
+  Moments moments;
+  QuantileSketch sketch;
+
+  void merge(const ResponseSamples& other);
+  void write(ByteWriter& to) const;
+  static ResponseSamples read(ByteReader& from);
+};
+
+/// Some samples, all or not, at one pose.
+struct PoseSamples {
+  std::vector<ResponseSamples> responses;  ///< [R]
+  SolveCounts solves;
+
+  void add(const PoseUnit& unit);
+  void write(ByteWriter& to) const;
+  static PoseSamples read(ByteReader& from, std::size_t responses);
+};
+
 /// Puts units together, in the order of the plan. Holds the samples of one pose, as sketches, and those of all poses
 /// together: memory grows neither with the samples nor, but for the result, with the poses. So that a study with more
 /// samples can go on from it, it also keeps the sketches of finished poses, packed, as many as kMostKeptBytes hold.
@@ -39,7 +59,7 @@ class MonteCarloCollector {
   /// Samples at a pose that make up whole units, packed.
   struct Kept {
     SolveCounts solves;
-    Bytes bytes;  ///< as PoseUnit::write gives them
+    Bytes bytes;  ///< as PoseSamples::write gives them
   };
 
   void finish_pose();
@@ -53,7 +73,7 @@ class MonteCarloCollector {
   const Plan* plan_;
   std::size_t responses_;
   PoseIndex pose_;                        ///< the open pose; those before it are finished
-  PoseUnit at_pose_;                      ///< its samples
+  PoseSamples at_pose_;                   ///< its samples
   std::vector<ResponseSamples> overall_;  ///< [R] of the finished poses
   MonteCarloResult result_;               ///< of the finished poses
   std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; open ones from a shorter study

@@ -59,6 +59,8 @@ SolveCounts SensitivityResult::total() const { return sum_of(solves); }
 
 SolveCounts MonteCarloResult::total() const { return sum_of(solves); }
 
+SolveCounts CouplingResult::total() const { return sum_of(solves); }
+
 SolveCounts EvaluationResult::total() const {
   SolveCounts sum;
   for (std::size_t n = 0; n < status.size(); ++n) sum.add(status[n], iterations[n]);

@@ -132,6 +132,36 @@ struct IdentificationResult {
   SolveCounts solves;
 };
 
+/// What error sources do one by one and together: R responses, Z sizes, K subsets of the sources, M poses; SI. NaN
+/// where a solve that a number rests on does not count. What each number means: engine/run/coupling.h.
+struct CouplingResult {
+  std::size_t responses = 0;
+  std::size_t sizes = 0;
+  std::size_t subsets = 0;
+  std::size_t poses = 0;
+
+  std::vector<double> effect;           ///< [R x Z x K x M]
+  std::vector<double> sum;              ///< [R x Z x K x M]
+  std::vector<double> interaction;      ///< [R x Z x K x M]
+  std::vector<double> worst_case;       ///< [R x Z x K x M]
+  std::vector<double> root_sum_square;  ///< [R x Z x K x M]
+  std::vector<double> cancellation;     ///< [R x Z x K x M] from 0 to 1
+
+  // Over the poses where all of these are known; where there is none, NaN and pose -1.
+  std::vector<std::uint64_t> count;                 ///< [R x Z x K] such poses
+  std::vector<double> effect_max;                   ///< [R x Z x K] largest |effect|
+  std::vector<std::int64_t> effect_max_pose;        ///< [R x Z x K] the first pose that has it
+  std::vector<double> interaction_max;              ///< [R x Z x K] largest |interaction|
+  std::vector<double> worst_case_max;               ///< [R x Z x K]
+  std::vector<double> root_sum_square_max;          ///< [R x Z x K]
+  std::vector<double> opposed_share;                ///< [R x Z x K] share of the poses where sources oppose each other
+  std::vector<double> cancellation_max;             ///< [R x Z x K]
+  std::vector<std::int64_t> cancellation_max_pose;  ///< [R x Z x K]
+  std::vector<SolveCounts> solves;                  ///< [Z x M] of all sets of errors that were solved
+
+  SolveCounts total() const;
+};
+
 /// Facts about one run that differ from machine to machine and are not part of the result's content.
 struct RunFacts {
   std::string created;  ///< UTC, ISO 8601

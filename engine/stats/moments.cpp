@@ -6,7 +6,52 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/base/instruction_sets.h"
+
 namespace poesy {
+namespace {
+
+/// Eight sums, so that an addition need not wait for the one before, and that they make whole vectors. Value k goes to
+/// sum k mod 8 on every instruction set.
+constexpr std::size_t kSums = 8;
+using Sums = std::array<double, kSums>;
+
+double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
+
+POESY_EACH_INSTRUCTION_SET double sum_of(std::span<const double> values) {
+  Sums sums{};
+  const std::size_t whole = values.size() / kSums * kSums;
+  for (std::size_t k = 0; k < whole; k += kSums) {
+    for (std::size_t j = 0; j < kSums; ++j) sums[j] += values[k + j];
+  }
+  for (std::size_t k = whole; k < values.size(); ++k) sums[k - whole] += values[k];
+  return total(sums);
+}
+
+struct PowerSums {
+  double s1, s2, s3, s4;
+};
+
+/// Sums of the first four powers of value - centre.
+POESY_EACH_INSTRUCTION_SET PowerSums power_sums(std::span<const double> values, double centre) {
+  Sums s1{}, s2{}, s3{}, s4{};
+  const auto add = [&](std::size_t j, double value) {
+    const double d = value - centre;
+    const double square = d * d;
+    s1[j] += d;
+    s2[j] += square;
+    s3[j] += square * d;
+    s4[j] += square * square;
+  };
+  const std::size_t whole = values.size() / kSums * kSums;
+  for (std::size_t k = 0; k < whole; k += kSums) {
+    for (std::size_t j = 0; j < kSums; ++j) add(j, values[k + j]);
+  }
+  for (std::size_t k = whole; k < values.size(); ++k) add(k - whole, values[k]);
+  return {total(s1), total(s2), total(s3), total(s4)};
+}
+
+}  // namespace
 
 void Moments::add(double value) {
   const auto before = static_cast<double>(count_);
@@ -25,25 +70,10 @@ Moments Moments::of(std::span<const double> values) {
   Moments moments;
   if (values.empty()) return moments;
   const auto n = static_cast<double>(values.size());
-  // Eight sums each, so that an addition need not wait for the one before.
-  constexpr std::size_t kSums = 8;
-  std::array<double, kSums> sum{};
-  for (std::size_t k = 0; k < values.size(); ++k) sum[k % kSums] += values[k];
-  const double mean = std::accumulate(sum.begin(), sum.end(), 0.0) / n;
-  std::array<double, kSums> s1{}, s2{}, s3{}, s4{};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double d = values[k] - mean;
-    const double square = d * d;
-    s1[k % kSums] += d;
-    s2[k % kSums] += square;
-    s3[k % kSums] += square * d;
-    s4[k % kSums] += square * square;
-  }
+  const double mean = sum_of(values) / n;
+  const auto [m1, m2, m3, m4] = power_sums(values, mean);
   // The mean was rounded by shift; the moments about the mean follow from those about the rounded one.
-  const double shift = std::accumulate(s1.begin(), s1.end(), 0.0) / n;
-  const double m2 = std::accumulate(s2.begin(), s2.end(), 0.0);
-  const double m3 = std::accumulate(s3.begin(), s3.end(), 0.0);
-  const double m4 = std::accumulate(s4.begin(), s4.end(), 0.0);
+  const double shift = m1 / n;
   moments.count_ = values.size();
   moments.mean_ = mean + shift;
   moments.m2_ = std::max(0.0, m2 - n * shift * shift);  // rounding may not leave less than nothing

@@ -1,10 +1,12 @@
 #include "engine/stats/quantile_sketch.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 #include "engine/base/contract.h"
+#include "engine/base/instruction_sets.h"
 
 namespace poesy {
 namespace {
@@ -14,13 +16,11 @@ static_assert(std::numeric_limits<double>::is_iec559);
 /// Of 52 fraction bits these do not matter: a bucket spans 2^-8 of its power of two, its middle is off by half of that.
 constexpr int kIgnoredBits = 44;
 /// The bucket of the smallest normal number; below it the exponent's bits are zero.
-constexpr std::size_t kFirstNormal = std::size_t{1} << (52 - kIgnoredBits);
+constexpr std::uint32_t kFirstNormal = std::uint32_t{1} << (52 - kIgnoredBits);
 /// The bucket of the largest finite number.
-constexpr std::size_t kLast = (std::size_t{0x7ff} << (52 - kIgnoredBits)) - 1;
+constexpr std::uint32_t kLast = (std::uint32_t{0x7ff} << (52 - kIgnoredBits)) - 1;
 
-std::size_t bucket(double value) {
-  return static_cast<std::size_t>(std::bit_cast<std::uint64_t>(std::abs(value)) >> kIgnoredBits);
-}
+constexpr std::uint32_t kSign = std::uint32_t{1} << (63 - kIgnoredBits);
 
 double middle(std::size_t bucket) {
   const auto lower = static_cast<std::uint64_t>(bucket) << kIgnoredBits;
@@ -36,18 +36,53 @@ std::uint64_t rank(double q, std::uint64_t n) {
   return static_cast<std::uint64_t>(k);
 }
 
-/// Buckets from the smallest to the largest that is used; none to begin with.
-struct Reach {
-  std::size_t lowest = std::numeric_limits<std::size_t>::max();
-  std::size_t highest = 0;
+/// A whole number that ascends with the value: -0.0 is below 0.0.
+[[gnu::always_inline]] inline std::int64_t ordinal(double value) {
+  const auto bits = std::bit_cast<std::int64_t>(value);
+  return bits ^ ((bits >> 63) & std::numeric_limits<std::int64_t>::max());
+}
 
-  void include(std::size_t bucket) {
-    lowest = std::min(lowest, bucket);
-    highest = std::max(highest, bucket);
+/// Its own inverse.
+double with_ordinal(std::int64_t ordinal_number) {
+  return std::bit_cast<double>(ordinal(std::bit_cast<double>(ordinal_number)));
+}
+
+/// Sets all members but the length of `buckets`.
+POESY_EACH_INSTRUCTION_SET void sort_into_buckets(std::span<const double> values, BucketedValues& sorted) {
+  std::uint32_t* buckets = sorted.buckets.data();
+  std::int64_t min = std::numeric_limits<std::int64_t>::max();
+  std::int64_t max = std::numeric_limits<std::int64_t>::min();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    buckets[k] = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(values[k]) >> kIgnoredBits);
+    min = std::min(min, ordinal(values[k]));
+    max = std::max(max, ordinal(values[k]));
   }
-};
+  std::uint32_t lowest = kSign;
+  std::uint32_t highest = 0;
+  std::uint32_t negatives = 0;
+  std::uint32_t zeros = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const std::uint32_t bucket = buckets[k] & ~kSign;
+    const bool zero = bucket < kFirstNormal;
+    lowest = std::min(lowest, zero ? kSign : bucket);
+    highest = std::max(highest, bucket);
+    negatives += zero ? 0 : (buckets[k] & kSign) / kSign;
+    zeros += zero ? 1 : 0;
+  }
+  sorted.lowest = lowest;
+  sorted.highest = highest;
+  sorted.negatives = negatives;
+  sorted.positives = static_cast<std::uint32_t>(values.size()) - negatives - zeros;
+  sorted.min = with_ordinal(min);
+  sorted.max = with_ordinal(max);
+}
 
 }  // namespace
+
+BucketedValues::BucketedValues(std::span<const double> values) : buckets(values.size()) {
+  POESY_EXPECTS(std::ranges::all_of(values, [](double value) { return std::isfinite(value); }));
+  if (!values.empty()) sort_into_buckets(values, *this);
+}
 
 void QuantileSketch::Store::reach(std::size_t lowest, std::size_t highest) {
   if (lowest > highest) return;
@@ -100,28 +135,22 @@ QuantileSketch::Store QuantileSketch::Store::read(ByteReader& from) {
   return store;
 }
 
-void QuantileSketch::add(std::span<const double> values) {
-  Reach below_zero;
-  Reach above_zero;
-  for (const double value : values) {
-    POESY_EXPECTS(std::isfinite(value));
-    min_ = std::min(min_, value);
-    max_ = std::max(max_, value);
-    const std::size_t at = bucket(value);
-    if (at >= kFirstNormal) (value < 0.0 ? below_zero : above_zero).include(at);
+void QuantileSketch::add(const BucketedValues& values) {
+  if (values.negatives != 0) negative_.reach(values.lowest, values.highest);
+  if (values.positives != 0) positive_.reach(values.lowest, values.highest);
+  const std::array<std::uint64_t*, 2> counts{positive_.counts.data(), negative_.counts.data()};
+  const std::array<std::size_t, 2> first{positive_.first, negative_.first};
+  for (const std::uint32_t bits : values.buckets) {
+    const std::uint32_t bucket = bits & ~kSign;
+    // No branch on the sign, which is as good as random.
+    const std::size_t sign = (bits & kSign) != 0 ? 1 : 0;
+    if (bucket >= kFirstNormal) ++counts[sign][bucket - first[sign]];
   }
-  negative_.reach(below_zero.lowest, below_zero.highest);
-  positive_.reach(above_zero.lowest, above_zero.highest);
-  for (const double value : values) {
-    const std::size_t at = bucket(value);
-    if (at < kFirstNormal) {
-      ++zeros_;
-      continue;
-    }
-    Store& store = value < 0.0 ? negative_ : positive_;
-    ++store.counts[at - store.first];
-    ++store.total;
-  }
+  negative_.total += values.negatives;
+  positive_.total += values.positives;
+  zeros_ += values.buckets.size() - values.negatives - values.positives;
+  min_ = std::min(min_, values.min);
+  max_ = std::max(max_, values.max);
 }
 
 void QuantileSketch::merge(const QuantileSketch& other) {

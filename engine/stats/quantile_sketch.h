@@ -10,11 +10,26 @@
 
 namespace poesy {
 
+/// A block of numbers as a sketch takes it: all that can be worked out without the sketch.
+struct BucketedValues {
+  BucketedValues() = default;
+  /// Precondition: all values are finite.
+  explicit BucketedValues(std::span<const double> values);
+
+  std::vector<std::uint32_t> buckets;  ///< of each number, with the sign above the bits of the bucket
+  std::uint32_t lowest = 0;            ///< bucket of the smallest magnitude that is not taken for zero
+  std::uint32_t highest = 0;           ///< of the largest
+  std::uint32_t negatives = 0;         ///< numbers below zero, and above, that are not taken for zero
+  std::uint32_t positives = 0;
+  double min = std::numeric_limits<double>::infinity();
+  double max = -std::numeric_limits<double>::infinity();
+};
+
 /// Quantiles of a stream of numbers without keeping them: a histogram whose buckets are the numbers' own leading bits,
 /// which are sign, exponent and the first eight bits of the fraction. Counts are whole numbers, so merging is exact and
 /// neither the order of merging nor how the stream was cut into pieces changes a bit.
-/// Memory: 8 bytes for each bucket between the smallest and the largest magnitude seen of either sign, 256 buckets for
-/// each factor of two; at most 4.2 MB a sign, whatever the numbers are.
+/// Memory: 8 bytes for each bucket between the smallest and the largest magnitude seen, 256 buckets for each factor of
+/// two, for each sign that was seen; at most 4.2 MB a sign, whatever the numbers are.
 class QuantileSketch {
  public:
   /// quantile(q) differs from the order statistic it stands for by at most this part of it. Exact for zero, and for the
@@ -22,7 +37,8 @@ class QuantileSketch {
   static constexpr double kRelativeError = 0x1p-9;
 
   /// Precondition: all values are finite.
-  void add(std::span<const double> values);
+  void add(std::span<const double> values) { add(BucketedValues(values)); }
+  void add(const BucketedValues& values);
   void merge(const QuantileSketch& other);
 
   std::uint64_t count() const;

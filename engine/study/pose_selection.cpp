@@ -4,40 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base/contract.h"
-#include "engine/base/units.h"
 #include "engine/random/low_discrepancy.h"
 #include "engine/study/boundary.h"
+#include "engine/study/given_poses.h"
 #include "engine/study/workspace.h"
 
 namespace poesy {
 namespace {
-
-std::string described(std::span<const double> pose, const ModelDescription& model) {
-  std::string text;
-  for (std::size_t c = 0; c < pose.size(); ++c) {
-    if (c > 0) text += ", ";
-    text += model.pose_coordinates[c].name + " = " + to_text({pose[c], model.pose_coordinates[c].dimension});
-  }
-  return text;
-}
-
-SelectedPoses file_poses(const PoseSelection& selection, const Model& model) {
-  SelectedPoses selected{selection.from_file, {}, {}};
-  for (std::size_t m = 0; m < selected.poses.size(); ++m) {
-    const auto pose = selected.poses[PoseIndex(m)];
-    if (const auto reason = model.unreachable(pose)) {
-      Place line = selection.place;
-      line.line += m;
-      throw InputError(line,
-                       "pose " + std::to_string(m + 1) + " (" + described(pose, model.description()) +
-                           ") is out of reach: " + *reason,
-                       "correct or remove this pose");
-    }
-    selected.condition.push_back(model.condition(pose));
-  }
-  return selected;
-}
 
 /// No more candidates than this are tried for a number of poses.
 std::size_t most_candidates(std::size_t count) { return std::max<std::size_t>(100'000, 100 * count); }
@@ -110,7 +83,6 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model) {
 
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model) {
   using Select = PoseSelection::Select;
-  POESY_EXPECTS(selection.select != Select::trajectory);
   switch (selection.select) {
     case Select::interior:
       return interior_poses(selection, model);
@@ -118,9 +90,12 @@ SelectedPoses select_poses(const PoseSelection& selection, const Model& model) {
       return boundary_poses(selection, model);
     case Select::grid:
       return grid_poses(selection, model);
-    default:
-      return file_poses(selection, model);
+    case Select::trajectory:
+      return trajectory_poses(selection, model);
+    case Select::file:
+      break;
   }
+  return file_poses(selection, model);
 }
 
 }  // namespace poesy

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/model/model.h"
 #include "engine/model/pose_set.h"
+#include "engine/study/trajectory.h"
 
 namespace poesy {
 
@@ -24,18 +25,18 @@ struct JointLimit {
 
 /// Which poses of the platform.
 struct PoseSelection {
-  /// Trajectory cannot be run so far; it may stand in a study that is only evaluated.
   enum class Select { interior, file, boundary, grid, trajectory };
 
   Select select = Select::interior;
-  std::size_t count = 0;                 ///< with grid_counts their product
+  std::size_t count = 0;                 ///< with grid_counts their product; of a trajectory its points
   std::vector<std::size_t> grid_counts;  ///< for `grid`: one number per pose coordinate, or empty
-  std::vector<Range> workspace;          ///< one range per pose coordinate; for all but `file`
-  std::vector<JointLimit> limits;        ///< for all but `file`
+  std::vector<Range> workspace;          ///< one range per pose coordinate; for all that search a box
+  std::vector<JointLimit> limits;        ///< for all that search a box
   double max_condition = 1e8;            ///< poses above it count as singular; for all but `file`
   std::string file;                      ///< as written in the study, for `file`
-  PoseSet from_file;                     ///< its poses
-  Place place;                           ///< of the workspace, or of the file's first pose (pose m is m lines below)
+  PoseTable from_file;                   ///< its poses
+  std::optional<Trajectory> trajectory;  ///< for `trajectory`; none in a study that is only evaluated and has none
+  Place place;  ///< of the workspace, of the file's first pose (pose m is m lines below), or of the trajectory
   Place count_place;
 };
 
@@ -49,6 +50,7 @@ struct SelectedPoses {
   PoseSet poses;
   std::vector<double> condition;        ///< [M], see Model::condition; infinity only for `file`
   std::vector<RejectedPoses> rejected;  ///< most frequent first
+  std::vector<double> time;             ///< [M] s, ascending, of a trajectory; else empty
 };
 
 /// The study's poses. Deterministic. A pose of the box is feasible when the model reaches it, every limited joint stays
@@ -60,11 +62,14 @@ struct SelectedPoses {
 /// - grid: with grid_counts all feasible points of that grid, the last coordinate fastest. Ranges are divided evenly,
 ///   both ends included; 1 means the middle. Else the coarsest grid with equal numbers for all coordinates and at least
 ///   `count` feasible points, thinned evenly to `count`.
-/// - file: the poses of the file.
+/// - file: the poses of the file, which may stand in the coordinates of a chart.
+/// - trajectory: the poses of sampled(), in the order of time.
 ///
 /// Throws InputError at the place of the limit that rejected most, or of the selection, when the box gives fewer poses
 /// than wanted (interior and grid: after max(100 000, 100 count) candidates); at count_place when poses of the boundary
-/// coincide to rounding; at the line of a file's first pose that the model cannot reach.
+/// coincide to rounding; at the line of a file's first pose that does not exist or that the model cannot reach; for the
+/// first point of a trajectory to which no pose belongs, or one out of reach or above max_condition: at its line where
+/// the poses are a file's own, else at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 
 }  // namespace poesy

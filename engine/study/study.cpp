@@ -31,9 +31,11 @@ std::string_view name(Analysis::Kind kind) {
     case Analysis::Kind::evaluate:
       return "evaluate";
     case Analysis::Kind::monte_carlo:
+      return "monte-carlo";
+    case Analysis::Kind::coupling:
       break;
   }
-  return "monte-carlo";
+  return "coupling";
 }
 
 std::string_view name(NotConverged policy) {

@@ -55,12 +55,43 @@ struct ToleranceReference {
   double tolerance;  ///< SI
 };
 
+/// A group of errors that is judged as one.
+struct ErrorSource {
+  std::string name;
+  std::vector<FactorIndex> factors;  ///< as the study names them, whatever the pattern leaves of them
+};
+
+/// Which errors of a source have its size, and which of these move together.
+struct ErrorPattern {
+  enum class Choice {
+    all,         ///< every one, together
+    some,        ///< those that are named, together
+    independent  ///< every one, each on its own
+  };
+
+  Choice limbs = Choice::all;
+  std::size_t limb = 0;  ///< for some: it alone; counts from 1
+  Choice components = Choice::all;
+  std::vector<std::string> axes;  ///< for some: "x", "y", "z"; scalars are kept besides
+};
+
+/// What a coupling study asks for. See engine/run/coupling.h.
+struct CouplingStudy {
+  std::vector<double> linear;   ///< [Z] m, sizes of the runs; empty where no error is a length
+  std::vector<double> angular;  ///< [Z] rad; empty where no error is an angle
+  ErrorPattern pattern;
+  std::vector<ErrorSource> sources;  ///< no factor in two of them
+
+  std::size_t sizes() const { return linear.empty() ? angular.size() : linear.size(); }
+};
+
 struct Analysis {
   enum class Kind {
     sensitivity,     ///< the effect of each error on its own
     identification,  ///< which errors deform the mechanism at all
     evaluate,        ///< named cases of fixed errors
-    monte_carlo      ///< all errors vary together
+    monte_carlo,     ///< all errors vary together
+    coupling         ///< error sources of fixed size, one by one and together
   };
 
   Kind kind = Kind::sensitivity;
@@ -73,6 +104,7 @@ struct Analysis {
   std::vector<ErrorSize> groups;                   ///< identification
   double pose_share = 0.95;                        ///< identification: of the poses that a verdict asks for
   std::vector<ErrorCase> cases;                    ///< evaluate
+  CouplingStudy coupling;                          ///< coupling
 };
 
 enum class NotConverged {
@@ -99,7 +131,7 @@ struct Study {
 std::string_view name(PoseSelection::Select select);
 std::string_view name(Analysis::Kind kind);
 inline constexpr std::array kKinds{Analysis::Kind::sensitivity, Analysis::Kind::identification,
-                                   Analysis::Kind::evaluate, Analysis::Kind::monte_carlo};
+                                   Analysis::Kind::evaluate, Analysis::Kind::monte_carlo, Analysis::Kind::coupling};
 std::string_view name(NotConverged policy);
 std::string_view name(SolverOptions::Method method);
 

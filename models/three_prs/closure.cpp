@@ -15,6 +15,8 @@ using Step = lie::Screw<double>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+const PlatformMotion kNoMotion{Matrix3::Identity(), Vector3::Zero()};
+
 /// The six equations without swings, and their derivative by [delta; dr] with E -> exp(delta) E.
 struct Equations {
   Step residual;
@@ -29,11 +31,10 @@ void evaluate(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r,
     const Vector3 joint = motion.E * limb.joint;
     const Vector3 rod = p + joint - limb.carriage;
     const Vector3 axis = limb.base_R_revolute.col(1);
-    const double length = limb.rod.norm();
     const auto row = static_cast<Eigen::Index>(i);
-    equations.residual[row] = (rod.squaredNorm() - length * length) / (2.0 * length);
+    equations.residual[row] = 0.5 * (rod.squaredNorm() - limb.rod.squaredNorm());
     equations.residual[row + 3] = axis.dot(rod) - limb.rod.y();
-    equations.jacobian.row(row) << joint.cross(rod).transpose() / length, rod.transpose() / length;
+    equations.jacobian.row(row) << joint.cross(rod).transpose(), rod.transpose();
     equations.jacobian.row(row + 3) << joint.cross(axis).transpose(), axis.transpose();
   }
 }
@@ -62,9 +63,34 @@ LimbWithErrors limb_with_errors(const Geometry& geometry, const Configuration& n
   return out;
 }
 
+ClosureStart::ClosureStart(const Geometry& geometry, const Configuration& nominal) : r_(nominal.platform.p) {
+  constexpr std::array<double, kSources> kNone{};
+  std::array<LimbWithErrors, kLimbs> limbs;
+  for (std::size_t i = 0; i < kLimbs; ++i) limbs[i] = limb_with_errors(geometry, nominal, i, kNone);
+  Equations equations;
+  evaluate(limbs, r_, kNoMotion, equations);
+  const Eigen::PartialPivLU<Matrix6> factors(equations.jacobian);
+  from_residual_ = is_singular(factors) ? Matrix6::Zero() : Matrix6(-factors.inverse());
+  Matrix6 swapped;
+  swapped << equations.jacobian.rightCols<3>(), equations.jacobian.leftCols<3>();
+  const auto places = Eigen::PartialPivLU<Matrix6>(swapped).permutationP().indices();
+  for (std::size_t n = 0; n < order_.size(); ++n) {
+    order_[n] = static_cast<std::size_t>(places[static_cast<Eigen::Index>(n)]);
+  }
+}
+
+PlatformMotion ClosureStart::operator()(const std::array<LimbWithErrors, kLimbs>& limbs) const {
+  Equations equations;
+  evaluate(limbs, r_, kNoMotion, equations);
+  const Step step = from_residual_ * equations.residual;
+  return {lie::exp(Vector3(step.head<3>())), step.tail<3>()};
+}
+
+double rounding_level(const Vector3& r) { return 64.0 * kEpsilon * std::max(1.0, r.norm()); }
+
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const SolverOptions& options,
                     PlatformMotion& motion) {
-  const double rounding = 64.0 * kEpsilon * std::max(1.0, r.norm());
+  const double rounding = rounding_level(r);
   Equations equations;
   double smallest = std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {

@@ -32,12 +32,35 @@ struct Closing {
   std::uint32_t iterations;
 };
 
+/// Where solves at a nominal configuration start: one step of its Jacobian from no motion, which is the first order of
+/// what the errors do. At a singular pose solves start without motion.
+class ClosureStart {
+ public:
+  ClosureStart(const Geometry& geometry, const Configuration& nominal);
+
+  PlatformMotion operator()(const std::array<LimbWithErrors, kLimbs>& limbs) const;
+
+  /// [delta; dr] from the values of the six equations without motion; zero at a singular pose.
+  const lie::Matrix6<double>& from_residual() const { return from_residual_; }
+  /// Order of the equations in which partial pivoting eliminates [dr; delta]: equation n stands at the n-th place
+  /// named.
+  const std::array<std::size_t, 6>& elimination_order() const { return order_; }
+
+ private:
+  lie::Vector3<double> r_;
+  lie::Matrix6<double> from_residual_;
+  std::array<std::size_t, 6> order_;
+};
+
+/// Below which a change (rad, m) may be rounding: 64 eps x max(1, |r|).
+double rounding_level(const lie::Vector3<double>& r);
+
 /// Finds the motion at which all limbs close, to finite size of all errors: the nine equations
 ///   r + dr + E R R_i (c0 + dc_i) = R_i (a0 + da_i) + R_i E(tA_i) e3 (q_i + dq_i) + R_i E(tA_i) E(tB_i) db_i
 ///                                  + R_i E(tA_i) E(tB_i) Ry(th_i + dphi_i) E(tB'_i) e3 (l + dl_i),  i = 1, 2, 3
 /// of which Eq. 14 is the first order. The swings dphi_i are eliminated exactly: a rod that turns about its revolute
 /// joint keeps its length and its component along the joint. That leaves six equations for E and dr, which Newton
-/// solves with their exact Jacobian; Gauss-Newton is the same there.
+/// solves with their exact Jacobian; Gauss-Newton is the same there. A rod's equation is (|rod|^2 - l^2) / 2.
 ///
 /// Stopping rule. With c_j the largest component of the step j (rad, m), step j ends the solve as
 ///   converged      when c_j is below the tolerance;

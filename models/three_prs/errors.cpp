@@ -44,14 +44,14 @@ constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable}
                                                 {7, "c", "z", Role::compensable}}};
 
 /// What each source is, in the order of frames.
-constexpr std::array<std::string_view, 8> kMeanings{"position error of the rail's upper end A",
-                                                    "error of the carriage's initial position",
-                                                    "attitude error of the rail",
-                                                    "gap of the revolute joint",
-                                                    "attitude error of the revolute joint",
-                                                    "swing angle error of the rod",
-                                                    "error of the rod's length",
-                                                    "position error of the spherical joint C on the platform"};
+constexpr std::array<std::string_view, kFrames> kMeanings{"position error of the rail's upper end A",
+                                                          "error of the carriage's initial position",
+                                                          "attitude error of the rail",
+                                                          "gap of the revolute joint",
+                                                          "attitude error of the revolute joint",
+                                                          "swing angle error of the rod",
+                                                          "error of the rod's length",
+                                                          "position error of the spherical joint C on the platform"};
 
 Factor factor(const Entry& entry, std::size_t limb) {
   const std::string number = std::to_string(limb + 1);

@@ -23,6 +23,8 @@ LimbConfiguration limb_configuration(const Geometry& g, const lie::Transform<dou
   return {joint.z() - down, swing, c, R_i * Vector3(std::sin(swing), 0.0, std::cos(swing)), R_i.col(1)};
 }
 
+bool is_tilt(double angle) { return std::abs(angle) < std::numbers::pi / 2.0; }
+
 /// Twist of the platform while its tip moves by a given velocity: the constraint rows of J, then the tip.
 Matrix6 tip_jacobian(const Geometry& geometry, const Configuration& at) {
   Matrix6 rows;
@@ -37,6 +39,19 @@ Vector3 angle_rates(const Pose& pose, const Matrix3& R, const Vector3& omega) {
   Matrix3 axes;
   axes << Vector3::UnitX(), Vector3(0.0, std::cos(pose.alpha), std::sin(pose.alpha)), R.col(2);
   return axes.partialPivLu().solve(omega);
+}
+
+/// The pose after the platform has moved by a small twist that its constraints allow.
+Pose moved(const Pose& pose, const Matrix3& R, const lie::Screw<double>& twist) {
+  const Vector3 rates = angle_rates(pose, R, twist.head<3>());
+  return {pose.alpha + rates[0], pose.beta + rates[1], pose.z + twist[5]};
+}
+
+Vector3 carriages(const Configuration& at) { return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q}; }
+
+/// The upright pose with the carriages at these heights on average.
+Pose upright(const Geometry& g, const Vector3& q) {
+  return {0.0, 0.0, q.mean() + std::sqrt(g.l * g.l - (g.c - g.a) * (g.c - g.a))};
 }
 
 }  // namespace
@@ -95,7 +110,6 @@ Vector3 tool(const Geometry& geometry, const Matrix3& R) { return geometry.h * R
 
 std::optional<Pose> pose_of_tip(const Geometry& geometry, const Vector3& tip) {
   constexpr int kIterations = 50;
-  constexpr double kQuarter = std::numbers::pi / 2.0;
   const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, tip.norm());
   Pose pose{0.0, 0.0, tip.z() - geometry.h};
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -105,9 +119,36 @@ std::optional<Pose> pose_of_tip(const Geometry& geometry, const Vector3& tip) {
     lie::Screw<double> wanted = lie::Screw<double>::Zero();
     wanted.tail<3>() = missing;
     const lie::Screw<double> twist = tip_jacobian(geometry, at).partialPivLu().solve(wanted);
-    const Vector3 rates = angle_rates(pose, at.platform.R, twist.head<3>());
-    pose = {pose.alpha + rates[0], pose.beta + rates[1], pose.z + twist[5]};
-    if (!(std::abs(pose.alpha) < kQuarter && std::abs(pose.beta) < kQuarter)) return std::nullopt;
+    pose = moved(pose, at.platform.R, twist);
+    if (!is_tilt(pose.alpha) || !is_tilt(pose.beta)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<Pose> pose_of_carriages(const Geometry& geometry, const Vector3& q) {
+  constexpr int kIterations = 50;
+  constexpr double kShortest = 1.0 / 1024.0;
+  const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, q.norm());
+  Pose pose = upright(geometry, q);
+  Configuration at = configuration(geometry, pose);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Vector3 missing = q - carriages(at);
+    if (missing.norm() <= rounding) return pose;
+    lie::Screw<double> wanted = lie::Screw<double>::Zero();
+    wanted.head<3>() = missing;
+    const lie::Screw<double> twist = velocity_jacobian(at).partialPivLu().solve(wanted);
+    // A full step may lead to where a rod is too short, or away; then a shorter one is taken.
+    bool nearer = false;
+    for (double share = 1.0; share >= kShortest && !nearer; share *= 0.5) {
+      const Pose next = moved(pose, at.platform.R, share * twist);
+      if (!is_tilt(next.alpha) || !is_tilt(next.beta)) continue;
+      const Configuration there = configuration(geometry, next);
+      if (!((q - carriages(there)).norm() < missing.norm())) continue;
+      pose = next;
+      at = there;
+      nearer = true;
+    }
+    if (!nearer) return std::nullopt;
   }
   return std::nullopt;
 }

@@ -4,10 +4,9 @@
 #include <optional>
 
 #include "models/lie/se3.h"
+#include "models/three_prs/sources.h"
 
 namespace poesy::three_prs {
-
-inline constexpr std::size_t kLimbs = 3;
 
 /// Structural parameters (San et al. 2023, Table 1), in m. z points down, from the rails to the platform.
 struct Geometry {
@@ -63,5 +62,10 @@ lie::Vector3<double> tool(const Geometry& geometry, const lie::Matrix3<double>& 
 /// The pose at which the tool tip is at this point of the base frame (m), to rounding. Nothing where there is none
 /// between -90 and 90 deg near the upright pose; whether the limbs reach it is not asked.
 std::optional<Pose> pose_of_tip(const Geometry& geometry, const lie::Vector3<double>& tip);
+
+/// Forward kinematics: the pose at which the carriages stand at these q (m), to rounding, by Newton from upright; the
+/// joints of the platform stand below their carriages. Nothing where there is none between -90 and 90 deg near the
+/// upright pose; whether the rails are long enough is not asked.
+std::optional<Pose> pose_of_carriages(const Geometry& geometry, const lie::Vector3<double>& q);
 
 }  // namespace poesy::three_prs

@@ -15,6 +15,39 @@ namespace {
 /// In the order of ModelDescription::fidelities.
 enum class Fidelity : std::size_t { exact, first_order };
 
+enum Chart : std::size_t { tip, carriages };
+
+/// In the order of Chart.
+std::vector<PoseChart> charts() {
+  return {{"tip",
+           {{"tip_x", Dimension::length, "x of the tool tip in the base frame"},
+            {"tip_y", Dimension::length, "y of the tool tip in the base frame"},
+            {"tip_z", Dimension::length, "z of the tool tip in the base frame, downwards"}},
+           "lengthen h, for the tool may be too short, or move the point nearer to x = y = 0"},
+          {"carriages",
+           {{"q_1", Dimension::length, "carriage 1 along its rail, downwards from the upper end"},
+            {"q_2", Dimension::length, "carriage 2 along its rail"},
+            {"q_3", Dimension::length, "carriage 3 along its rail"}},
+           "bring q_1, q_2, q_3 closer together, for the carriages may be too far apart for the rods"}};
+}
+
+/// The paper's Section 5.2.1, where no start height is printed: the origin's is chosen so that the rails suffice.
+std::vector<NamedCurve> curves() {
+  const std::vector<double> origin{0.0, 0.0, 0.85};
+  const auto helix = [](double t) {
+    const double angle = std::numbers::pi * t;
+    return std::vector{0.03 * std::cos(angle), 0.03 * std::sin(angle), 0.03 * t};
+  };
+  const auto spiral = [](double t) {
+    const double angle = std::numbers::pi * t;
+    return std::vector{0.015 * t * std::cos(angle), 0.015 * t * std::sin(angle), 0.015 * t};
+  };
+  return {{"helix", "30 cos(pi t), 30 sin(pi t), 30 t mm, the paper's first trajectory", Chart::tip, 0.0, 2.0, origin,
+           helix},
+          {"growing-spiral", "15 t cos(pi t), 15 t sin(pi t), 15 t mm, the paper's second trajectory", Chart::tip, 0.0,
+           2.0, origin, spiral}};
+}
+
 ModelDescription describe() {
   constexpr double kTilt = std::numbers::pi / 9.0;
   const Geometry published;
@@ -44,7 +77,12 @@ ModelDescription describe() {
   description.pose_upper = {kTilt, kTilt, 0.99};
   description.workspace_note =
       "The paper states no workspace. This box is chosen: with the published geometry the rails suffice in all of it.";
+  description.sources = {
+      {"FS", "platform-hinges"}, {"T", "initial-position"}, {"R", "revolute-gap"}, {"L", "rod-length"}};
   description.fidelities = {"exact", "first-order"};
+  description.headline = {kComponents, kComponents + 1, kComponents + 2};
+  description.charts = charts();
+  description.curves = curves();
   return description;
 }
 
@@ -83,6 +121,15 @@ class ThreePrs final : public Model {
 
   double condition(std::span<const double> pose) const override {
     return three_prs::condition(geometry_, configuration(geometry_, pose_from(pose)));
+  }
+
+  std::optional<std::vector<double>> pose_from_chart(std::size_t chart,
+                                                     std::span<const double> coordinates) const override {
+    POESY_EXPECTS(coordinates.size() == 3);
+    const lie::Vector3<double> given(coordinates[0], coordinates[1], coordinates[2]);
+    const auto pose = chart == Chart::tip ? pose_of_tip(geometry_, given) : pose_of_carriages(geometry_, given);
+    if (!pose) return std::nullopt;
+    return std::vector{pose->alpha, pose->beta, pose->z};
   }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {

@@ -1,6 +1,6 @@
 poesy_test(study_test LABELS unit SOURCES engine/study/plan_test.cpp engine/study/study_test.cpp
            LINKS poesy_study)
 poesy_test(pose_selection_test LABELS property SOURCES engine/study/pose_selection_test.cpp
-           engine/study/boundary_test.cpp LINKS poesy_study)
+           engine/study/boundary_test.cpp engine/study/trajectory_test.cpp LINKS poesy_study)
 poesy_test(boundary_statistical_test LABELS statistical SOURCES engine/study/boundary_statistical_test.cpp
            LINKS poesy_study Boost::headers)

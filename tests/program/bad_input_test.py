@@ -8,6 +8,24 @@ def changed(old, new):
     return STUDY.replace(old, new)
 
 
+HELIX = """\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "3-prs"
+[poses]
+select = "trajectory"
+trajectory = { curve = "helix" }
+[analysis]
+samples = 10
+"""
+
+
+def helix(new, extra=""):
+    return HELIX.replace('curve = "helix"', 'curve = "helix", ' + new if new else 'curve = "helix"').replace(
+        '"3-prs"\n', '"3-prs"\n' + extra)
+
+
 # name: (study, where the message points to, words it holds)
 BAD_STUDIES = {
     "unknown_key": (changed("count = 6", "count = 6\ncolour = 1"), "7:1", ["colour"]),
@@ -43,6 +61,16 @@ BAD_STUDIES = {
         .replace('background', '# background'), "12:", ["delta_9_1_y", "delta_1_1_y"]),
     "no_case": (changed('kind = "sensitivity"', 'kind = "evaluate"').replace('background', '# background'), "10:",
                 ["at least one case"]),
+    "tool_too_short": (helix("", 'geometry = { h = "60 mm" }\n'), "8:14", ["point 1 of 201", "tip_x = 30 mm", "lengthen h"]),
+    "stroke_left": (helix('origin = ["0 mm", "0 mm", "1200 mm"]'), "7:14", ["point ", "t = ", "below the lower end of its rail"]),
+    "singular_on_the_way": (HELIX.replace("[analysis]", "max_condition = 1.5\n[analysis]"), "7:14", ["singular", "1.70002"]),
+    "no_such_curve": (HELIX.replace('"helix"', '"helicoid"'), "7:24", ["helicoid", "growing-spiral"]),
+    "curve_of_a_model_without": (HELIX.replace('"3-prs"', '"2upr-rpu"'), "7:24", ["2upr-rpu", "no curves", "file"]),
+    "count_of_a_trajectory": (HELIX.replace("[analysis]", "count = 5\n[analysis]"), "8:1", ["count", "trajectory"]),
+    "origin_without_unit": (helix("origin = [0, 0, 850]"), "7:43", ["bare number 0", "unit"]),
+    "time_reversed": (helix('time = ["2 s", "1 s"]'), "7:40", ["from 2 s to 1 s"]),
+    "time_outside": (helix('time = ["0 s", "9 s"]'), "7:40", ["0 s to 9 s", "0 s to 2 s"]),
+    "trajectory_without_file": (HELIX.replace('curve = "helix"', "points = 5"), "7:14", ["neither curve nor file"]),
     "not_toml": (changed("[poses]", "[poses"), "5:", []),
     "rubbish": (bytes(range(256)) * 20, "", []),
     "empty": ("", "1:1", ["empty"]),
@@ -62,6 +90,7 @@ BAD_TABLES = {
     "header_only": (POSES, "delta_1_1_y\n", "errors.csv", []),
     "short_row": (POSES, "delta_1_1_y,epsilon_1_4_z\n0.001\n", "errors.csv:2", []),
     "out_of_reach": ("z,beta,gamma\n-0.2,0.1,0.1\n0.2,0,0\n", ERRORS, "poses.csv:3", ["z"]),
+    "degrees_as_radians": ("z,beta,gamma\n-0.2,20,0\n", ERRORS, "poses.csv:2", ["20 rad = 1145.92 deg", "SI"]),
 }
 
 
@@ -119,7 +148,8 @@ class BadInput(ProgramTest):
     def test_command_lines(self):
         for arguments in [[], ["fly"], ["run"], ["run", "a.toml", "--threads", "0"], ["run", "a.toml", "--threads", "x"],
                           ["run", "a.toml", "--seed", "-1"], ["show"], ["models", "9upr"], ["template", "9upr"],
-                          ["template", "2upr-rpu", "poetry"], ["template", "3-prs", "identification"]]:
+                          ["template", "2upr-rpu", "poetry"], ["template", "3-prs", "identification"],
+                          ["template", "xy-3-prs", "identification"]]:
             with self.subTest(arguments):
                 done = self.poesy(*arguments)
                 self.assertEqual(done.returncode, 2, done.stderr)

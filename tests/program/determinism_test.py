@@ -1,5 +1,7 @@
 """The same study gives the same content for any number of threads and any number of repetitions."""
 
+import itertools
+
 import h5py
 
 from poesy_program import STUDY, ProgramTest, main
@@ -26,19 +28,19 @@ class Determinism(ProgramTest):
         self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 3)}), 1)
 
     def test_every_fidelity(self):
-        for kind in ("sensitivity", "monte-carlo"):
+        for model, kind in itertools.product(("3-prs", "xy-3-prs"), ("sensitivity", "monte-carlo")):
             by_fidelity = []
             for fidelity in ("exact", "first-order"):
                 study = f"""\
 format = "poesy-study"
 version = 1
-mechanism = {{ model = "3-prs", fidelity = "{fidelity}" }}
+mechanism = {{ model = "{model}", fidelity = "{fidelity}" }}
 poses = {{ count = 5 }}
 errors = {{ linear = {{ distribution = "normal", sigma = "0.1 mm" }} }}
 analysis = {{ kind = "{kind}", samples = 1200 }}
 """
                 hashes = {self.content_hash(study, "--threads", n) for n in (1, 2, 3)}
-                self.assertEqual(len(hashes), 1, (kind, fidelity))
+                self.assertEqual(len(hashes), 1, (model, kind, fidelity))
                 by_fidelity.append(hashes.pop())
             self.assertNotEqual(*by_fidelity)
 

@@ -45,6 +45,13 @@ class FakeModel : public Model {
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override;
 
+  /// Chart "sums": depth = -z, sum = beta + gamma, difference = beta - gamma. No pose has |sum| > 2 rad.
+  std::optional<std::vector<double>> pose_from_chart(std::size_t /*chart*/,
+                                                     std::span<const double> sums) const override {
+    if (std::abs(sums[1]) > 2.0) return std::nullopt;
+    return std::vector{-sums[0], 0.5 * (sums[1] + sums[2]), 0.5 * (sums[1] - sums[2])};
+  }
+
  private:
   ModelDescription description_ = describe();
   double arm_;
@@ -108,6 +115,14 @@ inline ModelDescription FakeModel::describe() {
   model.pose_lower = {-0.30, -0.5, -0.6};
   model.pose_upper = {-0.18, 0.5, 0.6};
   model.workspace_note = "a box inside reach";
+  model.charts = {{"sums",
+                   {{"depth", Dimension::length, "below z = 0"},
+                    {"sum", Dimension::angle, "of both tilts"},
+                    {"difference", Dimension::angle, "of both tilts"}},
+                   "make the sum smaller"}};
+  model.curves = {{"wave", "0.1 sin t m, t, 0", 0, 0.0, 4.0, {0.2, -1.0, 0.0}, [](double t) {
+                     return std::vector{0.1 * std::sin(t), t, 0.0};
+                   }}};
   return model;
 }
 

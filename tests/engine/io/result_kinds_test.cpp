@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <sstream>
 
 #include "engine/io/h5.h"
 #include "engine/io/result_file.h"
@@ -64,6 +65,27 @@ TEST_F(CasesFile, IsReadBackAsItWas) {
   EXPECT_EQ(stored.case_result.count, result_.count);
   EXPECT_EQ(stored.errors, (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}));
   EXPECT_TRUE(verify_result(path_).matches());
+}
+
+TEST_F(CasesFile, KeepsTheTimesOfATrajectory) {
+  EXPECT_TRUE(read_result(path_).time.empty());
+  example_.poses.time = {0.0, 0.25, 0.5, 1.5};
+  write_cases(path_, example_.study, example_.poses, result_, example_.facts);
+  EXPECT_TRUE(verify_result(path_).matches());
+  EXPECT_EQ(read_result(path_).time, example_.poses.time);
+  EXPECT_EQ(h5::File::open(path_).attribute<std::string>("/poses/time", "unit").at(0), "s");
+  export_tables(path_, folder_.path());
+  const auto lines = [&](const std::string& name, std::size_t line) {
+    std::istringstream text(test::read_bytes(folder_ / name));
+    std::string found;
+    for (std::size_t k = 0; k <= line; ++k) std::getline(text, found);
+    return found;
+  };
+  EXPECT_TRUE(lines("poses.csv", 0).starts_with("pose,time [s],z [m]"));
+  EXPECT_TRUE(lines("poses.csv", 4).starts_with("3,1.5,"));
+  EXPECT_TRUE(lines("evaluate.csv", 0).starts_with("case,pose,time [s],angular_deformation [rad]"));
+  EXPECT_TRUE(lines("evaluate.csv", 4).starts_with("fine,3,1.5,"));
+  EXPECT_TRUE(lines("evaluate.csv", 6).starts_with("coarse,1,0.25,"));
 }
 
 TEST_F(CasesFile, IsExportedWithItsNames) {

@@ -127,7 +127,7 @@ TEST(ReadStudy, FindsThePoseFileBesideTheStudy) {
                                         "[poses]\nselect = \"file\"\nfile = \"my poses.csv\"\n");
   const Study study = read_study(path, kCatalog, StudyUse::run);
   EXPECT_EQ(study.poses.file, "my poses.csv");
-  EXPECT_EQ(study.poses.from_file.column(0), (std::vector<double>{-0.2, -0.25}));
+  EXPECT_EQ(study.poses.from_file.points.column(0), (std::vector<double>{-0.2, -0.25}));
   EXPECT_EQ(to_string(study.poses.place), poses + ":2:1");
   folder.write("my poses.csv", "z,beta,gamma\n-0.2,0,zero\n");
   test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {poses, 2, 8}, {"'zero'"});
@@ -144,7 +144,7 @@ TEST(ReadStudyToEvaluate, NeedsTheMechanismOnly) {
 }
 
 TEST(ReadStudyToEvaluate, TakesKindsAndPosesThatCannotBeRunYet) {
-  for (const std::string select : {"boundary", "grid", "trajectory"}) {
+  for (const std::string select : {"boundary", "grid"}) {
     const std::string text = changed("\"interior\"", "\"" + select + "\"");
     EXPECT_EQ(name(study_of(text, StudyUse::evaluate).poses.select), select);
   }
@@ -324,10 +324,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"CountTooLargeForToml", "count = 20", "count = 9223372036854775808^", {"not TOML"}},
         BadStudy{"CountFraction", "count = 20", "count = ^20.5", {"poses.count is the number 20.5", "whole number"}},
         BadStudy{"CountText", "count = 20", "count = ^\"20\"", {"poses.count is the text '20'"}},
-        BadStudy{"Trajectory",
-                 "\"interior\"",
-                 "^\"trajectory\"",
-                 {"not available yet in this version; use \"interior\", \"boundary\", \"grid\" or \"file\""}},
         BadStudy{"CountsOfInterior",
                  "count = 20",
                  "count = ^{ z = 2, beta = 2, gamma = 2 }",

@@ -91,5 +91,25 @@ TEST(DamagedTable, IsATableOrAnInputErrorWhateverBytesChange) {
   EXPECT_GT(damage.refused(), 1000);
 }
 
+TEST(DamagedTrajectory, GivesPosesOrAnInputErrorWhateverBytesChange) {
+  const Catalog catalog = test::fake_catalog();
+  const std::string_view text = "t,depth,sum,difference\n0,0.2,0.1,0\n0.5,0.25,0,0.1\n1,0.25,0,0.1\n2,0.2,0,0\n";
+  const test::TempFolder folder;
+  const std::string study = folder.write(
+      "study.toml",
+      "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\nselect = \"trajectory\"\n"
+      "trajectory = { file = \"curve.csv\", points = 9 }\n");
+  const test::FakeModel model;
+  Damage damage([&](const std::string& path) {
+    folder.write("curve.csv", test::read_bytes(path));
+    const SelectedPoses poses = select_poses(read_study(study, catalog, StudyUse::run).poses, model);
+    EXPECT_EQ(poses.time.size(), 9u);
+  });
+  for (std::size_t length = 0; length < text.size(); ++length) damage.try_text(text.substr(0, length));
+  std::mt19937_64 random(20240610);
+  for (int k = 0; k < 1000; ++k) damage.try_text(with_changed_bytes(text, random));
+  EXPECT_GT(damage.refused(), 500);
+}
+
 }  // namespace
 }  // namespace poesy

@@ -234,9 +234,29 @@ TEST(Template, NamesEveryKey) {
                           "boundary",
                           "grid",
                           "limits = ",
+                          "trajectory = ",
+                          "curve = ",
+                          "origin = ",
+                          "points = ",
+                          "time = ",
                           "max_condition = "}) {
     EXPECT_NE(text.find(key), std::string::npos) << key;
   }
+}
+
+/// Each trajectory that a template shows behind a '#' reads in place of the box.
+TEST(Template, ShowsTrajectoriesThatRead) {
+  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
+  std::size_t shown = 0;
+  for (std::size_t at = text.find("# trajectory = "); at != std::string::npos;
+       at = text.find("# trajectory = ", at + 1)) {
+    const std::string line = text.substr(at + 2, text.find('\n', at) - at - 2);
+    const Study study =
+        study_of(shortest_study("[poses]\nselect = \"trajectory\"\n" + line + "\n"), StudyUse::evaluate);
+    EXPECT_EQ(study.poses.count, 201u);
+    ++shown;
+  }
+  EXPECT_EQ(shown, 2u);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ const ModelDescription kModel = test::FakeModel::describe();
 
 PoseSet poses_of(std::string_view text) {
   const test::TempFolder folder;
-  return read_poses(folder.write("poses.csv", text), kModel);
+  return read_poses(folder.write("poses.csv", text), kModel).points;
 }
 
 TEST(ReadPoses, ComesBackInTheModelsOrder) {
@@ -29,6 +29,27 @@ TEST(ReadPoses, ToleratesWhatProgramsWrite) {
   EXPECT_EQ(poses_of("\xEF\xBB\xBFz,beta,gamma\r\n-0.2,0,0\r\n-0.25,0,0\r\n").column(0), expected);
   EXPECT_EQ(poses_of("z, beta\t, gamma\n  -0.2 , +0 ,0\n-0.25,0,0").column(0), expected);
   EXPECT_EQ(poses_of("z,beta,gamma\n-0.2,0,0\n-0.25,0,0\n\n  \r\n\n").column(0), expected);
+}
+
+TEST(ReadPoses, TheHeaderTellsTheCoordinates) {
+  const test::TempFolder folder;
+  const PoseTable table = read_poses(folder.write("poses.csv", "sum,difference,depth\n0.3,0.1,0.2\n"), kModel);
+  EXPECT_EQ(table.chart, std::size_t{0});
+  EXPECT_EQ(table.points.column(0), std::vector{0.2});
+  EXPECT_EQ(table.points.column(1), std::vector{0.3});
+  EXPECT_FALSE(read_poses(folder.write("own.csv", "z,beta,gamma\n-0.2,0,0\n"), kModel).chart);
+}
+
+TEST(ReadTrajectory, TakesTimesFromAnyColumn) {
+  const test::TempFolder folder;
+  const TimedPoints own = read_trajectory(folder.write("c.csv", "gamma,t,z,beta\n3,-1,1,2\n6,0.5,4,5\n"), kModel);
+  EXPECT_EQ(own.time, (std::vector{-1.0, 0.5}));
+  EXPECT_FALSE(own.table.chart);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(own.table.points.column(c), (std::vector{1.0 + double(c), 4.0 + double(c)}));
+  }
+  const TimedPoints sums = read_trajectory(folder.write("s.csv", "t,depth,sum,difference\n0,1,2,3\n1,1,2,3\n"), kModel);
+  EXPECT_EQ(sums.table.chart, std::size_t{0});
 }
 
 TEST(ReadErrors, TakesAnySubsetInAnyOrder) {
@@ -69,6 +90,11 @@ INSTANTIATE_TEST_SUITE_P(
                     BadTable{"MisspeltColumn", "z, ^bta,gamma\n0,0,0\n", {"'bta'", "did you mean 'beta'?"}},
                     BadTable{"RepeatedColumn", "z,beta,^z,gamma\n0,0,0,0\n", {"'z'", "second time"}},
                     BadTable{"NoHeader", "^0,0,0\n0,0,0\n", {"column '0'"}},
+                    BadTable{"MixedCoordinates",
+                             "^z,beta,difference\n0,0,0\n",
+                             {"mix coordinates", "z,beta,gamma | depth,sum,difference"}},
+                    BadTable{"IncompleteChart", "^depth,sum\n0,0\n", {"'difference' is missing"}},
+                    BadTable{"TimeOfPoses", "^t,z,beta,gamma\n0,0,0,0\n", {"'t'", "known: z, beta, gamma, depth"}},
                     BadTable{"Word", "z,beta,gamma\n0,0,0\n0, ^left,0\n", {"'left'", "'beta'", "not a finite number"}},
                     BadTable{"NotANumber", "z,beta,gamma\n0,^nan,0\n", {"'nan'", "not a finite number"}},
                     BadTable{"Infinity", "z,beta,gamma\n0,0,^-inf\n", {"'-inf'", "not a finite number"}},
@@ -87,6 +113,33 @@ INSTANTIATE_TEST_SUITE_P(
                                          10),
                              {"'?ELF?"}},
                     BadTable{"ZeroByte", std::string("z,beta,gamma\n0,^0\0,0\n", 21), {"'0?'"}}),
+    kName);
+
+class BadTrajectory : public testing::TestWithParam<BadTable> {};
+
+TEST_P(BadTrajectory, IsAnInputErrorWithItsPlace) {
+  const test::TempFolder folder;
+  const test::Marked bad(GetParam().text);
+  const std::string path = folder.write("curve.csv", bad.text);
+  test::expect_input_error([&] { read_trajectory(path, kModel); }, {path, bad.line, bad.column}, GetParam().words);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadTrajectory,
+    testing::Values(
+        BadTable{"RepeatedTime",
+                 "t,z,beta,gamma\n0,0,0,0\n0.5,0,0,0\n^0.5,0,0,0\n",
+                 {"t = 0.5 s stands here a second time, after line 3", "sort the rows"}},
+        BadTable{"UnsortedTime",
+                 "t,z,beta,gamma\n0,0,0,0\n0.5,0,0,0\n^0.25,0,0,0\n",
+                 {"t = 0.25 s follows t = 0.5 s of line 3", "sort the rows"}},
+        BadTable{"NoTime", "^z,beta,gamma\n0,0,0\n", {"'t' is missing", "t,z,beta,gamma | t,depth,sum,difference"}},
+        BadTable{"OnlyTime", "^t\n0\n", {"'z' is missing"}},
+        BadTable{"UnknownColumn", "t,z,beta,^weight\n0,0,0,0\n", {"'weight'", "known: t, z, beta, gamma, depth, sum"}},
+        BadTable{"MixedCoordinates", "^t,z,beta,sum\n0,0,0,0\n", {"mix coordinates", "t,z,beta,gamma | t,depth"}},
+        BadTable{"OneRow", "t,z,beta,gamma\n0,0,0,0\n^", {"only one row", "at least two"}},
+        BadTable{"HeaderOnly", "t,z,beta,gamma\n^", {"no data"}},
+        BadTable{"TimeWithUnit", "t,z,beta,gamma\n^0 s,0,0,0\n", {"'0 s'", "plain number in SI"}}),
     kName);
 
 class BadErrors : public testing::TestWithParam<BadTable> {};

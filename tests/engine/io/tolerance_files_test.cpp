@@ -124,9 +124,19 @@ TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfAFileAlong) {
   example_.study.poses.select = PoseSelection::Select::file;
   example_.study.poses.file = "gone/poses.csv";
   const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_);
-  const PoseSet found = read_back(paths[0]).poses.from_file;
+  const PoseSet found = read_back(paths[0]).poses.from_file.points;
   ASSERT_EQ(found.size(), example_.poses.poses.size());
   for (std::size_t c = 0; c < found.coordinates(); ++c) EXPECT_EQ(found.column(c), example_.poses.poses.column(c));
+}
+
+TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfATrajectoryFileAlong) {
+  example_.study.poses = {};
+  example_.study.poses.select = PoseSelection::Select::trajectory;
+  example_.study.poses.trajectory.emplace().file = "gone/curve.csv";
+  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_);
+  const Study study = read_back(paths[0]);
+  EXPECT_EQ(study.poses.select, PoseSelection::Select::file);
+  EXPECT_EQ(study.poses.from_file.points.size(), example_.poses.poses.size());
 }
 
 TEST_F(ToleranceFiles, ExportHasTheSameRows) {

@@ -13,6 +13,7 @@
 #include "bench/published_study.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/monte_carlo.h"
+#include "models/registry.h"
 #include "tests/models/chain/block_samples.h"
 
 namespace {
@@ -84,6 +85,36 @@ TEST(Allocation, NoneInAWarmBlockSolver) {
     };
     EXPECT_GT(allocations_of(solve_all), 0u);
     EXPECT_EQ(allocations_of(solve_all), 0u);
+  }
+}
+
+/// Factors of a set, the last one first: rows of the head and of the slides in no convenient order.
+std::vector<FactorIndex> reversed(const ModelDescription& model, const char* set) {
+  const std::vector<FactorIndex>& factors = model.find_set(set)->factors;
+  return {factors.rbegin(), factors.rend()};
+}
+
+TEST(Allocation, NoneInAWarmHybridMachine) {
+  constexpr std::size_t kCount = 1000;
+  const CatalogEntry& entry = *find(registry(), "xy-3-prs");
+  const ModelDescription& description = entry.description;
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : description.geometry) geometry.push_back(parameter.published);
+  const std::vector<double> pose{0.1, -0.2, 0.8, 0.1, -0.1}, errors(description.factors.size(), 1e-4);
+  std::vector<double> responses(description.responses.size() * kCount), details(3 * kCount);
+  std::vector<SolveStatus> status(kCount);
+  std::vector<std::uint32_t> iterations(kCount);
+  for (std::size_t fidelity = 0; fidelity < description.fidelities.size(); ++fidelity) {
+    const auto evaluator = entry.build(geometry, fidelity)->evaluator({});
+    for (const std::vector<FactorIndex>& varied :
+         {reversed(description, "all"), description.find_set("head")->factors, reversed(description, "slides")}) {
+      const std::vector<double> values(varied.size() * kCount, 1e-3);
+      const auto evaluate = [&] {
+        evaluator->evaluate({pose, errors, varied, values, kCount}, {responses, status, iterations, details});
+      };
+      evaluate();
+      EXPECT_EQ(allocations_of(evaluate), 0u);
+    }
   }
 }
 

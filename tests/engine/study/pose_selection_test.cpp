@@ -209,15 +209,29 @@ TEST(GridPoses, OfAnyNumberAreThatManyDifferentPointsOfTheCoarsestGrid) {
 TEST(FilePoses, NameTheLineOfOneOutOfReach) {
   PoseSelection selection;
   selection.select = Select::file;
-  selection.from_file = PoseSet(3, {-0.2, 0.0, 0.0, -0.25, 0.1, 0.0, 0.5, 0.0, 0.1});
+  selection.from_file.points = PoseSet(3, {-0.2, 0.0, 0.0, -0.25, 0.1, 0.0, 0.5, 20.0, 0.1});
   selection.place = {"poses.csv", 2, 1};
   test::expect_input_error([&] { select_poses(selection, kModel); }, {"poses.csv", 4, 1},
-                           {"pose 3 (z = 0.5 m, beta = 0 rad, gamma = 0.1 rad)", "z must be negative", "remove"});
-  selection.from_file = PoseSet(3, {-0.2, 0.0, 0.0, -0.25, 0.1, 0.0});
+                           {"pose 3 (z = 0.5 m, beta = 20 rad = 1145.92 deg, gamma = 0.1 rad = 5.72958 deg)",
+                            "z must be negative", "remove", "SI: metres and radians"});
+  selection.from_file.points = PoseSet(3, {-0.2, 0.0, 0.0, -0.25, 0.1, 0.0});
   const SelectedPoses selected = select_poses(selection, kModel);
   EXPECT_EQ(selected.poses.column(0), (std::vector<double>{-0.2, -0.25}));
   EXPECT_EQ(selected.condition, (std::vector<double>{1.0, 1.0 / std::cos(0.1)}));
   EXPECT_TRUE(selected.rejected.empty());
+  EXPECT_TRUE(selected.time.empty());
+}
+
+TEST(FilePoses, MayStandInTheCoordinatesOfAChart) {
+  PoseSelection selection;
+  selection.select = Select::file;
+  selection.from_file = {0, PoseSet(3, {0.2, 0.3, 0.1, 0.25, 2.5, 0.0})};
+  selection.place = {"poses.csv", 2, 1};
+  test::expect_input_error([&] { select_poses(selection, kModel); }, {"poses.csv", 3, 1},
+                           {"pose 2 (depth = 0.25 m, sum = 2.5 rad = 143.239 deg, difference = 0 rad = 0 deg)",
+                            "no pose has these coordinates; make the sum smaller", "SI"});
+  selection.from_file.points = PoseSet(3, {0.2, 0.3, 0.1});
+  EXPECT_EQ(values_of(select_poses(selection, kModel).poses), (std::vector{-0.2, 0.2, 0.5 * (0.3 - 0.1)}));
 }
 
 class EmptyWorkspace : public testing::TestWithParam<Select> {};

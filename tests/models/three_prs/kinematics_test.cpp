@@ -91,6 +91,62 @@ TEST(PoseOfTip, TrajectoryNeedsALongEnoughTool) {
   }
 }
 
+TEST(PoseOfTip, FindsTiltsOf40Degrees) {
+  const Geometry g;
+  for (const std::vector<double>& pose : random_poses(2000, 9)) {
+    const lie::Transform<double> platform = base_T_platform(g, {2.0 * pose[0], 2.0 * pose[1], pose[2]});
+    const lie::Vector3<double> tip = platform.p + tool(g, platform.R);
+    const auto found = pose_of_tip(g, tip);
+    ASSERT_TRUE(found) << 2.0 * pose[0] << ' ' << 2.0 * pose[1];
+    const lie::Transform<double> there = base_T_platform(g, *found);
+    EXPECT_LE((there.p + tool(g, there.R) - tip).norm(), 2e-15);
+  }
+}
+
+lie::Vector3<double> carriages(const Geometry& geometry, const Pose& pose) {
+  const Configuration at = configuration(geometry, pose);
+  return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q};
+}
+
+TEST(PoseOfCarriages, UndoesInverseKinematics) {
+  for (const std::vector<double>& pose : random_poses(2000, 6)) {
+    const Pose wanted{1.5 * pose[0], 1.5 * pose[1], pose[2]};  // also beyond the default workspace
+    const Pose found = pose_of_carriages({}, carriages({}, wanted)).value();
+    EXPECT_NEAR(found.alpha, wanted.alpha, 1e-12);
+    EXPECT_NEAR(found.beta, wanted.beta, 1e-12);
+    EXPECT_NEAR(found.z, wanted.z, 1e-12);
+  }
+}
+
+TEST(PoseOfCarriages, LevelCarriagesHoldAnUprightPlatformBelow) {
+  const Geometry g;
+  const Pose pose = pose_of_carriages(g, {0.1, 0.1, 0.1}).value();
+  EXPECT_NEAR(pose.alpha, 0.0, 1e-15);
+  EXPECT_NEAR(pose.beta, 0.0, 1e-15);
+  EXPECT_NEAR(pose.z, 0.1 + std::sqrt(g.l * g.l - (g.a - g.c) * (g.a - g.c)), 1e-15);
+}
+
+TEST(PoseOfCarriages, IsNothingWhereTheRodsDoNotReach) {
+  // The joints of the platform are at most 2 c apart and no rod is longer than l.
+  for (const double apart : {2.0, 5.0, 1e3}) EXPECT_FALSE(pose_of_carriages({}, {0.0, 0.0, apart})) << apart;
+  EXPECT_FALSE(pose_of_carriages({}, {0.0, 0.9, 0.0}));
+}
+
+/// A dense grid of all tilts covers 14.3 % of such heights.
+TEST(PoseOfCarriages, FindsWhatThereIs) {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> height(-0.2, 0.7);
+  std::size_t found = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const lie::Vector3<double> q(height(engine), height(engine), height(engine));
+    const auto pose = pose_of_carriages({}, q);
+    if (!pose) continue;
+    ++found;
+    EXPECT_LE((carriages({}, *pose) - q).norm(), 3e-15);
+  }
+  EXPECT_GT(found, 260u);
+}
+
 TEST(VelocityJacobian, IsTheDerivativeOfInverseKinematics) {
   // Fourth-order differences.
   constexpr double kStep = 1e-3;

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "engine/io/study_file_parts.h"
+#include "engine/io/wording.h"
+#include "engine/run/coupling_rows.h"
+
+namespace poesy {
+namespace {
+
+using Choice = ErrorPattern::Choice;
+
+constexpr std::size_t kFewestSources = 2;
+constexpr std::size_t kMostSources = 8;  // 255 subsets
+
+/// "all" or "independent".
+Choice read_choice(const StudyValue& value) {
+  constexpr std::array<std::string_view, 2> kWords{"all", "independent"};
+  return value.word(kWords) == 0 ? Choice::all : Choice::independent;
+}
+
+void read_limbs(const StudyValue& value, const ModelDescription& model, ErrorPattern& pattern) {
+  if (value.is_text()) {
+    pattern.limbs = read_choice(value);
+    return;
+  }
+  std::set<std::size_t> limbs;
+  for (const Factor& factor : model.factors) limbs.insert(factor.limb);
+  pattern.limbs = Choice::some;
+  pattern.limb = static_cast<std::size_t>(value.whole_number(0));
+  if (limbs.contains(pattern.limb)) return;
+  std::string known;
+  for (const std::size_t limb : limbs) known += (known.empty() ? "" : ", ") + std::to_string(limb);
+  value.fail("is " + std::to_string(pattern.limb) + ", but model \"" + model.name + "\" has errors of limbs " + known,
+             "name one of them, or write \"all\" or \"independent\"");
+}
+
+void read_components(const StudyValue& value, ErrorPattern& pattern) {
+  if (value.is_text()) {
+    pattern.components = read_choice(value);
+    return;
+  }
+  constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+  pattern.components = Choice::some;
+  for (const StudyValue& element : value.list()) {
+    const std::string axis(kAxes[element.word(kAxes)]);
+    if (std::ranges::find(pattern.axes, axis) != pattern.axes.end()) {
+      element.fail("names '" + axis + "' a second time", "remove one of them");
+    }
+    pattern.axes.push_back(axis);
+  }
+  if (pattern.axes.empty()) value.fail("is empty", "name components, e.g. [\"x\", \"z\"], or write \"all\"");
+}
+
+/// Throws for a factor that an earlier source has.
+void require_own_factors(const StudyValue& factors, const ErrorSource& source, std::span<const ErrorSource> others,
+                         const ModelDescription& model) {
+  for (const ErrorSource& other : others) {
+    for (const FactorIndex factor : source.factors) {
+      if (std::ranges::find(other.factors, factor) == other.factors.end()) continue;
+      factors.fail("has '" + model.factors[factor.value].name + "', which source '" + other.name + "' has as well",
+                   "a factor belongs to one source; list the factors of one of them by name");
+    }
+  }
+}
+
+ErrorSource read_source(const StudySection& section, std::span<const ErrorSource> others, const ErrorPattern& pattern,
+                        const ModelDescription& model) {
+  section.allow({"name", "factors"});
+  std::vector<std::string_view> taken;
+  for (const ErrorSource& other : others) taken.push_back(other.name);
+  ErrorSource source{read_name(section, taken, "source " + std::to_string(others.size() + 1)), {}};
+  if (source.name.find('+') != std::string::npos) {
+    section.find("name")->fail("is '" + printable(source.name) + "'", "write it without '+', which joins sources");
+  }
+  const StudyValue factors = section.require("factors", "write a factor set or a list of factors");
+  source.factors = read_factors(factors, model);
+  require_own_factors(factors, source, others, model);
+  if (error_blocks(source, pattern, model).empty()) {
+    factors.fail("has no factor of the limbs and components that the study asks for",
+                 "change limbs or components, or leave this source out");
+  }
+  return source;
+}
+
+/// The literature's sources. Throws at the section where the model has none.
+std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
+                                       const ErrorPattern& pattern) {
+  constexpr std::string_view kRemedy =
+      "write 2 to 8 [[analysis.sources]], each with name and factors (a factor set or a list of names)";
+  if (model.sources.empty()) {
+    throw InputError(analysis.place(),
+                     "kind = \"coupling\" needs sources of errors, and model \"" + model.name + "\" suggests none",
+                     std::string(kRemedy));
+  }
+  std::vector<ErrorSource> sources;
+  for (const CouplingSource& usual : model.sources) {
+    sources.push_back({usual.name, model.find_set(usual.set)->factors});
+    const ErrorSource& source = sources.back();
+    if (!error_blocks(source, pattern, model).empty()) continue;
+    throw InputError(analysis.place(),
+                     "source '" + source.name + "' has no factor of the limbs and components that the study asks for",
+                     std::string(kRemedy));
+  }
+  return sources;
+}
+
+std::vector<ErrorSource> read_sources(const StudyValue& value, const ModelDescription& model,
+                                      const ErrorPattern& pattern) {
+  std::vector<ErrorSource> sources;
+  const std::vector<StudyValue> list = value.list();
+  if (list.size() < kFewestSources || list.size() > kMostSources) {
+    value.fail("has " + std::to_string(list.size()) + (list.size() == 1 ? " source" : " sources") +
+                   ", but there must be " + std::to_string(kFewestSources) + " to " + std::to_string(kMostSources),
+               "group factors into fewer or more sources");
+  }
+  for (const StudyValue& one : list) sources.push_back(read_source(one.section(), sources, pattern, model));
+  return sources;
+}
+
+std::vector<double> read_sizes(const StudyValue& value, Dimension dimension) {
+  std::vector<double> sizes;
+  for (const StudyValue& size : value.list()) sizes.push_back(size.positive_quantity(dimension));
+  if (sizes.empty()) value.fail("is empty", "write at least one size");
+  return sizes;
+}
+
+/// The first factor of this dimension that the study gives a size; null when there is none.
+const Factor* first_of(Dimension dimension, const CouplingStudy& study, const ModelDescription& model) {
+  for (const FactorIndex factor : coupling_factors(study, model)) {
+    if (model.factors[factor.value].dimension == dimension) return &model.factors[factor.value];
+  }
+  return nullptr;
+}
+
+void require_sizes(const StudySection& analysis, std::string_view key, Dimension dimension, const CouplingStudy& study,
+                   const ModelDescription& model) {
+  if (analysis.find(key)) return;
+  const Factor* factor = first_of(dimension, study, model);
+  if (factor == nullptr) return;
+  const std::string unit(display_unit(dimension).name);
+  throw InputError(analysis.place(),
+                   "key '" + std::string(key) + "' is missing in [analysis], for the sources have errors such as '" +
+                       factor->name + "'",
+                   "write sizes, e.g. " + std::string(key) + " = [\"0.1 " + unit + "\"]");
+}
+
+void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study) {
+  if (study.linear.size() == study.angular.size()) return;
+  const auto sizes = [](std::size_t count) { return std::to_string(count) + (count == 1 ? " size" : " sizes"); };
+  angular.fail("has " + sizes(study.angular.size()) + ", but linear has " + sizes(study.linear.size()),
+               "a run takes one of each, so write as many");
+}
+
+/// `value` is linear or angular.
+void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
+  const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
+    return sizes.empty() || sizes[a] == sizes[b];
+  };
+  const std::vector<StudyValue> list = value.list();
+  for (std::size_t z = 0; z < list.size(); ++z) {
+    for (std::size_t before = 0; before < z; ++before) {
+      if (!same(study.linear, before, z) || !same(study.angular, before, z)) continue;
+      list[z].fail("repeats a size", "each run needs a size of its own; remove one of them");
+    }
+  }
+}
+
+}  // namespace
+
+CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription& model, StudyUse use) {
+  CouplingStudy study;
+  if (const auto value = analysis.find("limbs")) read_limbs(*value, model, study.pattern);
+  if (const auto value = analysis.find("components")) read_components(*value, study.pattern);
+  const auto linear = analysis.find("linear");
+  const auto angular = analysis.find("angular");
+  if (linear) study.linear = read_sizes(*linear, Dimension::length);
+  if (angular) study.angular = read_sizes(*angular, Dimension::angle);
+  if (linear && angular) require_equal_numbers(*angular, study);
+  if (linear || angular) require_different_runs(linear ? *linear : *angular, study);
+  if (const auto value = analysis.find("sources")) {
+    study.sources = read_sources(*value, model, study.pattern);
+  } else if (use == StudyUse::run) {
+    study.sources = usual_sources(analysis, model, study.pattern);
+  }
+  if (use == StudyUse::run) {
+    require_sizes(analysis, "linear", Dimension::length, study, model);
+    require_sizes(analysis, "angular", Dimension::angle, study, model);
+  }
+  return study;
+}
+
+}  // namespace poesy

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "models/three_prs/kernel_data.h"
+
+namespace poesy::three_prs {
+
+/// Doubles of scratch for close_tile, for any instruction set.
+inline constexpr std::size_t kClosureScratch = 48 * kTile;
+
+/// The kernels of one instruction set. Each is compiled in a translation unit of its own.
+struct Kernels {
+  /// Responses, status and iterations of errors to first order; details where they are asked for.
+  void (*map_tile)(const FirstOrderMap& map, const Tile& tile);
+  /// Responses, status and iterations of solves by Newton; no details. Returns how many samples it gave up because they
+  /// need more care than it takes: those have no iterations. scratch: [kClosureScratch], aligned to 64 bytes.
+  std::size_t (*close_tile)(const ClosurePose& pose, const ClosureOptions& options, const Tile& tile, double* scratch);
+};
+
+Kernels plain_kernels();
+Kernels avx2_kernels();
+Kernels avx512_kernels();
+Kernels neon_kernels();
+
+/// Those of simd::selected_isa().
+Kernels selected_kernels();
+
+}  // namespace poesy::three_prs

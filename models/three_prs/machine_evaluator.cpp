@@ -1,0 +1,225 @@
+#include "models/three_prs/machine_evaluator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "engine/base/contract.h"
+#include "models/three_prs/evaluators.h"
+#include "models/three_prs/slides.h"
+
+namespace poesy::three_prs {
+namespace {
+
+using Vector3 = lie::Vector3<double>;
+using Matrix3 = lie::Matrix3<double>;
+
+/// A varied error of the slides: its place among theirs, and its row of SampleBlock::values.
+struct VariedSlide {
+  std::size_t factor;
+  std::size_t row;
+};
+
+/// Points of the platform in the head's frame at the nominal pose.
+struct Points {
+  Vector3 P;
+  Vector3 tip;
+};
+
+Points nominal_points(const Geometry& geometry, std::span<const double> pose) {
+  const lie::Transform<double> platform = base_T_platform(geometry, {pose[0], pose[1], pose[2]});
+  return {platform.p, platform.p + tool(geometry, platform.R)};
+}
+
+/// The norm of the vector whose three rows begin at `first`, [B].
+void norms(std::span<double> responses, std::size_t first, std::size_t norm, std::size_t count) {
+  const double* x = responses.data() + first * count;
+  double* out = responses.data() + norm * count;
+  for (std::size_t b = 0; b < count; ++b) {
+    out[b] = std::sqrt(x[b] * x[b] + x[b + count] * x[b + count] + x[b + 2 * count] * x[b + 2 * count]);
+  }
+}
+
+/// Fills the last three rows of responses [12 x B] from the nine above them.
+void all_norms(std::span<double> responses, std::size_t count) {
+  norms(responses, kTheta, kComponents, count);
+  norms(responses, kDr, kComponents + 1, count);
+  norms(responses, kTip, kComponents + 2, count);
+}
+
+/// Whether the three norms of a sample, and with them its components, are finite.
+bool is_finite(std::span<const double> responses, std::size_t sample, std::size_t count) {
+  return std::isfinite(responses[kComponents * count + sample]) &&
+         std::isfinite(responses[(kComponents + 1) * count + sample]) &&
+         std::isfinite(responses[(kComponents + 2) * count + sample]);
+}
+
+/// What both fidelities share: the head's part of each sample.
+class MachineEvaluator : public Evaluator {
+ public:
+  MachineEvaluator(const Geometry& geometry, std::unique_ptr<Evaluator> head)
+      : geometry_(geometry), head_(std::move(head)) {}
+
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) final {
+    POESY_EXPECTS(samples.pose.size() == 5 && samples.errors.size() == kFactors + kSlideFactors);
+    POESY_EXPECTS(outcomes.responses.size() == kResponses * samples.count);
+    part(samples);
+    if (head_varied_.empty()) {
+      evaluate_head_once(samples, outcomes);
+    } else {
+      evaluate_head(samples, outcomes);
+    }
+    add_slides(samples, outcomes.responses);
+    all_norms(outcomes.responses, samples.count);
+    for (std::size_t b = 0; b < samples.count; ++b) {
+      if (usable(outcomes.status[b]) && !is_finite(outcomes.responses, b, samples.count)) {
+        outcomes.status[b] = SolveStatus::non_finite;
+      }
+    }
+  }
+
+ protected:
+  /// Turns the nine components of the head's responses, [9 x B], into the machine's.
+  virtual void add_slides(const SampleBlock& samples, std::span<double> responses) = 0;
+
+  Points points(const SampleBlock& samples) const { return nominal_points(geometry_, samples.pose); }
+  const std::vector<VariedSlide>& varied() const { return slides_varied_; }
+
+ private:
+  void part(const SampleBlock& samples) {
+    head_varied_.clear();
+    slides_varied_.clear();
+    for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+      const std::size_t factor = samples.varied[v].value;
+      if (factor < kFactors) {
+        head_varied_.push_back(samples.varied[v]);
+      } else {
+        slides_varied_.push_back({factor - kFactors, v});
+      }
+    }
+  }
+
+  /// Rows of samples.values that belong to the head: mostly the first ones, as they stand.
+  std::span<const double> head_values(const SampleBlock& samples) {
+    const std::size_t size = head_varied_.size() * samples.count;
+    if (std::ranges::equal(head_varied_, samples.varied.first(head_varied_.size()))) return samples.values.first(size);
+    head_values_.clear();
+    for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+      if (samples.varied[v].value >= kFactors) continue;
+      const auto row = samples.values.subspan(v * samples.count, samples.count);
+      head_values_.insert(head_values_.end(), row.begin(), row.end());
+    }
+    return head_values_;
+  }
+
+  void evaluate_head(const SampleBlock& samples, const OutcomeBlock& outcomes) {
+    head_->evaluate({samples.pose.first(3), samples.errors.first(kFactors), head_varied_, head_values(samples),
+                     samples.count, samples.range},
+                    outcomes);
+  }
+
+  /// All samples see the same head.
+  void evaluate_head_once(const SampleBlock& samples, const OutcomeBlock& outcomes) {
+    std::array<double, kResponses> responses;
+    std::array<double, kLimbs> details;
+    SolveStatus status{};
+    std::uint32_t iterations = 0;
+    const std::size_t wanted = outcomes.details.empty() ? 0 : kLimbs;
+    head_->evaluate({samples.pose.first(3), samples.errors.first(kFactors), {}, {}, 1},
+                    {responses, {&status, 1}, {&iterations, 1}, std::span(details).first(wanted)});
+    const auto repeat = [&](std::span<const double> rows, std::span<double> out) {
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        std::ranges::fill(out.subspan(r * samples.count, samples.count), rows[r]);
+    };
+    repeat(responses, outcomes.responses);
+    repeat(std::span(details).first(wanted), outcomes.details);
+    std::ranges::fill(outcomes.status, status);
+    std::ranges::fill(outcomes.iterations, iterations);
+  }
+
+  Geometry geometry_;
+  std::unique_ptr<Evaluator> head_;
+  std::vector<FactorIndex> head_varied_;
+  std::vector<VariedSlide> slides_varied_;
+  std::vector<double> head_values_;
+};
+
+/// Errors of the slides; those that vary are still to be set.
+std::array<double, kSlideFactors> slide_errors(const SampleBlock& samples) {
+  std::array<double, kSlideFactors> errors;
+  std::ranges::copy(samples.errors.last(kSlideFactors), errors.begin());
+  return errors;
+}
+
+class FirstOrderMachineEvaluator final : public MachineEvaluator {
+ public:
+  using MachineEvaluator::MachineEvaluator;
+
+ private:
+  void add_slides(const SampleBlock& samples, std::span<double> responses) override {
+    const Points at = points(samples);
+    const SlideEffects effects = slide_effects(samples.pose[4], at.P, at.tip);
+    std::array<double, kSlideFactors> constant = slide_errors(samples);
+    for (const VariedSlide& slide : varied()) constant[slide.factor] = 0.0;
+    const Eigen::Matrix<double, kSwing, 1> shift =
+        effects * Eigen::Map<const Eigen::Matrix<double, kSlideFactors, 1>>(constant.data());
+    for (int r = 0; r < kSwing; ++r) {
+      double* out = responses.data() + static_cast<std::size_t>(r) * samples.count;
+      for (std::size_t b = 0; b < samples.count; ++b) out[b] += shift[r];
+      for (const VariedSlide& slide : varied()) {
+        const double effect = effects(r, static_cast<Eigen::Index>(slide.factor));
+        const double* values = samples.values.data() + slide.row * samples.count;
+        for (std::size_t b = 0; b < samples.count; ++b) out[b] += effect * values[b];
+      }
+    }
+  }
+};
+
+class ExactMachineEvaluator final : public MachineEvaluator {
+ public:
+  using MachineEvaluator::MachineEvaluator;
+
+ private:
+  void add_slides(const SampleBlock& samples, std::span<double> responses) override {
+    const Points at = points(samples);
+    std::array<double, kSlideFactors> errors = slide_errors(samples);
+    lie::Transform<double> slides = nominal_T_head(samples.pose[4], errors);
+    for (std::size_t b = 0; b < samples.count; ++b) {
+      if (!varied().empty()) {
+        for (const VariedSlide& slide : varied()) errors[slide.factor] = samples.values[slide.row * samples.count + b];
+        slides = nominal_T_head(samples.pose[4], errors);
+      }
+      carry(slides, at, responses, b, samples.count);
+    }
+  }
+
+  static void carry(const lie::Transform<double>& slides, const Points& at, std::span<double> responses,
+                    std::size_t sample, std::size_t count) {
+    const auto rows = [&](std::size_t first) {
+      return Eigen::Map<Vector3, 0, Eigen::InnerStride<>>(responses.data() + first * count + sample,
+                                                          Eigen::InnerStride<>(static_cast<Eigen::Index>(count)));
+    };
+    const auto displacement = [&](const Vector3& point, const Vector3& in_head) -> Vector3 {
+      const Vector3 displaced = point + in_head;
+      return in_head + (slides.R * displaced - displaced + slides.p);
+    };
+    rows(kTheta) = lie::log<double>(slides.R * lie::exp(Vector3(rows(kTheta))));
+    rows(kDr) = displacement(at.P, rows(kDr));
+    rows(kTip) = displacement(at.tip, rows(kTip));
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> first_order_machine_evaluator(const Geometry& geometry, std::unique_ptr<Evaluator> head) {
+  return std::make_unique<FirstOrderMachineEvaluator>(geometry, std::move(head));
+}
+
+std::unique_ptr<Evaluator> exact_machine_evaluator(const Geometry& geometry, std::unique_ptr<Evaluator> head) {
+  return std::make_unique<ExactMachineEvaluator>(geometry, std::move(head));
+}
+
+}  // namespace poesy::three_prs
