@@ -6,3 +6,4 @@ poesy_test(monte_carlo_sort_test LABELS regression SOURCES engine/run/monte_carl
 poesy_test(tolerance_confirmation_test LABELS statistical SOURCES engine/run/tolerance_confirmation_test.cpp
            LINKS poesy_run)
 poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_io poesy_models)
+poesy_test(continuation_test LABELS robustness SOURCES engine/run/continuation_test.cpp LINKS poesy_run)

@@ -41,8 +41,8 @@ class Kill(ResumptionTest):
                 while code != 0:
                     taken_up = self.newer.exists() or self.older.exists()
                     resumed += taken_up
-                    # Some are killed again.
-                    code, messages = self.run_and_stop(kind, signal.SIGKILL, *["--resume"] * taken_up)
+                    moment = self.random.uniform(0.1, 2.0) * self.seconds[kind]  # some are killed again
+                    code, messages = self.run_for(moment, *["--resume"] * taken_up)
                     self.assertIn(code, (0, -signal.SIGKILL), messages)
                 self.assertEqual(self.content_hash(), self.expected[kind])
                 self.assertEqual({path.name for path in self.folder.iterdir()} - {"study.toml", "undisturbed.h5", "out.h5"},

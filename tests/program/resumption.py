@@ -52,15 +52,19 @@ count = 1500
 [analysis]
 kind = "identification"
 """
-BOTH_FIDELITIES = """\
+COUPLING = """\
 format = "poesy-study"
 version = 1
-mechanism = { model = "3-prs", fidelity = "both" }
-poses = { count = 20 }
-errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
-analysis = { kind = "sensitivity", samples = 4300 }
+mechanism = { model = "3-prs" }
+poses = { count = 3000 }
+[analysis]
+kind = "coupling"
+linear = ["0.1 mm", "0.3 mm", "0.5 mm"]
+sources = [{ name = "FS", factors = "platform-hinges" }, { name = "R", factors = "revolute-gap" },
+           { name = "L", factors = "rod-length" }]
 """
-STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "evaluate": CASES, "identification": IDENTIFICATION}
+STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "evaluate": CASES, "identification": IDENTIFICATION,
+           "coupling": COUPLING}
 
 
 class ResumptionTest(ProgramTest):
