@@ -56,10 +56,16 @@ Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSe
   const Plan plan(study, poses);
   const std::size_t cells = plan.factors().size() * poses.size();
   const std::size_t per_response = sizeof(Moments) + 6 * sizeof(double);
-  return {fmt::format("{} errors x {} poses x {} samples = {} solves", plan.factors().size(), poses.size(),
-                      plan.samples(), plan.solves()),
-          cells * (study.model().responses.size() * per_response + sizeof(UnitStats) + sizeof(SolveCounts)),
-          sampling_seconds(plan, UnitEvaluator(plan, model))};
+  const std::size_t fidelities = study.mechanism.compared ? 2 : 1;
+  Outlook expected{
+      fmt::format("{} errors x {} poses x {} samples{} = {} solves", plan.factors().size(), poses.size(),
+                  plan.samples(), fidelities == 2 ? " x 2 fidelities" : "", fidelities * plan.solves()),
+      fidelities * cells * (study.model().responses.size() * per_response + sizeof(UnitStats) + sizeof(SolveCounts)),
+      sampling_seconds(plan, UnitEvaluator(plan, model))};
+  if (fidelities == 1) return expected;
+  const std::unique_ptr<Model> other = build_model(at_compared_fidelity(study.mechanism));
+  expected.thread_seconds += sampling_seconds(plan, UnitEvaluator(plan, *other));
+  return expected;
 }
 
 Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {

@@ -39,9 +39,13 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
 
 int evaluate(const Options& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
+  if (study.mechanism.compared) {
+    throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but an evaluation solves at one fidelity",
+                     fmt::format("write \"{}\"", fmt::join(study.model().fidelities, "\" or \"")));
+  }
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = read_reachable_poses(options.poses, *model);
-  const ErrorTable errors = read_errors(options.errors, model->description());
+  const ErrorTable errors = read_errors(options.errors, *model);
   if (options.paired && poses.poses.size() != errors.rows) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");

@@ -15,8 +15,10 @@
 #include "engine/io/study_file.h"
 #include "engine/run/cases.h"
 #include "engine/run/coupling.h"
+#include "engine/run/fidelity.h"
 #include "engine/run/identification.h"
 #include "engine/run/runner.h"
+#include "engine/run/separation.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -64,14 +66,59 @@ struct Job {
   RunFacts facts(const SolveCounts& solves) const { return run_facts(start, options.threads, solves.total()); }
 };
 
+std::vector<double> sigma_of(const Plan& plan) {
+  std::vector<double> sigma;
+  for (const Distribution& distribution : plan.distributions()) sigma.push_back(distribution.standard_deviation());
+  return sigma;
+}
+
+std::vector<Dimension> response_dimensions(const ModelDescription& model) {
+  std::vector<Dimension> dimensions;
+  for (const Response& response : model.responses) dimensions.push_back(response.dimension);
+  return dimensions;
+}
+
 // Each runs a study of its kind and writes the result: how its solves ended, or nothing when it was interrupted.
+
+/// The study at both of its fidelities, on the same draws.
+std::optional<SensitivityResult> run_both_fidelities(const Job& job, const Plan& plan, SolveCounts& solves) {
+  const Analysis& analysis = job.study.analysis;
+  // Progress is that of both as one run. A first half that reports none was done by the run that is continued.
+  std::uint64_t before = plan.solves();
+  RunOptions options = job.options;
+  options.progress = [&](const Progress& half) {
+    before = half.before;
+    job.options.progress({half.solves, 2 * half.total, half.not_converged, before});
+  };
+  auto first = run_sensitivity(plan, job.model, analysis.conf_level, options);
+  if (!first) return std::nullopt;
+  solves = first->total();
+  options.progress = [&](const Progress& half) {
+    job.options.progress({solves.total() + half.solves, 2 * half.total, solves.not_converged() + half.not_converged,
+                          before + half.before});
+  };
+  const std::unique_ptr<Model> other = build_model(at_compared_fidelity(job.study.mechanism));
+  const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
+  if (!second) return std::nullopt;
+  solves.merge(second->total());
+  first->fidelity =
+      compare_fidelities(*first, *second, response_dimensions(job.study.model()), sigma_of(plan), analysis.linearity);
+  return first;
+}
 
 std::optional<SolveCounts> run_sensitivity_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
-  const auto result = run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
+  SolveCounts solves;
+  auto result = job.study.mechanism.compared
+                    ? run_both_fidelities(job, plan, solves)
+                    : run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
   if (!result) return std::nullopt;
-  write_sensitivity(job.path, job.study, job.poses, *result, job.facts(result->total()));
-  return result->total();
+  if (!result->fidelity) solves = result->total();
+  if (job.model.description().separation) {
+    result->separation = separate_errors(job.model, plan.poses(), plan.factors(), sigma_of(plan));
+  }
+  write_sensitivity(job.path, job.study, job.poses, *result, job.facts(solves));
+  return solves;
 }
 
 std::optional<SolveCounts> run_identification_study(const Job& job) {

@@ -32,19 +32,6 @@ void write_global(TableFolder& folder, const StoredResult& result) {
   });
 }
 
-/// A table with a row for each factor and a column for each pose, from values [P x M].
-void write_cells(TableFolder& folder, const StoredResult& result, const std::string& name,
-                 std::span<const double> values, const std::string& unit) {
-  const std::size_t poses = result.sensitivity.poses;
-  std::vector<std::string> columns{"factor"};
-  for (std::size_t m = 0; m < poses; ++m) columns.push_back(column("pose_" + std::to_string(m), unit));
-  folder.write(name, columns, [&](CsvTable& table) {
-    for (std::size_t p = 0; p < result.factors.size(); ++p) {
-      table.row(result.factors[p].name, values.subspan(p * poses, poses));
-    }
-  });
-}
-
 template <class UnitOf>
 void write_local(TableFolder& folder, const StoredResult& result, const std::string& name,
                  std::span<const double> values, const UnitOf& unit_of) {
@@ -76,6 +63,18 @@ void write_solver(TableFolder& folder, const StoredResult& result) {
 
 }  // namespace
 
+void write_cells(TableFolder& folder, const StoredResult& result, const std::string& name,
+                 std::span<const double> values, const std::string& unit) {
+  const std::size_t poses = result.sensitivity.poses;
+  std::vector<std::string> columns{"factor"};
+  for (std::size_t m = 0; m < poses; ++m) columns.push_back(column("pose_" + std::to_string(m), unit));
+  folder.write(name, columns, [&](CsvTable& table) {
+    for (std::size_t p = 0; p < result.factors.size(); ++p) {
+      table.row(result.factors[p].name, values.subspan(p * poses, poses));
+    }
+  });
+}
+
 void export_sensitivity(TableFolder& folder, const StoredResult& result) {
   const SensitivityResult& found = result.sensitivity;
   write_factors(folder, result);
@@ -93,6 +92,8 @@ void export_sensitivity(TableFolder& folder, const StoredResult& result) {
   write_local(folder, result, "std", found.std, response_unit);
   write_solver(folder, result);
   export_tolerances(folder, result);
+  export_separation(folder, result);
+  export_fidelity(folder, result);
 }
 
 }  // namespace poesy

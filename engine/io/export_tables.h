@@ -76,9 +76,16 @@ inline const auto kDisplay = [](const std::string& unit) { return std::string(di
 /// factors.csv: the standard deviation of each error.
 void write_factors(TableFolder& folder, const StoredResult& result);
 
+/// A table of a sensitivity result with a row for each factor and a column for each pose, from values [P x M].
+void write_cells(TableFolder& folder, const StoredResult& result, const std::string& name,
+                 std::span<const double> values, const std::string& unit);
+
 void export_sensitivity(TableFolder& folder, const StoredResult& result);
 /// tolerances_RESPONSE.csv for every response; none for a file of an older version.
 void export_tolerances(TableFolder& folder, const StoredResult& result);
+/// Nothing where the result has no such part.
+void export_separation(TableFolder& folder, const StoredResult& result);
+void export_fidelity(TableFolder& folder, const StoredResult& result);
 void export_evaluation(TableFolder& folder, const StoredResult& result);
 void export_identification(TableFolder& folder, const StoredResult& result);
 void export_monte_carlo(TableFolder& folder, const StoredResult& result);

@@ -14,8 +14,10 @@
 
 namespace poesy {
 
-/// Writes the result of a sensitivity study. The file appears whole or not at all under its name: written beside it
-/// under a temporary name, synced, renamed. Throws FileError and leaves an existing file as it was.
+/// Writes the result of a sensitivity study: /sensitivity, /tolerances and /solver, and with them /separation where the
+/// model separates its errors and /fidelity where the study compares two fidelities. The file appears whole or not at
+/// all under its name: written beside it under a temporary name, synced, renamed. Throws FileError and leaves an
+/// existing file as it was.
 void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts);
 
@@ -83,6 +85,9 @@ struct StoredResult {
   SensitivityResult sensitivity;      ///< `background` is empty in files of older versions
   std::vector<std::uint64_t> factor_limb;  ///< [P] of a sensitivity result; empty in files of older versions
   std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
+  std::string separation_measure;                                  ///< what length sensitivity.separation speaks of
+  std::vector<std::string> published_class;  ///< [P] the literature's class of each error, where that is separated
+  std::vector<std::string> fidelities;       ///< the two that sensitivity.fidelity compares
   EvaluationResult evaluation;
   std::vector<Detail> details;
   std::vector<std::string> joints;
@@ -120,6 +125,15 @@ Verification verify_result(const std::string& path);
 ///     poses.csv            pose | time (s) on a trajectory, coordinates, condition number
 ///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
 ///                               share, equal-effect tolerance in SI and in the units people read ("inf": no effect)
+///
+///     separation.csv            factor | drive_share, removable (see /separation), and for each published class 1
+///     where
+///                               the error belongs to it; where the model separates its errors, as the next four:
+///     separation_drive.csv      factor | one column a pose, SI; like it _constraint, _effect, _residual, _removable
+///     separation_together.csv   errors | removable, of all errors together
+///     fidelity.csv              factor | linear, each response's index by both fidelities, discrepancy, relative
+///                               discrepancy, nonlinearity, SI; where the study compares two, as the next:
+///     fidelity_not_converged.csv   factor | one column a pose, samples that the second fidelity did not solve
 ///
 /// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
 /// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and

@@ -61,6 +61,16 @@ void add_tolerances(ResultBuilder& result, const Study& study, const Sensitivity
 /// Fills in `factor_limb` and `tolerance_reference`.
 void read_tolerances(const h5::File& file, StoredResult& result);
 
+/// What calibration can remove of each error's effect: /separation.
+void add_separation(ResultBuilder& result, const Study& study, const SeparationResult& found);
+/// Fills in `sensitivity.separation`, `separation_measure` and `published_class`.
+void read_separation(const h5::File& file, StoredResult& result);
+
+/// A second fidelity beside the first: /fidelity.
+void add_fidelity(ResultBuilder& result, const Study& study, const FidelityResult& found);
+/// Fills in `sensitivity.fidelity` and `fidelities`.
+void read_fidelity(const h5::File& file, StoredResult& result);
+
 void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found);
 void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing);
 /// As add_evaluation and add_errors, with axes [case x pose] for [pose x sample], and the sums over the poses.

@@ -76,6 +76,8 @@ void add_sensitivity(ResultBuilder& result, const Study& study, const Sensitivit
   add_sigma(result, study);
   add_indices(result, found);
   add_tolerances(result, study, found);
+  if (found.separation) add_separation(result, study, *found.separation);
+  if (found.fidelity) add_fidelity(result, study, *found.fidelity);
   add_solver(result, {"factor", "pose"}, found.solves);
 }
 
@@ -83,6 +85,8 @@ void read_sensitivity(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_exactly<double>(file, "/factors/sigma", result.factors.size());
   result.sensitivity = read_indices(file);
   if (file.exists("/tolerances")) read_tolerances(file, result);
+  if (file.exists("/separation")) read_separation(file, result);
+  if (file.exists("/fidelity")) read_fidelity(file, result);
 }
 
 }  // namespace poesy

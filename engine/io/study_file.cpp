@@ -106,6 +106,9 @@ AtPose at_pose(const Study& study) {
   const double cases = static_cast<double>(analysis.cases.size());
   switch (analysis.kind) {
     case Analysis::Kind::sensitivity:
+      if (study.mechanism.compared) {
+        return {factors, "factors", 2.0 * factors * samples, "factors times samples times two fidelities"};
+      }
       return {factors, "factors", factors * samples, "factors times samples"};
     case Analysis::Kind::identification:
       return {tried, "factors times groups", tried, "factors times groups"};
@@ -140,6 +143,18 @@ void check_size(const StudySection& root, const Study& study) {
   }
 }
 
+/// "both" is for sensitivity studies, and `linearity` for those with "both".
+void check_fidelities(const StudySection& root, const Study& study) {
+  if (!study.mechanism.compared) {
+    root.section("analysis").refuse("linearity", "a study without fidelity = \"both\"");
+  } else if (study.analysis.kind != Analysis::Kind::sensitivity) {
+    const std::vector<std::string>& fidelities = study.model().fidelities;
+    const StudyValue fidelity = root.section("mechanism").require("fidelity", "");
+    fidelity.fail("is \"both\", but kind = \"" + std::string(name(study.analysis.kind)) + "\" solves at one fidelity",
+                  "write \"" + fidelities[0] + "\" or \"" + fidelities[1] + "\", or take kind = \"sensitivity\"");
+  }
+}
+
 Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use) {
   check_format(root);
   root.allow({"format", "version", "title", "mechanism", "poses", "errors", "analysis", "solver", "run"});
@@ -156,6 +171,7 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
   const StudySection run = root.section("run");
   run.allow({"seed"});
   if (const auto seed = run.find("seed")) study.seed = static_cast<std::uint64_t>(seed->whole_number(0));
+  if (use == StudyUse::run) check_fidelities(root, study);
   check_size(root, study);
   return study;
 }
@@ -169,8 +185,10 @@ Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) 
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use) {
   check_lines(text, path);
   const toml::table table = parse(text, path);
-  Study study = study_from(StudySection(table, "", {path, 1, 1}), catalog, use);
-  static_cast<void>(build_model(study.mechanism));
+  const StudySection root(table, "", {path, 1, 1});
+  Study study = study_from(root, catalog, use);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  if (use == StudyUse::run) check_error_bounds(root, study, *model);
   return study;
 }
 

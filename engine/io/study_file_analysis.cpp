@@ -101,6 +101,7 @@ void refuse_keys_of_other_kinds(const StudySection& section, Analysis::Kind kind
   };
   static const std::array kKeys{Key{"background", {Kind::sensitivity, Kind::monte_carlo, Kind::evaluate}},
                                 Key{"reference", {Kind::sensitivity}},
+                                Key{"linearity", {Kind::sensitivity}},
                                 Key{"quantiles", {Kind::monte_carlo}},
                                 Key{"groups", {Kind::identification}},
                                 Key{"pose_share", {Kind::identification}},
@@ -142,8 +143,8 @@ std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescri
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use) {
   using Kind = Analysis::Kind;
   const StudySection section = root.section("analysis");
-  section.allow({"kind", "factors", "samples", "conf_level", "background", "reference", "quantiles", "groups",
-                 "pose_share", "cases", "linear", "angular", "limbs", "components", "sources"});
+  section.allow({"kind", "factors", "samples", "conf_level", "background", "reference", "linearity", "quantiles",
+                 "groups", "pose_share", "cases", "linear", "angular", "limbs", "components", "sources"});
   Analysis analysis;
   analysis.kind = read_kind(section, model, use);
   if (use == StudyUse::run) refuse_keys_of_other_kinds(section, analysis.kind);
@@ -156,6 +157,7 @@ Analysis read_analysis(const StudySection& root, const ModelDescription& model, 
   if (const auto value = section.find("conf_level")) analysis.conf_level = read_share(*value, "0.95");
   analysis.background = read_background(section, model);
   if (const auto value = section.find("reference")) analysis.reference = read_reference(*value, analysis, model);
+  if (const auto value = section.find("linearity")) analysis.linearity = read_share(*value, "0.01");
   if (const auto value = section.find("quantiles")) analysis.quantiles = read_quantiles(*value);
   if (const auto value = section.find("pose_share")) analysis.pose_share = read_share(*value, "0.95");
   if (analysis.kind == Kind::identification) analysis.groups = read_groups(section);

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "engine/io/study_file_parts.h"
+#include "engine/io/study_text.h"
 #include "engine/io/table_file.h"
 #include "engine/io/wording.h"
 
@@ -18,13 +19,22 @@ std::vector<double> read_geometry(const StudySection& section, const ModelDescri
   return values;
 }
 
-std::size_t read_fidelity(const StudySection& section, const ModelDescription& model) {
+/// Sets `fidelity`, and `compared` for "both", which a model with two fidelities offers.
+void read_fidelity(const StudySection& section, const ModelDescription& model, MechanismChoice& choice) {
   if (model.fidelities.empty()) {
     section.refuse("fidelity", "model \"" + model.name + "\", which offers no choice of it");
-    return 0;
+    return;
   }
   const auto value = section.find("fidelity");
-  return value ? value->word(std::vector<std::string_view>(model.fidelities.begin(), model.fidelities.end())) : 0;
+  if (!value) return;
+  std::vector<std::string_view> words(model.fidelities.begin(), model.fidelities.end());
+  if (words.size() == 2) words.push_back(kBothFidelities);
+  const std::size_t word = value->word(words);
+  if (word < model.fidelities.size()) {
+    choice.fidelity = word;
+  } else {
+    choice.compared = 1;
+  }
 }
 
 Range read_range(const StudyValue& value, Dimension dimension) {
@@ -144,7 +154,7 @@ MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog)
   const auto geometry = section.find("geometry");
   choice.place = geometry ? geometry->place() : section.place();
   choice.geometry = read_geometry(section.section("geometry"), choice.entry->description);
-  choice.fidelity = read_fidelity(section, choice.entry->description);
+  read_fidelity(section, choice.entry->description, choice);
   return choice;
 }
 

@@ -40,4 +40,9 @@ std::string read_name(const StudySection& section, std::span<const std::string_v
 CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription& model, StudyUse use);
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
 
+/// Throws InputError at its place for an error of the study that makes no sense on this model (Model::error_bound): the
+/// standard deviation of one that varies, and the size of one that is held, tried, set by a case, or a reference
+/// tolerance.
+void check_error_bounds(const StudySection& root, const Study& study, const Model& model);
+
 }  // namespace poesy

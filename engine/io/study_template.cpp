@@ -36,11 +36,16 @@ std::string head(const ModelDescription& model, Analysis::Kind kind) {
                      quoted(title(kind) + " of " + model.name));
 }
 
-std::string mechanism_section(const ModelDescription& model) {
+std::string mechanism_section(const ModelDescription& model, Analysis::Kind kind) {
   std::string text = fmt::format("\n[mechanism]\nmodel = {}  # 'poesy models' lists the models\n", quoted(model.name));
   if (!model.fidelities.empty()) {
     text += fmt::format("fidelity = {}  # of {}; the first is the default\n", quoted(model.fidelities.front()),
                         fmt::join(model.fidelities, ", "));
+    if (model.fidelities.size() == 2 && kind == Analysis::Kind::sensitivity) {
+      text +=
+          fmt::format("# fidelity = {}  # both on the same draws: how much they differ, and which errors are linear\n",
+                      quoted(kBothFidelities));
+    }
   }
   if (model.geometry.empty()) return text;
   text += "\n# Optional: what is left out keeps the published value, which is shown here.\n# [mechanism.geometry]\n";
@@ -198,6 +203,9 @@ std::string sensitivity_keys(const ModelDescription& model) {
   text += samples_text("for each varied error at each pose");
   text += "# Optional: errors held constant while others vary; what varies is not held. Default: none.\n";
   text += background_text(model);
+  if (model.fidelities.size() == 2) {
+    text += "# linearity = 0.01  # with fidelity = \"both\": an error that differs by no more is linear; the default\n";
+  }
   text += "# Optional: the error from which tolerances of equal effect are counted, and its own tolerance.\n";
   text += "# Default: the error of smallest effect, at 1 mm or 1 deg.\n";
   if (model.factors.empty()) return text;
@@ -313,7 +321,7 @@ std::string solver_and_run_sections() {
 std::string template_text(const CatalogEntry& entry, Analysis::Kind kind) {
   const ModelDescription& model = entry.description;
   POESY_EXPECTS(kind != Analysis::Kind::coupling || !model.sources.empty());
-  return head(model, kind) + mechanism_section(model) + poses_section(model) + errors_section(model) +
+  return head(model, kind) + mechanism_section(model, kind) + poses_section(model) + errors_section(model) +
          analysis_section(model, kind) + solver_and_run_sections();
 }
 

@@ -55,7 +55,10 @@ std::string mechanism_text(const Study& study) {
   const ModelDescription& model = study.model();
   std::string text = fmt::format("[mechanism]\nmodel = {}\n", quoted(model.name));
   if (!model.fidelities.empty()) {
-    text += fmt::format("fidelity = {}\n", quoted(model.fidelities[study.mechanism.fidelity]));
+    const MechanismChoice& choice = study.mechanism;
+    text +=
+        fmt::format("fidelity = {}\n",
+                    quoted(choice.compared ? kBothFidelities : std::string_view(model.fidelities[choice.fidelity])));
   }
   if (model.geometry.empty()) return text;
   text += "\n[mechanism.geometry]\n";
@@ -199,6 +202,7 @@ std::string analysis_text(const Study& study) {
   if (analysis.kind == Kind::sensitivity || analysis.kind == Kind::monte_carlo) {
     text += fmt::format("samples = {}\nconf_level = {}\n", analysis.samples, shortest(analysis.conf_level));
   }
+  if (study.mechanism.compared) text += "linearity = " + shortest(analysis.linearity) + "\n";
   if (analysis.reference) text += reference_text(*analysis.reference, study.model());
   if (analysis.kind == Kind::monte_carlo) {
     text += "quantiles = [";

@@ -10,6 +10,9 @@
 
 namespace poesy {
 
+/// The word for the comparison of a model's two fidelities.
+inline constexpr std::string_view kBothFidelities = "both";
+
 /// A TOML string: in quotes, with what needs it escaped.
 std::string quoted(std::string_view text);
 

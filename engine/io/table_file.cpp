@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <string_view>
@@ -10,6 +11,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/units.h"
+#include "engine/io/error_bound.h"
 #include "engine/io/text_file.h"
 #include "engine/io/wording.h"
 
@@ -154,8 +156,12 @@ double number(const Cell& cell, std::string_view column) {
                    "write a plain number in SI units");
 }
 
+/// Throws for a number that does not belong into its column.
+using CheckCell = std::function<void(const Place& place, std::size_t column, double value)>;
+
 /// Appends one line of numbers, in the order of the file's columns.
-void read_row(Lines& lines, std::span<const std::string_view> columns, std::vector<double>& values) {
+void read_row(Lines& lines, std::span<const std::string_view> columns, const CheckCell& check,
+              std::vector<double>& values) {
   const Place line = lines.next_place();
   const std::vector<Cell> cells = lines.next();
   if (cells.size() != columns.size()) {
@@ -164,17 +170,20 @@ void read_row(Lines& lines, std::span<const std::string_view> columns, std::vect
         "this line should have " + std::to_string(columns.size()) + " cells, but has " + std::to_string(cells.size()),
         "write one number a column, with commas between them");
   }
-  for (std::size_t k = 0; k < cells.size(); ++k) values.push_back(number(cells[k], columns[k]));
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    values.push_back(number(cells[k], columns[k]));
+    if (check) check(cells[k].place, k, values.back());
+  }
 }
 
 /// All lines of numbers, row-major, in the order of the file's columns.
-std::vector<double> read_rows(Lines& lines, std::span<const std::string_view> columns) {
+std::vector<double> read_rows(Lines& lines, std::span<const std::string_view> columns, const CheckCell& check) {
   if (lines.done()) {
     throw InputError(lines.next_place(), "there is no data below the column names",
                      "write at least one line of numbers");
   }
   std::vector<double> values;
-  while (!lines.done()) read_row(lines, columns, values);
+  while (!lines.done()) read_row(lines, columns, check, values);
   return values;
 }
 
@@ -216,7 +225,7 @@ TimedPoints read_points(Lines& lines, const std::string& path, const ModelDescri
       read_header(lines, all_names(headers), timed == Timed::yes ? "time or pose coordinate" : "pose coordinate");
   const std::size_t kind = header_of(columns, headers, path);
   const std::vector<std::string_view>& wanted = headers[kind];
-  const std::vector<double> written = read_rows(lines, columns);
+  const std::vector<double> written = read_rows(lines, columns, {});
   std::vector<double> values(written.size());
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto target = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), columns[k]) - wanted.begin());
@@ -245,12 +254,18 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
   return points;
 }
 
-ErrorTable read_errors(const std::string& path, const ModelDescription& model) {
+ErrorTable read_errors(const std::string& path, const Model& model) {
+  const ModelDescription& description = model.description();
   Lines lines(path, "table of errors");
-  const std::vector<std::string_view> columns = read_header(lines, names(model.factors), "factor");
+  const std::vector<std::string_view> columns = read_header(lines, names(description.factors), "factor");
   ErrorTable table;
-  for (const std::string_view column : columns) table.factors.push_back(*model.find_factor(column));
-  table.values = read_rows(lines, columns);
+  for (const std::string_view column : columns) table.factors.push_back(*description.find_factor(column));
+  const auto check = [&](const Place& place, std::size_t column, double value) {
+    if (const auto problem = beyond_bound(model, table.factors[column], value, "an error")) {
+      throw InputError(place, "this cell " + *problem, "write a smaller one, in SI units (m, rad)");
+    }
+  };
+  table.values = read_rows(lines, columns, check);
   table.rows = table.values.size() / columns.size();
   return table;
 }

@@ -21,7 +21,8 @@ PoseTable read_poses(const std::string& path, const ModelDescription& model);
 TimedPoints read_trajectory(const std::string& path, const ModelDescription& model);
 
 /// Reads errors from CSV: the first line names factors of the model, any subset in any order; then one sample
-/// a line, SI. Errors as read_poses; an unknown factor is an InputError too.
-ErrorTable read_errors(const std::string& path, const ModelDescription& model);
+/// a line, SI. Errors as read_poses; an unknown factor is an InputError too, and so is an error that makes no sense
+/// (Model::error_bound).
+ErrorTable read_errors(const std::string& path, const Model& model);
 
 }  // namespace poesy

@@ -36,6 +36,7 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   study.analysis.reference.reset();
   const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
   if (along_file) study.poses.select = PoseSelection::Select::file;
+  study.mechanism.compared.reset();
   if (study.poses.select == PoseSelection::Select::file) study.poses.file = std::string(kPoses) + ".csv";
   return study;
 }

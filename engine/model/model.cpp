@@ -26,7 +26,7 @@ std::optional<std::vector<double>> Model::pose_from_chart(std::size_t /*chart*/,
 
 Separation Model::separation(std::span<const double> /*pose*/) const { return {}; }
 
-double Model::error_bound(FactorIndex /*factor*/) const { return std::numeric_limits<double>::infinity(); }
+ErrorBound Model::error_bound(FactorIndex /*factor*/) const { return {}; }
 
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {
   const auto found = std::find_if(catalog.begin(), catalog.end(),

@@ -111,6 +111,12 @@ struct SeparationDescription {
   std::vector<std::string> published;  ///< [F] the literature's class of each error, empty where it gives none
 };
 
+/// Errors of this magnitude or more make no sense, for they are as large as the part that they are errors of.
+struct ErrorBound {
+  double size = std::numeric_limits<double>::infinity();  ///< SI
+  std::string part = {};                                  ///< what is of that size: "the length of the rod"
+};
+
 /// How a per-sample solve is done.
 struct SolverOptions {
   enum class Method {
@@ -217,8 +223,8 @@ class Model {
   /// Precondition: the model separates its errors and reaches the pose.
   virtual Separation separation(std::span<const double> pose) const;
 
-  /// Errors of this magnitude or more make no sense, for they are as large as the part that they are errors of.
-  virtual double error_bound(FactorIndex factor) const;
+  /// Infinite unless a model says otherwise.
+  virtual ErrorBound error_bound(FactorIndex factor) const;
 
  protected:
   Model() = default;

@@ -7,6 +7,7 @@
 #include <bit>
 
 #include "engine/base/instruction_sets.h"
+#include "engine/random/philox_vectors.h"
 
 namespace poesy {
 
@@ -46,15 +47,19 @@ std::uint64_t random_bits(const StreamAddress& address, SampleIndex sample) {
 void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms) {
   // Whole blocks, of which the first may begin before the first sample and the last go on beyond the last one.
   constexpr std::size_t kWords = 512;
+  const PhiloxRun run{
+      address.factor.value, address.pose.value, {address.seed, static_cast<std::uint64_t>(address.purpose)}};
   std::array<std::uint64_t, kWords> words;
   std::uint64_t block = first.value / kBlockWords;
   std::size_t skipped = first.value % kBlockWords;
   while (!uniforms.empty()) {
     const std::size_t count = std::min(kWords - skipped, uniforms.size());
-    for (std::size_t k = 0; k < skipped + count; k += kBlockWords) {
-      const auto four = block_at(address, block++);
-      std::copy_n(four.begin(), kBlockWords, words.begin() + k);
+    const std::size_t blocks = (skipped + count + kBlockWords - 1) / kBlockWords;
+    for (std::size_t n = philox_by_vectors(run, block, blocks, words.data()); n < blocks; ++n) {
+      const auto four = block_at(address, block + n);
+      std::copy_n(four.begin(), kBlockWords, words.data() + n * kBlockWords);
     }
+    block += blocks;
     middles_of_cells(words.data() + skipped, count, uniforms.data());
     uniforms = uniforms.subspan(count);
     skipped = 0;

@@ -42,26 +42,6 @@ double share_not_converged(const SensitivityResult& s, std::size_t factor) {
   return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
 }
 
-/// Factors by the spread that each gives the response at the size the study sets: index x sigma(error). Indices alone
-/// do not compare, for some are per m and some per rad.
-std::vector<std::size_t> ranking(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& s = result.sensitivity;
-  std::vector<std::size_t> order(s.factors);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&](std::size_t p) {
-    const double spread = s.global[response * s.factors + p] * result.factor_sigma[p];
-    return std::isnan(spread) ? -1.0 : spread;
-  };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) > key(b); });
-  return order;
-}
-
-std::size_t response_named(const StoredResult& result, std::string_view name) {
-  const auto found = std::find_if(result.responses.begin(), result.responses.end(),
-                                  [&](const NamedUnit& response) { return response.name == name; });
-  return static_cast<std::size_t>(found - result.responses.begin());
-}
-
 std::string chart_text(const PoseChart& chart) {
   std::string text = fmt::format("\nposes may be given by {}\n", chart.name);
   for (const PoseCoordinate& coordinate : chart.coordinates) {
@@ -89,6 +69,24 @@ SolveCounts all_solves(const StoredResult& result) {
 }
 
 }  // namespace
+
+std::size_t response_named(const StoredResult& result, std::string_view name) {
+  const auto found = std::find_if(result.responses.begin(), result.responses.end(),
+                                  [&](const NamedUnit& response) { return response.name == name; });
+  return static_cast<std::size_t>(found - result.responses.begin());
+}
+
+std::vector<std::size_t> ranking(const StoredResult& result, std::size_t response) {
+  const SensitivityResult& s = result.sensitivity;
+  std::vector<std::size_t> order(s.factors);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t p) {
+    const double spread = s.global[response * s.factors + p] * result.factor_sigma[p];
+    return std::isnan(spread) ? -1.0 : spread;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) > key(b); });
+  return order;
+}
 
 std::string count_text(std::uint64_t count) {
   std::string digits = std::to_string(count);
@@ -178,7 +176,9 @@ std::string evaluation_table(const StoredResult& result) {
 }
 
 std::string result_tables(const StoredResult& result, std::string_view ranked_by) {
-  if (result.kind == "sensitivity") return ranked_table(result, ranked_by);
+  if (result.kind == "sensitivity") {
+    return ranked_table(result, ranked_by) + separation_table(result, ranked_by) + fidelity_table(result, ranked_by);
+  }
   if (result.kind == "identification") return identification_table(result);
   if (result.kind == "monte-carlo") return monte_carlo_table(result);
   if (result.kind == "coupling") return coupling_table(result);

@@ -17,6 +17,14 @@ std::string summary_text(const StoredResult& result);
 /// ranked_by is a response of the result.
 std::string ranked_table(const StoredResult& result, std::string_view ranked_by);
 
+/// What calibration can remove of each error's effect, in the order of ranked_table; empty where the result does not
+/// say.
+std::string separation_table(const StoredResult& result, std::string_view ranked_by);
+
+/// Per error the largest discrepancy of two fidelities and the verdict, in the order of ranked_table; empty where the
+/// study compares none.
+std::string fidelity_table(const StoredResult& result, std::string_view ranked_by);
+
 /// The response a result is ranked by unless asked otherwise: the first length of the headline, else its first.
 std::string default_ranking(const StoredResult& result);
 

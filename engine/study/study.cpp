@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "engine/base/contract.h"
 #include "engine/base/units.h"
 
 namespace poesy {
@@ -68,6 +69,13 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
     errors[factor.value] = is_length ? background->linear : background->angular;
   }
   return errors;
+}
+
+MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
+  POESY_EXPECTS(mechanism.compared.has_value());
+  mechanism.fidelity = *mechanism.compared;
+  mechanism.compared.reset();
+  return mechanism;
 }
 
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {

@@ -22,6 +22,8 @@ struct MechanismChoice {
   std::vector<double> geometry;
   std::size_t fidelity = 0;  ///< position among the model's fidelities, 0 where it offers no choice
   Place place;               ///< of the section, for messages about the geometry as a whole
+  /// A second fidelity, solved on the same draws as the first and compared with it.
+  std::optional<std::size_t> compared = std::nullopt;
 };
 
 /// How each error source is distributed.
@@ -100,6 +102,7 @@ struct Analysis {
   double conf_level = 0.95;                        ///< sensitivity, Monte Carlo
   std::optional<Background> background;            ///< not for identification
   std::optional<ToleranceReference> reference;     ///< sensitivity
+  double linearity = 0.01;                         ///< sensitivity at two fidelities: up to this an error is linear
   std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< Monte Carlo: shares of samples below, ascending
   std::vector<ErrorSize> groups;                   ///< identification
   double pose_share = 0.95;                        ///< identification: of the poses that a verdict asks for
@@ -137,6 +140,9 @@ std::string_view name(SolverOptions::Method method);
 
 /// The constant errors, [F]: the background's value where it applies, else zero.
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);
+
+/// The mechanism at its second fidelity alone. Precondition: it compares two.
+MechanismChoice at_compared_fidelity(MechanismChoice mechanism);
 
 /// Builds the study's mechanism. Throws InputError at the mechanism's place when the geometry is impossible.
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism);

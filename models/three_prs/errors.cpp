@@ -87,6 +87,15 @@ std::vector<Factor> factors() {
   return list;
 }
 
+std::vector<std::string> published_classes() {
+  std::vector<std::string> classes;
+  for (std::size_t f = 0; f < kFactors; ++f) {
+    const Role role = kEntries[f % kSources].role;
+    classes.emplace_back(role == Role::none ? "" : role == Role::compensable ? "compensable" : "non-compensable");
+  }
+  return classes;
+}
+
 std::vector<FactorSet> factor_sets() {
   const auto role = [](Role wanted) { return [wanted](const Entry& entry) { return entry.role == wanted; }; };
   return {

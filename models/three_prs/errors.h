@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -16,5 +17,8 @@ std::vector<Factor> factors();
 /// non-compensable (21), Section 4.2; platform-hinges (FS), initial-position (T), revolute-gap (R), rod-length (L),
 /// Section 5.2.
 std::vector<FactorSet> factor_sets();
+
+/// "compensable", "non-compensable", or empty without effect (Section 4.2), [60].
+std::vector<std::string> published_classes();
 
 }  // namespace poesy::three_prs

@@ -123,11 +123,12 @@ class Machine final : public Model {
     return std::vector{alpha, beta, coordinates[4] - tip.z(), coordinates[2] - tip.x(), coordinates[3] - tip.y()};
   }
 
-  double error_bound(FactorIndex factor) const override {
+  ErrorBound error_bound(FactorIndex factor) const override {
     if (factor.value < kFactors) return head_->error_bound(factor);
     const Factor& error = description_.factors[factor.value];
     if (error.dimension != Dimension::length) return Model::error_bound(factor);
-    return error.limb == kLimbs + 1 ? travel_.x : travel_.y;
+    return error.limb == kLimbs + 1 ? ErrorBound{travel_.x, "the travel of the X slide"}
+                                    : ErrorBound{travel_.y, "the travel of the Y slide"};
   }
 
  private:

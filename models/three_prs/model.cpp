@@ -8,6 +8,7 @@
 #include "models/three_prs/errors.h"
 #include "models/three_prs/evaluators.h"
 #include "models/three_prs/kinematics.h"
+#include "models/three_prs/separation.h"
 
 namespace poesy::three_prs {
 namespace {
@@ -83,6 +84,7 @@ ModelDescription describe() {
   description.headline = {kComponents, kComponents + 1, kComponents + 2};
   description.charts = charts();
   description.curves = curves();
+  description.separation = separation_description();
   return description;
 }
 
@@ -135,6 +137,19 @@ class ThreePrs final : public Model {
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     if (fidelity_ == Fidelity::first_order) return first_order_evaluator(geometry_);
     return exact_evaluator(geometry_, options);
+  }
+
+  ErrorBound error_bound(FactorIndex factor) const override {
+    const auto source = static_cast<Source>(factor.value % kSources);
+    if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
+    if (source < Source::q) return {geometry_.a, "the radius a of the rails' circle"};
+    if (source == Source::q) return {geometry_.rail, "the travel of the carriages"};
+    if (source < Source::c) return {geometry_.l, "the length l of the rods"};
+    return {geometry_.c, "the radius c of the spherical joints' circle"};
+  }
+
+  Separation separation(std::span<const double> pose) const override {
+    return three_prs::separation(geometry_, configuration(geometry_, pose_from(pose)));
   }
 
  private:

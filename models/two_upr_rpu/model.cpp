@@ -93,6 +93,13 @@ class TwoUprRpu final : public Model {
     return chain::deformation_evaluator(deformation_, options);
   }
 
+  /// The smaller of the platform and the base, which every limb joins; the offsets c and d are no links and may be 0.
+  ErrorBound error_bound(FactorIndex factor) const override {
+    if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
+    if (geometry_.l_A < geometry_.l_B) return {geometry_.l_A, "the platform's size l_A"};
+    return {geometry_.l_B, "the base's size l_B"};
+  }
+
  private:
   /// Where a leg has no length, or a coordinate is so large that digits are lost, the limbs do not meet.
   std::optional<std::string> open_loop(const Pose& pose) const {

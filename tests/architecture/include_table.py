@@ -36,6 +36,7 @@ LIBRARIES = {
     "xsimd": ("xsimd/*",),
     "nlohmann-json": ("nlohmann/*",),
     "sanitizers": ("sanitizer/*",),
+    "intrinsics": ("*intrin.h", "arm_neon.h"),
     "GoogleTest": ("gtest/*", "gmock/*"),
     "Google Benchmark": ("benchmark/*",),
     "threads": ("atomic", "barrier", "condition_variable", "future", "latch", "mutex", "semaphore", "shared_mutex",

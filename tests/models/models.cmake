@@ -11,5 +11,6 @@ poesy_test(three_prs_test LABELS unit
            SOURCES models/three_prs/closure_kernel_test.cpp models/three_prs/closure_lanes_test.cpp
                    models/three_prs/errors_test.cpp models/three_prs/first_order_kernel_test.cpp
                    models/three_prs/kinematics_test.cpp models/three_prs/machine_test.cpp
-                   models/three_prs/model_test.cpp models/three_prs/trajectory_test.cpp
+                   models/three_prs/model_test.cpp models/three_prs/separation_test.cpp
+                   models/three_prs/trajectory_test.cpp
            LINKS poesy_models poesy_study nlohmann_json::nlohmann_json)

@@ -71,6 +71,14 @@ BAD_STUDIES = {
     "time_reversed": (helix('time = ["2 s", "1 s"]'), "7:40", ["from 2 s to 1 s"]),
     "time_outside": (helix('time = ["0 s", "9 s"]'), "7:40", ["0 s to 9 s", "0 s to 2 s"]),
     "trajectory_without_file": (HELIX.replace('curve = "helix"', "points = 5"), "7:14", ["neither curve nor file"]),
+    "sigma_beyond_the_platform": (changed('sigma = "1 mm" }\n', 'sigma = "60 mm" }\n'), "8:",
+                                  ["delta_1_1_y", "60 mm", "l_A"]),
+    "half_turns": (changed('sigma = "0.2 deg"', 'sigma = "180 deg"'), "9:", ["epsilon_1_4_z", "180 deg", "half a turn"]),
+    "background_beyond_the_platform": (changed('linear = "1 mm", angular = "1 deg" }', 'linear = "-1 m" }'), "14:",
+                                       ["-1000 mm", "l_A"]),
+    "case_beyond_the_platform": (
+        changed('kind = "sensitivity"', 'kind = "evaluate"\ncases = [{ errors = { delta_1_1_y = "70 mm" } }]')
+        .replace('background', '# background'), "12:", ["delta_1_1_y", "70 mm"]),
     "not_toml": (changed("[poses]", "[poses"), "5:", []),
     "rubbish": (bytes(range(256)) * 20, "", []),
     "empty": ("", "1:1", ["empty"]),
@@ -86,6 +94,7 @@ BAD_TABLES = {
     "not_a_number": (POSES, "delta_1_1_y\n0.001\nabc\n", "errors.csv:3", ["abc"]),
     "nan": (POSES, "delta_1_1_y\nnan\n", "errors.csv:2", ["nan"]),
     "infinite": ("z,beta,gamma\n-0.2,0.1,inf\n", ERRORS, "poses.csv:2", ["inf"]),
+    "beyond_the_platform": (POSES, "delta_1_1_y\n0.001\n-0.06\n", "errors.csv:3:1", ["delta_1_1_y", "-60 mm", "l_A"]),
     "empty_file": ("", ERRORS, "poses.csv", []),
     "header_only": (POSES, "delta_1_1_y\n", "errors.csv", []),
     "short_row": (POSES, "delta_1_1_y,epsilon_1_4_z\n0.001\n", "errors.csv:2", []),

@@ -44,6 +44,16 @@ analysis = {{ kind = "{kind}", samples = 1200 }}
                 by_fidelity.append(hashes.pop())
             self.assertNotEqual(*by_fidelity)
 
+    def test_both_fidelities(self):
+        study = """\
+format = "poesy-study"
+version = 1
+mechanism = { model = "3-prs", fidelity = "both" }
+poses = { count = 5 }
+analysis = { factors = "platform-hinges", samples = 1200 }
+"""
+        self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 3)}), 1)
+
     def test_identification_and_cases(self):
         head, rest = STUDY.split("[analysis]")
         head = head.replace("count = 6", 'select = "boundary"\ncount = 30')

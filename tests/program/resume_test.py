@@ -6,9 +6,12 @@ import resource
 import shlex
 import signal
 import subprocess
+import time
+
+import h5py
 
 from poesy_program import PROGRAM, main
-from resumption import CASES, MONTE_CARLO, SENSITIVITY, STUDIES, ResumptionTest
+from resumption import CASES, FIDELITIES, MONTE_CARLO, SENSITIVITY, STUDIES, ResumptionTest
 
 
 class Resume(ResumptionTest):
@@ -24,18 +27,21 @@ class Resume(ResumptionTest):
                 self.assertEqual(self.content_hash(), expected)
 
     def test_facts_are_of_all_parts(self):
-        import h5py
         self.undisturbed(SENSITIVITY)
         self.stop_early()
+        time.sleep(0.3)  # does not count
         self.resume_to_end()
         with h5py.File(self.folder / "undisturbed.h5") as whole, h5py.File(self.folder / "out.h5") as parts:
             self.assertEqual(parts["run/solves"][()], whole["run/solves"][()])
-            self.assertGreater(parts["run/wall_seconds"][()], 0.15)
+            self.assertGreater(parts["run/wall_seconds"][()], 0.01)
 
     def test_printed_command(self):
         expected = self.undisturbed(SENSITIVITY)
         self.write("my study.toml", SENSITIVITY)
-        code, messages = self.run_for(0.5, "--seed", 5, number=signal.SIGINT, study="my study.toml")
+        for seconds in (0.4, 0.3, 0.2, 0.1):
+            code, messages = self.run_for(seconds, "--seed", 5, number=signal.SIGINT, study="my study.toml")
+            if code != 0:
+                break
         self.assertEqual(code, 4, messages)
         command = messages.split("continue with: ")[1]
         self.assertIn("--resume", shlex.split(command))
@@ -59,7 +65,7 @@ class Resume(ResumptionTest):
                 path.unlink()
 
     def test_more_samples(self):
-        for study in (SENSITIVITY, MONTE_CARLO):
+        for study in (SENSITIVITY, MONTE_CARLO, FIDELITIES):
             for old, new in (("12300", "15000"), ("12000", "12300"), ("300", "12300"), ("3000", "12001")):
                 with self.subTest(study=study, old=old, new=new):
                     expected = self.undisturbed(study.replace("12300", new))
@@ -69,7 +75,7 @@ class Resume(ResumptionTest):
                     self.assertEqual(self.resume_to_end(), expected)
 
     def test_more_samples_of_an_unfinished_run(self):
-        for study in (SENSITIVITY, MONTE_CARLO):
+        for study in (SENSITIVITY, MONTE_CARLO, FIDELITIES):
             with self.subTest(study=study):
                 longest = study.replace("12300", "14600")
                 expected = self.undisturbed(longest)

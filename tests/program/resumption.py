@@ -56,15 +56,23 @@ COUPLING = """\
 format = "poesy-study"
 version = 1
 mechanism = { model = "3-prs" }
-poses = { count = 3000 }
+poses = { count = 20000 }
 [analysis]
 kind = "coupling"
 linear = ["0.1 mm", "0.3 mm", "0.5 mm"]
 sources = [{ name = "FS", factors = "platform-hinges" }, { name = "R", factors = "revolute-gap" },
            { name = "L", factors = "rod-length" }]
 """
+FIDELITIES = """\
+format = "poesy-study"
+version = 1
+mechanism = { model = "3-prs", fidelity = "both" }
+poses = { count = 20 }
+errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
+analysis = { kind = "sensitivity", samples = 12300 }
+"""
 STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "evaluate": CASES, "identification": IDENTIFICATION,
-           "coupling": COUPLING}
+           "coupling": COUPLING, "fidelities": FIDELITIES}
 
 
 class ResumptionTest(ProgramTest):
@@ -101,7 +109,7 @@ class ResumptionTest(ProgramTest):
 
     def stop_early(self, *options):
         """Runs the study for a moment, so that a checkpoint stays."""
-        done = self.poesy("run", "study.toml", "-o", "out.h5", "--max-wall", "0.15 s", "--quiet", *options)
+        done = self.poesy("run", "study.toml", "-o", "out.h5", "--max-wall", "0.01 s", "--quiet", *options)
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertTrue(self.newer.exists())
 

@@ -72,5 +72,70 @@ TEST(Fidelity, UnknownOneIsRefusedWithASuggestion) {
                            {"mechanism.fidelity is 'frist-order'", "did you mean 'first-order'?"});
 }
 
+TEST(BothFidelities, AreReadAndWritten) {
+  const Study study = study_of(study_with("fidelity = \"both\"\n"));
+  EXPECT_EQ(study.mechanism.fidelity, 0u);
+  EXPECT_EQ(study.mechanism.compared, 1u);
+  EXPECT_EQ(study.analysis.linearity, 0.01);
+  const std::string text = resolved_text(study);
+  EXPECT_NE(text.find("\nfidelity = \"both\"\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nlinearity = 0.01\n"), std::string::npos) << text;
+  EXPECT_EQ(resolved_text(study_of(text)), text);
+  EXPECT_EQ(resolved_text(study_of(study_with(""))).find("linearity"), std::string::npos);
+}
+
+TEST(BothFidelities, LinearityIsRead) {
+  const std::string text = study_with("fidelity = \"both\"\n") + "[analysis]\nlinearity = 0.05\n";
+  EXPECT_EQ(study_of(text).analysis.linearity, 0.05);
+  EXPECT_EQ(study_of(resolved_text(study_of(text))).analysis.linearity, 0.05);
+}
+
+TEST(BothFidelities, SecondIsSolvedAlone) {
+  Study study = study_of(study_with("fidelity = \"both\"\n"));
+  const double first = first_response(study);
+  study.mechanism = at_compared_fidelity(study.mechanism);
+  EXPECT_EQ(first_response(study), 2.0 * first);
+  EXPECT_FALSE(study.mechanism.compared);
+}
+
+TEST(BothFidelities, StandInTheTemplateOfSensitivityAlone) {
+  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
+  EXPECT_NE(text.find("# fidelity = \"both\""), std::string::npos) << text;
+  EXPECT_NE(text.find("# linearity = 0.01"), std::string::npos) << text;
+  EXPECT_EQ(template_text(kCatalog[0], Analysis::Kind::monte_carlo).find("\"both\""), std::string::npos);
+  EXPECT_EQ(template_text(test::fake_catalog()[0], Analysis::Kind::sensitivity).find("linearity"), std::string::npos);
+}
+
+void expect_refusal(const std::string& marked, const Catalog& catalog, const std::vector<std::string>& words) {
+  const test::Marked study(marked);
+  const test::TempFolder folder;
+  const std::string path = folder.write("study.toml", study.text);
+  test::expect_input_error([&] { read_study(path, catalog, StudyUse::run); }, {path, study.line, study.column}, words);
+}
+
+TEST(BothFidelities, OtherKindsRefuseThem) {
+  for (const std::string kind : {"monte-carlo", "identification"}) {
+    expect_refusal(study_with("fidelity = ^\"both\"\n") + "[analysis]\nkind = \"" + kind + "\"\n", kCatalog,
+                   {"mechanism.fidelity is \"both\"", "kind = \"" + kind + "\" solves at one fidelity",
+                    "write \"exact\" or \"first-order\""});
+  }
+}
+
+TEST(BothFidelities, ModelsWithoutTwoRefuseThem) {
+  Catalog three = kCatalog;
+  three[0].description.fidelities.push_back("coarse");
+  expect_refusal(study_with("fidelity = ^\"both\"\n"), three, {"mechanism.fidelity is 'both'", "known: exact"});
+  expect_refusal(study_with("^fidelity = \"both\"\n"), test::fake_catalog(), {"offers no choice"});
+}
+
+TEST(BothFidelities, LinearityNeedsThem) {
+  expect_refusal(study_with("") + "[analysis]\n^linearity = 0.05\n", kCatalog,
+                 {"analysis.linearity", "without fidelity = \"both\""});
+  for (const std::string value : {"0", "1", "-0.5", "2"}) {
+    expect_refusal(study_with("fidelity = \"both\"\n") + "[analysis]\nlinearity = ^" + value + "\n", kCatalog,
+                   {"analysis.linearity", "between 0 and 1", "0.01"});
+  }
+}
+
 }  // namespace
 }  // namespace poesy

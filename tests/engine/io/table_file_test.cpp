@@ -10,6 +10,7 @@ namespace poesy {
 namespace {
 
 const ModelDescription kModel = test::FakeModel::describe();
+const test::FakeModel kMechanism;
 
 PoseSet poses_of(std::string_view text) {
   const test::TempFolder folder;
@@ -54,7 +55,7 @@ TEST(ReadTrajectory, TakesTimesFromAnyColumn) {
 
 TEST(ReadErrors, TakesAnySubsetInAnyOrder) {
   const test::TempFolder folder;
-  const ErrorTable table = read_errors(folder.write("e.csv", "delta_2,delta_1\n1,2\n3,4\n5,6\n"), kModel);
+  const ErrorTable table = read_errors(folder.write("e.csv", "delta_2,delta_1\n1,2\n3,4\n5,6\n"), kMechanism);
   EXPECT_EQ(table.factors, (std::vector<FactorIndex>{FactorIndex(2), FactorIndex(0)}));
   EXPECT_EQ(table.values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(table.rows, 3u);
@@ -148,7 +149,7 @@ TEST_P(BadErrors, AreAnInputErrorWithItsPlace) {
   const test::TempFolder folder;
   const test::Marked bad(GetParam().text);
   const std::string path = folder.write("errors.csv", bad.text);
-  test::expect_input_error([&] { read_errors(path, kModel); }, {path, bad.line, bad.column}, GetParam().words);
+  test::expect_input_error([&] { read_errors(path, kMechanism); }, {path, bad.line, bad.column}, GetParam().words);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -162,9 +163,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ReadTables, TellAFolderFromAMissingFile) {
   const test::TempFolder folder;
   test::expect_input_error([&] { read_poses(folder.file("."), kModel); }, {folder.file("."), 0, 0}, {"folder"});
-  test::expect_input_error([&] { read_errors(folder.file("."), kModel); }, {folder.file("."), 0, 0}, {"folder"});
+  test::expect_input_error([&] { read_errors(folder.file("."), kMechanism); }, {folder.file("."), 0, 0}, {"folder"});
   EXPECT_THROW(read_poses(folder.file("none.csv"), kModel), FileError);
-  EXPECT_THROW(read_errors(folder.file("none.csv"), kModel), FileError);
+  EXPECT_THROW(read_errors(folder.file("none.csv"), kMechanism), FileError);
 }
 
 }  // namespace

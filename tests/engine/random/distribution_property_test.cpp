@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "engine/random/distribution.h"
@@ -90,6 +91,49 @@ TEST(Quantile, NormalSharesComeBackToFourteenDigits) {
   }
 }
 
+/// The x <= 0 below which a share lies, from a start near it: Halley's iteration in long double.
+long double exact_normal_quantile(double share, double start) {
+  long double x = start;
+  for (int k = 0; k < 3; ++k) {
+    const long double step = (0.5L * std::erfc(-x / kRoot2) - share) / normal_density(x);
+    x -= step / (1.0L + 0.5L * x * step);
+  }
+  return x;
+}
+
+TEST(Quantile, NormalIsWithinAFewUnitsInTheLastPlace) {
+  const Distribution normal = Distribution::normal(1.0);
+  std::mt19937_64 engine(14);
+  double sum = 0.0;
+  constexpr int kDraws = 200000;
+  for (int k = 0; k < kDraws; ++k) {
+    // Alternately as streams draw, and spread evenly over all powers of two down to the smallest draw.
+    const double share = std::max(0x1p-54, 0.5 * std::generate_canonical<double, 53>(engine));
+    const double u = k % 2 == 0 ? share : std::max(0x1p-54, std::ldexp(share, -(k / 2 % 53)));
+    const double x = normal.quantile(u);
+    const double unit = std::abs(x) - std::nextafter(std::abs(x), 0.0);
+    const double error = static_cast<double>(std::abs(x - exact_normal_quantile(u, x))) / unit;
+    EXPECT_LE(error, u < 0.075 ? 4.0 : 6.0) << u;
+    sum += error;
+  }
+  EXPECT_LE(sum / kDraws, 0.7);
+}
+
+TEST(Quantile, NormalHasNoStepWhereItsFormulasMeet) {
+  const Distribution normal = Distribution::normal(1.0);
+  for (const double seam : {0x1p-54, 0.075}) {
+    double u = seam * (1.0 - 0x1p-48);
+    double last = normal.quantile(u);
+    for (int k = 0; k < 64; ++k) {
+      u = std::nextafter(u, 1.0);
+      const double x = normal.quantile(u);
+      // One unit of u moves x by less than this in theory; the rest is rounding.
+      EXPECT_NEAR(x, last, 6.0 * std::numeric_limits<double>::epsilon() * std::abs(x)) << seam << " " << k;
+      last = x;
+    }
+  }
+}
+
 TEST(Quantile, TailsMirrorEachOtherExactly) {
   for (const Distribution& d : all_shapes()) {
     for (double u : lower_shares()) {
@@ -120,6 +164,17 @@ TEST(Transform, EqualsTheQuantileOfEachValue) {
   for (const Distribution& d : all_shapes()) {
     std::vector<double> shares{0x1p-54, 0.01, 0.075, 0.3, 0.5, 0.77, 0.925, 1.0 - 0x1p-53};
     for (int k = 0; k < 1001; ++k) shares.push_back((k + 0.5) / 1001.0);  // more than a block, and a part of one
+    std::vector<double> values = shares;
+    d.transform(values);
+    for (std::size_t k = 0; k < shares.size(); ++k) EXPECT_EQ(values[k], d.quantile(shares[k]));
+  }
+}
+
+TEST(Transform, TakesSharesBelowAllDraws) {
+  for (const Distribution& d : all_shapes()) {
+    std::vector<double> shares(700, 0.01);
+    for (const std::size_t place : {std::size_t{3}, std::size_t{699}}) shares[place] = 1e-300;
+    shares[4] = 0x1p-55;
     std::vector<double> values = shares;
     d.transform(values);
     for (std::size_t k = 0; k < shares.size(); ++k) EXPECT_EQ(values[k], d.quantile(shares[k]));

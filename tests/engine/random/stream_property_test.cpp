@@ -64,6 +64,23 @@ TEST(FillUniforms, EqualsTheSingleDrawsFromAnyStart) {
   }
 }
 
+TEST(FillUniforms, ManyDrawsEqualTheSingleOnes) {
+  // Long enough for every way to compute blocks, from addresses that fill 64 bits.
+  const StreamAddress wide{.seed = 0xfedcba9876543210,
+                           .purpose = Purpose::sampling_design,
+                           .factor = FactorIndex(0xffffffffffffffff),
+                           .pose = PoseIndex(0x123456789abcdef0)};
+  for (const StreamAddress& address : {kAddress, wide}) {
+    for (const std::size_t first : {std::size_t{0}, std::size_t{3}, std::size_t{0xfffffffffffe}}) {
+      const std::vector<double> draws = uniforms(address, first, 3001);
+      for (std::size_t k = 0; k < draws.size(); ++k) {
+        ASSERT_EQ(draws[k], uniform_from_bits(random_bits(address, SampleIndex(first + k))))
+            << "first " << first << ", draw " << k;
+      }
+    }
+  }
+}
+
 TEST(FillUniforms, FewerDrawsAreThePrefixOfMore) {
   const std::vector<double> more = uniforms(kAddress, 0, 2000);
   for (const std::size_t count : {std::size_t{1}, std::size_t{999}, std::size_t{1000}, std::size_t{1998}}) {

@@ -144,7 +144,7 @@ TEST(Allocation, NonePerSampleInAUnit) {
 }
 
 TEST(Allocation, NonePerSampleInAMonteCarloUnit) {
-  // Besides, the buckets of the three sketches that are handed on.
+  // Besides, the buckets of the numbers of the three responses that are handed on.
   const auto count = [](std::size_t samples) {
     return allocations_per_unit<PoseUnitEvaluator>(Analysis::Kind::monte_carlo, samples);
   };

@@ -39,6 +39,27 @@ TEST(QuantileSketch, IsExactForZeroAndForTheExtremes) {
   EXPECT_EQ(sketch.max(), 7.7);
 }
 
+TEST(BucketedValues, KnowsItsExtremesAndSigns) {
+  const BucketedValues none(std::span<const double>{});
+  EXPECT_TRUE(none.buckets.empty());
+  EXPECT_GT(none.min, none.max);
+
+  std::vector<double> values(37, 1.5);
+  values[5] = -8.0;
+  values[6] = 0.0;
+  values[7] = -1e-310;
+  values[36] = -0.25;
+  const BucketedValues bucketed(values);
+  EXPECT_EQ(bucketed.buckets.size(), values.size());
+  EXPECT_EQ(bucketed.buckets[5], 0x80000u + 0x402u * 256u);  // the sign, the exponent 3, no fraction
+  EXPECT_EQ(bucketed.lowest, 0x3fdu * 256u);
+  EXPECT_EQ(bucketed.highest, 0x402u * 256u);
+  EXPECT_EQ(bucketed.negatives, 2u);
+  EXPECT_EQ(bucketed.positives, 33u);
+  EXPECT_EQ(bucketed.min, -8.0);
+  EXPECT_EQ(bucketed.max, 1.5);
+}
+
 TEST(QuantileSketch, TakesSubnormalsForZero) {
   const QuantileSketch sketch = of({-5e-324, 1e-310, 2e-310, 3e-310, 1.0});
   EXPECT_EQ(sketch.quantile(0.6), 0.0);

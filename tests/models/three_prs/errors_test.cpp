@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 
 #include "tests/models/three_prs/reference.h"
@@ -97,6 +98,22 @@ TEST(FactorSets, SeparationFollowsTheRowsOfTheMapping) {
   for (const std::size_t f : members("non-compensable")) {
     EXPECT_FALSE(enters(f, 0));
     EXPECT_TRUE(enters(f, 3));
+  }
+}
+
+TEST(ErrorBound, IsThePartThatTheErrorBelongsTo) {
+  const auto model = published("exact");
+  const Geometry geometry;
+  for (std::size_t f = 0; f < kFactors; ++f) {
+    const std::string& name = model->description().factors[f].name;
+    const ErrorBound bound = model->error_bound(FactorIndex(f));
+    const double expected = name.starts_with("theta") ? std::numbers::pi
+                            : name.starts_with("a_")  ? geometry.a
+                            : name.starts_with("q_")  ? geometry.rail
+                            : name.starts_with("c_")  ? geometry.c
+                                                      : geometry.l;
+    EXPECT_EQ(bound.size, expected) << name;
+    EXPECT_FALSE(bound.part.empty());
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <stdexcept>
 
 #include "models/chain/limb.h"
@@ -194,6 +195,16 @@ TEST(Model, FollowsItsGeometry) {
   EXPECT_FALSE(larger->unreachable(std::vector{-0.35, 0.2, -0.3}));
   EXPECT_NE(larger->joint_displacements(std::vector{-0.35, 0.2, -0.3}),
             published()->joint_displacements(std::vector{-0.35, 0.2, -0.3}));
+}
+
+TEST(Model, BoundsErrorsByPlatformAndBase) {
+  const CatalogEntry entry = catalog_entry();
+  const auto bound = [&](const Model& model, const char* name) {
+    return model.error_bound(*entry.description.find_factor(name)).size;
+  };
+  EXPECT_EQ(bound(*published(), "delta_1_1_y"), 0.06);
+  EXPECT_EQ(bound(*published(), "epsilon_1_4_z"), std::numbers::pi);
+  EXPECT_EQ(bound(*entry.build(std::vector{0.2, 0.15, 0.025, 0.0, -0.3}, 0), "delta_3_0_x"), 0.15);
 }
 
 }  // namespace

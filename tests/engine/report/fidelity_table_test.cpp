@@ -1,0 +1,52 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+StoredResult example() {
+  StoredResult result;
+  result.kind = "sensitivity";
+  result.factors = {{"q_1", "m"}, {"theta_1", "rad"}, {"b_1", "m"}, {"c_1", "m"}};
+  result.factor_sigma = {1e-3, 1e-2, 1e-3, 1e-3};
+  result.responses = {{"x", "m"}, {"y", "m"}};
+  result.fidelities = {"exact", "first-order"};
+  result.sensitivity.responses = 2;
+  result.sensitivity.factors = 4;
+  result.sensitivity.global = {1.0, 0.5, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0};
+  FidelityResult& found = result.sensitivity.fidelity.emplace();
+  found.relative_discrepancy = {1e-4, 0.01, kNaN, kInfinity, 2e-5, -0.04, kNaN, kNaN};
+  found.nonlinearity = {5e-4, 0.07, kNaN, kInfinity, 6e-4, 0.03, kNaN, kNaN};
+  found.linear = {1, 0, 1, 0};
+  found.not_converged = {0, 2, 0, 1100};
+  return result;
+}
+
+TEST(FidelityTable, ShowsTheLargestOfEachErrorAndTheVerdict) {
+  EXPECT_EQ(
+      fidelity_table(example(), "x"),
+      "\n"
+      "Fidelity \"first-order\" against \"exact\" on the same draws, in percent of each error's largest index\n"
+      "rank  error              discrepancy  of                    nonlinearity  of                    verdict\n"
+      "   1  theta_1                   -4 %  y                              7 %  x                     not linear\n"
+      "   2  q_1                     0.01 %  x                           0.06 %  y                     linear\n"
+      "   3  b_1                          -                                   -                        no effect\n"
+      "   4  c_1                  no effect  by the first             no effect  by the first          not linear\n"
+      "2 of 4 errors are not linear: they differ by more than 1 %, at the size the study sets\n"
+      "1 102 solves at fidelity \"first-order\" did not converge\n");
+}
+
+TEST(FidelityTable, IsEmptyForOneFidelity) {
+  StoredResult result = example();
+  result.sensitivity.fidelity.reset();
+  EXPECT_EQ(fidelity_table(result, "x"), "");
+}
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,39 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+TEST(SeparationTable, IsInTheOrderOfTheRanking) {
+  StoredResult result;
+  result.kind = "sensitivity";
+  result.factors = {{"q_1", "m"}, {"theta_1", "rad"}, {"b_1", "m"}};
+  result.factor_sigma = {1e-3, 1e-2, 1e-3};
+  result.responses = {{"position", "m"}};
+  result.sensitivity.responses = 1;
+  result.sensitivity.factors = 3;
+  result.sensitivity.global = {1.0, 0.5, 0.0};
+  EXPECT_EQ(separation_table(result, "position"), "");
+  SeparationResult& found = result.sensitivity.separation.emplace();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  found.drive_share = {1.0, 0.25, none};
+  found.removable = {1.0, 0.0625, none};
+  found.removable_together = 0.4321;
+  result.separation_measure = "how far the platform moves";
+  result.published_class = {"compensable", "non-compensable", ""};
+  EXPECT_EQ(separation_table(result, "position"),
+            "\n"
+            "What calibration can remove of each error's effect, to first order, over the poses\n"
+            "effect: how far the platform moves\n"
+            "rank  error             published class   drive share  removable by calibration\n"
+            "   1  theta_1           non-compensable        25.0 %                     6.2 %\n"
+            "   2  q_1               compensable           100.0 %                   100.0 %\n"
+            "   3  b_1               -                           -                         -\n"
+            "all errors together, at the size the study sets: 43.2 % of the effect is removable\n");
+}
+
+}  // namespace
+}  // namespace poesy
