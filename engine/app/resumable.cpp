@@ -14,8 +14,9 @@
 namespace poesy::app {
 namespace {
 
-/// A checkpoint that took a time to write is followed by another after a hundred of these at the earliest.
-constexpr double kLeastRatio = 100.0;
+/// A checkpoint that took a time to write is followed by another after so many of these at the earliest: under 1 %,
+/// also when the last one is much the longest.
+constexpr double kLeastRatio = 200.0;
 
 void say(const std::string& text) { std::fputs(("poesy: " + text + "\n").c_str(), stderr); }
 
@@ -64,9 +65,8 @@ ResumableRun::ResumableRun(const ResumeOptions& options, const std::string& resu
       keep_(options.keep),
       command_(std::move(resume_command)),
       files_(result_path),
-      every_(duration_of(parse_duration(options.every, "--checkpoint-every"))),
-      next_(start_ + every_) {
-  if (!options.max_wall.empty()) end_ = start_ + duration_of(parse_duration(options.max_wall, "--max-wall"));
+      every_(duration_of(parse_duration(options.every, "--checkpoint-every"))) {
+  if (!options.max_wall.empty()) end_ = Clock::now() + duration_of(parse_duration(options.max_wall, "--max-wall"));
   if (resume_ && !files_.exist()) {
     throw InputError({.file = files_.newer()}, "there is no such checkpoint to resume from",
                      "leave --resume out to run the study from the beginning");
@@ -88,17 +88,18 @@ void ResumableRun::start(const CheckpointIdentity& run, bool quiet) {
       say("continuing from " + found->path);
     }
     taken_ = found->path;
-    seconds_before_ = found->checkpoint.wall_seconds;
+    before_ = found->checkpoint.time;
     stages = std::move(found->checkpoint.stages);
   }
   checkpoints_.emplace([this] { return due(); }, [this](std::span<const Bytes> all) { save(all); }, std::move(stages));
+  start_ = Clock::now();
+  next_ = start_ + every_;
 }
 
-double ResumableRun::wall_seconds() const {
-  return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
+RunTime ResumableRun::time() const {
+  return {before_.wall + std::chrono::duration<double>(Clock::now() - start_).count(),
+          before_.checkpoints + checkpoint_seconds_};
 }
-
-ResumableRun::Clock::time_point ResumableRun::begin() const { return start_ - duration_of(seconds_before_); }
 
 void ResumableRun::check_time() const {
   if (end_ && Clock::now() >= *end_) interrupt();
@@ -107,10 +108,12 @@ void ResumableRun::check_time() const {
 void ResumableRun::save(std::span<const Bytes> stages) {
   const Clock::time_point before = Clock::now();
   no_room_ = true;
-  files_.write(identity_, wall_seconds(), stages);
+  files_.write(identity_, time(), stages);
   no_room_ = false;
   const Clock::time_point after = Clock::now();
-  next_ = after + std::max(every_, duration_of(kLeastRatio * std::chrono::duration<double>(after - before).count()));
+  const double seconds = std::chrono::duration<double>(after - before).count();
+  checkpoint_seconds_ += seconds;
+  next_ = after + std::max(every_, duration_of(kLeastRatio * seconds));
 }
 
 void ResumableRun::finish() {

@@ -38,8 +38,8 @@ class ResumableRun {
   void start(const CheckpointIdentity& run, bool quiet);
   /// Those to run with. Precondition: started.
   Checkpoints& checkpoints() { return *checkpoints_; }
-  /// When the earlier parts of this run, without a gap, would have begun.
-  std::chrono::steady_clock::time_point begin() const;
+  /// That all parts of the run took since they were started.
+  RunTime time() const;
   /// Interrupts the run when its time is over.
   void check_time() const;
 
@@ -55,7 +55,6 @@ class ResumableRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  double wall_seconds() const;
   bool due() const { return Clock::now() >= next_; }
   void save(std::span<const Bytes> stages);
 
@@ -67,8 +66,9 @@ class ResumableRun {
   std::string taken_;  ///< the file that was taken up
   Clock::duration every_;
   std::optional<Clock::time_point> end_;
-  Clock::time_point start_ = Clock::now();
-  double seconds_before_ = 0.0;
+  Clock::time_point start_;
+  RunTime before_;  ///< that earlier parts of the run took
+  double checkpoint_seconds_ = 0.0;
   Clock::time_point next_;
   bool no_room_ = false;  ///< the last checkpoint could not be written
   std::optional<Checkpoints> checkpoints_;

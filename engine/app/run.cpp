@@ -61,9 +61,14 @@ struct Job {
   SelectedPoses poses;
   std::string path;
   RunOptions options;
-  std::chrono::steady_clock::time_point start;
+  const ResumableRun& kept;
 
-  RunFacts facts(const SolveCounts& solves) const { return run_facts(start, options.threads, solves.total()); }
+  RunFacts facts(const SolveCounts& solves) const {
+    const RunTime time = kept.time();
+    RunFacts facts = run_facts(time.wall, options.threads, solves.total());
+    facts.checkpoint_seconds = time.checkpoints;
+    return facts;
+  }
 };
 
 std::vector<double> sigma_of(const Plan& plan) {
@@ -227,7 +232,7 @@ int run(const Options& options) {
                 std::move(poses),
                 path,
                 {resolved_threads(options.threads), on_progress, &catch_interrupts(), &resumable.checkpoints()},
-                resumable.begin()};
+                resumable};
   const std::optional<SolveCounts> solves = run_to_end(job, resumable, printer);
   if (!solves) {
     resumable.explain_interruption();

@@ -65,6 +65,12 @@ std::string first_difference(const std::string& there, const std::string& here) 
   return "'" + printable(a, 120) + "' where this study has '" + printable(b, 120) + "'";
 }
 
+double seconds(ByteReader& from) {
+  const double value = from.real();
+  if (std::isfinite(value) && value >= 0.0) return value;
+  throw BytesError("has a time that is none");
+}
+
 constexpr std::string_view kStartAfresh = ", or move the checkpoint away to start afresh";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& problem, const std::string& remedy) {
@@ -118,14 +124,15 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
   }
 }
 
-CheckpointPieces::CheckpointPieces(const CheckpointIdentity& identity, double wall_seconds,
+CheckpointPieces::CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time,
                                    std::span<const Bytes> stages)
     : stages_(stages) {
   ByteWriter head;
   head.raw(std::as_bytes(std::span(kMagic)));
   head.number(kVersion);
   write_identity(head, identity);
-  head.real(wall_seconds);
+  head.real(time.wall);
+  head.real(time.checkpoints);
   head.number(stages.size());
   head_ = head.take();
   for (const Bytes& stage : stages) {
@@ -162,8 +169,8 @@ Checkpoint decode_checkpoint(std::span<const std::byte> file) {
   }
   Checkpoint checkpoint;
   checkpoint.identity = read_identity(from);
-  checkpoint.wall_seconds = from.real();
-  if (!std::isfinite(checkpoint.wall_seconds) || checkpoint.wall_seconds < 0.0) throw BytesError("has no sound time");
+  checkpoint.time.wall = seconds(from);
+  checkpoint.time.checkpoints = seconds(from);
   const std::size_t stages = from.count(1);
   for (std::size_t k = 0; k < stages; ++k) {
     const std::span<const std::byte> state = from.block();

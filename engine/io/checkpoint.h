@@ -27,10 +27,16 @@ struct CheckpointIdentity {
 /// That of a run of this program.
 CheckpointIdentity identity_of(const Study& study, const PoseSet& poses);
 
+/// Seconds that a run took.
+struct RunTime {
+  double wall = 0.0;
+  double checkpoints = 0.0;  ///< of these, for checkpoints
+};
+
 /// An unfinished run.
 struct Checkpoint {
   CheckpointIdentity identity;
-  double wall_seconds = 0.0;  ///< that it took so far
+  RunTime time;               ///< that it took so far
   std::vector<Bytes> stages;  ///< states of its stages (engine/run/checkpoints.h)
 };
 
@@ -45,7 +51,7 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 ///     text     poesy_version, git_commit, model
 ///     number   seed, samples
 ///     text     study, poses
-///     real     wall_seconds
+///     real     seconds that the run took, and of these for checkpoints
 ///     number   stages, and each as a block
 ///     32 bytes SHA-256 of everything before
 ///
@@ -53,7 +59,7 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 class CheckpointPieces {
  public:
   /// Refers to the stages.
-  CheckpointPieces(const CheckpointIdentity& identity, double wall_seconds, std::span<const Bytes> stages);
+  CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
 
   std::size_t size() const;
   /// Calls write(bytes) with each piece in order.

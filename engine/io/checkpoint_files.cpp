@@ -56,8 +56,8 @@ std::optional<FoundCheckpoint> CheckpointFiles::find() {
                   "restore a copy, or move them away to start afresh");
 }
 
-void CheckpointFiles::write(const CheckpointIdentity& identity, double wall_seconds, std::span<const Bytes> stages) {
-  const CheckpointPieces pieces(identity, wall_seconds, stages);
+void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages) {
+  const CheckpointPieces pieces(identity, time, stages);
   FileWriter writer(newer_, temporary_);
   writer.expect(pieces.size());
   pieces.for_each([&](std::span<const std::byte> piece) { writer.write(piece); });

@@ -28,7 +28,7 @@ class CheckpointFiles {
   /// The newest one that is sound, if there is a file at all. Throws FileError when there is and none is sound.
   std::optional<FoundCheckpoint> find();
   /// Throws FileError; then the checkpoints that were there are there.
-  void write(const CheckpointIdentity& identity, double wall_seconds, std::span<const Bytes> stages);
+  void write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
   /// Removes all of them. Throws FileError.
   void remove();
 

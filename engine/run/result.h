@@ -197,7 +197,8 @@ struct RunFacts {
   std::string cpu;
   std::size_t threads = 1;
   std::size_t ranks = 1;
-  double wall_seconds = 0.0;
+  double wall_seconds = 0.0;        ///< of all parts of a run that was stopped and resumed
+  double checkpoint_seconds = 0.0;  ///< of these, for checkpoints
   std::uint64_t solves = 0;
 };
 

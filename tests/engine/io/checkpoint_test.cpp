@@ -25,9 +25,9 @@ CheckpointIdentity identity() {
           .poses = "0123"};
 }
 
-Bytes encoded(std::span<const Bytes> stages, double wall_seconds = 2.5) {
+Bytes encoded(std::span<const Bytes> stages, const RunTime& time = {2.5, 0.5}) {
   Bytes file;
-  const CheckpointPieces pieces(identity(), wall_seconds, stages);
+  const CheckpointPieces pieces(identity(), time, stages);
   pieces.for_each([&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
   EXPECT_EQ(file.size(), pieces.size());
   return file;
@@ -47,7 +47,8 @@ TEST(Checkpoint, ComesBack) {
        {std::vector<Bytes>{}, {some_bytes(300)}, {some_bytes(3), {}, some_bytes(1)}}) {
     const Checkpoint checkpoint = decode_checkpoint(encoded(stages));
     EXPECT_EQ(checkpoint.identity, identity());
-    EXPECT_EQ(checkpoint.wall_seconds, 2.5);
+    EXPECT_EQ(checkpoint.time.wall, 2.5);
+    EXPECT_EQ(checkpoint.time.checkpoints, 0.5);
     EXPECT_EQ(checkpoint.stages, stages);
   }
 }
@@ -135,7 +136,7 @@ class Files : public testing::Test {
  protected:
   void write(CheckpointFiles& files, std::size_t state_bytes) {
     const std::vector<Bytes> stages{some_bytes(state_bytes)};
-    files.write(identity(), 1.0, stages);
+    files.write(identity(), {}, stages);
   }
   static std::size_t state_bytes(const FoundCheckpoint& found) { return found.checkpoint.stages.at(0).size(); }
 
