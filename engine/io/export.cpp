@@ -66,6 +66,18 @@ std::string column(const std::string& name, const std::string& unit) {
   return unit == "1" ? name : name + " [" + unit + "]";
 }
 
+void add_solve_columns(std::vector<std::string>& columns) {
+  columns.insert(columns.end(), {"not_converged", "iterations_mean", "iterations_max"});
+  for (const std::string_view status : kStatusNames) columns.push_back("solves_" + std::string(status));
+}
+
+void append_solves(const SolveCounts& solves, std::vector<double>& row) {
+  row.insert(row.end(), {static_cast<double>(solves.not_converged()),
+                         static_cast<double>(solves.iterations) / static_cast<double>(solves.total()),
+                         static_cast<double>(solves.most_iterations)});
+  for (const std::uint64_t count : solves.by_status) row.push_back(static_cast<double>(count));
+}
+
 void write_factors(TableFolder& folder, const StoredResult& result) {
   const std::vector<std::string> columns{"factor", column("sigma", units_of(result.factors, kSi)),
                                          column("sigma", units_of(result.factors, kDisplay))};

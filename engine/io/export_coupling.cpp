@@ -73,11 +73,26 @@ void write_summary(TableFolder& folder, const StoredResult& result) {
   });
 }
 
+void write_not_converged(TableFolder& folder, const StoredResult& result) {
+  const StoredCoupling& stored = result.coupling;
+  Columns columns{"pose", column("size_linear", "m"), column("size_angular", "rad")};
+  add_solve_columns(columns);
+  folder.write("not_converged", columns, [&](CsvTable& table) {
+    for (std::size_t cell = 0; cell < stored.found.solves.size(); ++cell) {
+      const std::size_t z = cell / stored.found.poses;
+      std::vector<double> row{stored.linear[z], stored.angular[z]};
+      append_solves(stored.found.solves[cell], row);
+      table.row(std::to_string(cell % stored.found.poses), row);
+    }
+  });
+}
+
 }  // namespace
 
 void export_coupling(TableFolder& folder, const StoredResult& result) {
   write_curves(folder, result);
   write_summary(folder, result);
+  write_not_converged(folder, result);
 }
 
 }  // namespace poesy

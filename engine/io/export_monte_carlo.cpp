@@ -57,15 +57,13 @@ void write_overall(TableFolder& folder, const StoredResult& result) {
 }
 
 void write_not_converged(TableFolder& folder, const StoredResult& result) {
-  Columns columns{"pose", "not_converged", "iterations_mean", "iterations_max"};
-  for (const std::string_view status : kStatusNames) columns.push_back("solves_" + std::string(status));
+  Columns columns{"pose"};
+  add_solve_columns(columns);
   folder.write("not_converged", columns, [&](CsvTable& table) {
     std::size_t pose = 0;
     for (const SolveCounts& solves : result.monte_carlo.solves) {
-      std::vector<double> row{static_cast<double>(solves.not_converged()),
-                              static_cast<double>(solves.iterations) / static_cast<double>(solves.total()),
-                              static_cast<double>(solves.most_iterations)};
-      for (const std::uint64_t count : solves.by_status) row.push_back(static_cast<double>(count));
+      std::vector<double> row;
+      append_solves(solves, row);
       table.row(std::to_string(pose++), row);
     }
   });

@@ -73,6 +73,11 @@ std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_
 inline const auto kSi = [](const std::string& unit) { return unit; };
 inline const auto kDisplay = [](const std::string& unit) { return std::string(display_unit(dimension_of(unit)).name); };
 
+/// The columns of append_solves.
+void add_solve_columns(std::vector<std::string>& columns);
+/// How solves ended: not converged, mean and most iterations, then the number of each status.
+void append_solves(const SolveCounts& solves, std::vector<double>& row);
+
 /// factors.csv: the standard deviation of each error.
 void write_factors(TableFolder& folder, const StoredResult& result);
 

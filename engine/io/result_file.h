@@ -158,12 +158,13 @@ Verification verify_result(const std::string& path);
 ///
 /// Tables of a coupling result: poses.csv and
 ///
-///     coupling.csv          subset | sizes of the errors, pose, and of each response effect, interaction, worst_case
-///     and
-///                           root_sum_square, SI
+///     coupling.csv          subset | sizes of the errors, pose, and of each response effect, interaction, worst_case,
+///                           root_sum_square and cancellation, SI
 ///     coupling_summary.csv  subset | sizes, and of each response the poses behind it, effect_max and its pose,
 ///                           interaction_max, worst_case_max, root_sum_square_max, opposed_share, cancellation_max and
 ///                           its pose
+///     not_converged.csv     pose | sizes, not_converged, iterations_mean, iterations_max, solves_STATUS of all sets of
+///                           errors that were solved
 ///
 /// Returns the paths of the files written. Throws FileError.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);

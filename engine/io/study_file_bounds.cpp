@@ -1,6 +1,7 @@
 #include "engine/io/error_bound.h"
 #include "engine/io/study_file_parts.h"
 #include "engine/io/wording.h"
+#include "engine/run/coupling_rows.h"
 
 namespace poesy {
 namespace {
@@ -64,6 +65,18 @@ class Bounds {
     }
   }
 
+  void check_coupling() const {
+    for (const FactorIndex factor : coupling_factors(study_.analysis.coupling, model_.description())) {
+      const Dimension dimension = model_.description().factors[factor.value].dimension;
+      const bool is_length = dimension == Dimension::length;
+      const auto& sizes = is_length ? study_.analysis.coupling.linear : study_.analysis.coupling.angular;
+      for (std::size_t z = 0; z < sizes.size(); ++z) {
+        const auto problem = beyond_bound(model_, factor, sizes[z], "an error");
+        if (problem) analysis_.require(key_of(dimension), "").list()[z].fail(*problem, kRemedy);
+      }
+    }
+  }
+
  private:
   void check(FactorIndex factor, double linear, double angular, const StudySection& section) const {
     const Dimension dimension = model_.description().factors[factor.value].dimension;
@@ -108,6 +121,7 @@ void check_error_bounds(const StudySection& root, const Study& study, const Mode
   bounds.check_reference();
   bounds.check_groups();
   bounds.check_cases();
+  if (kind == Kind::coupling) bounds.check_coupling();
 }
 
 }  // namespace poesy

@@ -19,9 +19,8 @@ namespace poesy {
 ///     interaction      effect - sum; 0 for a single source
 ///     worst_case       sum over the blocks of S of |effect of the block alone| (see error_blocks)
 ///     root_sum_square  root of the sum of the squares of these
-///     cancellation     1 - |sum| / (sum over the sources of |effect of the source|): 0 where no source opposes
-///     another,
-///                      1 where they cancel. 0 too where no more than rounding is cancelled.
+///     cancellation     1 - |sum| / (sum over the sources of |effect of each|): 0 where no source opposes another or
+///                      where no more than rounding is cancelled, 1 where they cancel
 ///
 /// To first order, worst_case is the most that the blocks do together where their signs are not known, and
 /// root_sum_square the root mean square if either sign of each is as likely. Where a response is a norm, which has no

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -16,6 +17,16 @@ bool takes(const ErrorPattern& pattern, const Factor& factor) {
   if (pattern.limbs == Choice::some && factor.limb != pattern.limb) return false;
   if (pattern.components != Choice::some || factor.axis.empty()) return true;
   return std::ranges::find(pattern.axes, factor.axis) != pattern.axes.end();
+}
+
+/// What the factors of a block have in common: limb, then frame, dimension and axis.
+using BlockPlace = std::tuple<std::size_t, std::size_t, Dimension, std::string>;
+
+BlockPlace place_of(const Factor& factor, const ErrorPattern& pattern) {
+  BlockPlace place{};
+  if (pattern.limbs == Choice::independent) std::get<0>(place) = factor.limb;
+  if (pattern.components != Choice::independent) return place;
+  return {std::get<0>(place), factor.frame, factor.dimension, factor.axis};
 }
 
 void add_subsets(std::size_t sources, std::size_t wanted, std::vector<std::size_t>& chosen,
@@ -40,13 +51,11 @@ void add_errors(const ErrorBlock& more, ErrorBlock& errors) {
 
 std::vector<ErrorBlock> error_blocks(const ErrorSource& source, const ErrorPattern& pattern,
                                      const ModelDescription& model) {
-  std::map<std::pair<std::size_t, std::string>, ErrorBlock> by_place;
+  std::map<BlockPlace, ErrorBlock> by_place;
   for (const FactorIndex index : source.factors) {
     const Factor& factor = model.factors[index.value];
     if (!takes(pattern, factor)) continue;
-    by_place[{pattern.limbs == Choice::independent ? factor.limb : 0,
-              pattern.components == Choice::independent ? factor.axis : std::string()}]
-        .push_back(index);
+    by_place[place_of(factor, pattern)].push_back(index);
   }
   std::vector<ErrorBlock> blocks;
   for (auto& [place, block] : by_place) {

@@ -13,9 +13,9 @@ namespace poesy {
 /// Errors that have one size at once, and the others zero; in the order of the model.
 using ErrorBlock = std::vector<FactorIndex>;
 
-/// What a pattern makes of a source: the blocks of its errors that move together, by limb, then by component (scalars,
-/// then x, y, z). One block, unless limbs or components are independent; then one for each limb, for each component
-/// (that of all its vectors), or for each pair of both. Empty where the pattern leaves none of its errors.
+/// What a pattern makes of a source: the blocks of its errors that move together, by limb, then by frame, dimension
+/// and axis. One block, unless limbs or components are independent; then one for each limb, for each component of each
+/// of its vectors and scalars, or, where both are, for each error. Empty where the pattern leaves none of its errors.
 std::vector<ErrorBlock> error_blocks(const ErrorSource& source, const ErrorPattern& pattern,
                                      const ModelDescription& model);
 

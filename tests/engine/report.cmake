@@ -1,2 +1,3 @@
-poesy_test(report_test LABELS unit SOURCES engine/report/monte_carlo_table_test.cpp
-           engine/report/fidelity_table_test.cpp engine/report/separation_table_test.cpp LINKS poesy_report)
+poesy_test(report_test LABELS unit SOURCES engine/report/coupling_table_test.cpp
+           engine/report/fidelity_table_test.cpp engine/report/monte_carlo_table_test.cpp
+           engine/report/separation_table_test.cpp LINKS poesy_report)

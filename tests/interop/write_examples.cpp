@@ -17,7 +17,8 @@ int main(int argc, char** argv) try {
   example.write_evaluation(folder + "/evaluate.h5", Pairing::every_pose_with_every_row);
   example.write_evaluation(folder + "/paired.h5", Pairing::row_by_row);
   example.write_monte_carlo(folder + "/monte_carlo.h5");
-  for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo"}) {
+  example.write_coupling(folder + "/coupling.h5");
+  for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/coupling"}) {
     poesy::export_tables(folder + name + ".h5", folder + name);
   }
   return 0;

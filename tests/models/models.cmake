@@ -14,3 +14,4 @@ poesy_test(three_prs_test LABELS unit
                    models/three_prs/model_test.cpp models/three_prs/separation_test.cpp
                    models/three_prs/trajectory_test.cpp
            LINKS poesy_models poesy_study nlohmann_json::nlohmann_json)
+poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_run poesy_models)

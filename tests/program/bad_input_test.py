@@ -73,6 +73,8 @@ BAD_STUDIES = {
     "trajectory_without_file": (HELIX.replace('curve = "helix"', "points = 5"), "7:14", ["neither curve nor file"]),
     "sigma_beyond_the_platform": (changed('sigma = "1 mm" }\n', 'sigma = "60 mm" }\n'), "8:",
                                   ["delta_1_1_y", "60 mm", "l_A"]),
+    "coupling_beyond_the_platform": (HELIX.replace("samples = 10", 'kind = "coupling"\nlinear = ["0.1 mm", "140 mm"]'),
+                                     "10:21", ["c_x_1", "140 mm", "radius c"]),
     "half_turns": (changed('sigma = "0.2 deg"', 'sigma = "180 deg"'), "9:", ["epsilon_1_4_z", "180 deg", "half a turn"]),
     "background_beyond_the_platform": (changed('linear = "1 mm", angular = "1 deg" }', 'linear = "-1 m" }'), "14:",
                                        ["-1000 mm", "l_A"]),
@@ -158,7 +160,7 @@ class BadInput(ProgramTest):
         for arguments in [[], ["fly"], ["run"], ["run", "a.toml", "--threads", "0"], ["run", "a.toml", "--threads", "x"],
                           ["run", "a.toml", "--seed", "-1"], ["show"], ["models", "9upr"], ["template", "9upr"],
                           ["template", "2upr-rpu", "poetry"], ["template", "3-prs", "identification"],
-                          ["template", "xy-3-prs", "identification"]]:
+                          ["template", "xy-3-prs", "identification"], ["template", "2upr-rpu", "coupling"]]:
             with self.subTest(arguments):
                 done = self.poesy(*arguments)
                 self.assertEqual(done.returncode, 2, done.stderr)

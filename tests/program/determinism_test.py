@@ -54,6 +54,21 @@ analysis = { factors = "platform-hinges", samples = 1200 }
 """
         self.assertEqual(len({self.content_hash(study, "--threads", n) for n in (1, 2, 3)}), 1)
 
+    def test_coupling(self):
+        by_fidelity = []
+        for fidelity in ("exact", "first-order"):
+            study = f"""\
+format = "poesy-study"
+version = 1
+mechanism = {{ model = "3-prs", fidelity = "{fidelity}" }}
+poses = {{ select = "grid", count = {{ alpha = 5, beta = 5, z = 3 }} }}
+analysis = {{ kind = "coupling", linear = ["0.1 mm", "0.3 mm", "0.5 mm"], limbs = "independent" }}
+"""
+            hashes = {self.content_hash(study, "--threads", n) for n in (1, 2, 3)}
+            self.assertEqual(len(hashes), 1, fidelity)
+            by_fidelity.append(hashes.pop())
+        self.assertNotEqual(*by_fidelity)
+
     def test_identification_and_cases(self):
         head, rest = STUDY.split("[analysis]")
         head = head.replace("count = 6", 'select = "boundary"\ncount = 30')

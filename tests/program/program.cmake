@@ -18,6 +18,7 @@ program_test(kill robustness)
 program_test(resume robustness)
 program_test(tolerances unit)
 program_test(trajectory unit)
+program_test(coupling unit)
 
 add_test(NAME regression.golden
          COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/regression/regression_test.py $<TARGET_FILE:poesy>)

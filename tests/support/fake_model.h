@@ -114,6 +114,7 @@ inline ModelDescription FakeModel::describe() {
   model.joints = {{"q_1", Dimension::length}, {"q_2", Dimension::angle}};
   model.pose_lower = {-0.30, -0.5, -0.6};
   model.pose_upper = {-0.18, 0.5, 0.6};
+  model.sources = {{"D", "deforming"}, {"B", "benign"}};
   model.workspace_note = "a box inside reach";
   model.charts = {{"sums",
                    {{"depth", Dimension::length, "below z = 0"},

@@ -107,6 +107,43 @@ class Example {
     return result;
   }
 
+  using CouplingMember = std::vector<double> CouplingResult::*;
+  static constexpr CouplingMember kCurves[] = {&CouplingResult::effect,          &CouplingResult::sum,
+                                               &CouplingResult::interaction,     &CouplingResult::worst_case,
+                                               &CouplingResult::root_sum_square, &CouplingResult::cancellation};
+  static constexpr CouplingMember kSummaries[] = {&CouplingResult::effect_max,     &CouplingResult::interaction_max,
+                                                  &CouplingResult::worst_case_max, &CouplingResult::root_sum_square_max,
+                                                  &CouplingResult::opposed_share,  &CouplingResult::cancellation_max};
+
+  /// Two sizes, two sources; sets the study to match. Numbers count on through the arrays.
+  CouplingResult coupling() {
+    Analysis& analysis = study.analysis;
+    analysis.kind = Analysis::Kind::coupling;
+    analysis.factors = {FactorIndex(0), FactorIndex(2)};
+    analysis.coupling = {{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
+    CouplingResult result;
+    result.responses = 2;
+    result.sizes = 2;
+    result.subsets = 3;
+    result.poses = kPoses;
+    double next = 0.0;
+    const auto fill = [&](std::vector<double>& values, std::size_t length) {
+      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
+      values.back() = std::numeric_limits<double>::quiet_NaN();
+    };
+    for (const CouplingMember member : kCurves) fill(result.*member, 12 * kPoses);
+    for (const CouplingMember member : kSummaries) fill(result.*member, 12);
+    for (std::size_t cell = 0; cell < 12; ++cell) {
+      result.count.push_back(kPoses - cell % 2);
+      result.effect_max_pose.push_back(static_cast<std::int64_t>(cell) - 1);
+      result.cancellation_max_pose.push_back(static_cast<std::int64_t>(cell % 3));
+    }
+    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
+      result.solves.push_back({.by_status = {3, 0, cell, 1, 0}, .iterations = 8 + cell, .most_iterations = 5});
+    }
+    return result;
+  }
+
   EvaluationResult evaluation(Pairing pairing) const {
     const std::size_t samples = pairing == Pairing::row_by_row ? 1 : kSamples;
     const std::size_t rows = kPoses * samples;
@@ -136,6 +173,10 @@ class Example {
   void write_monte_carlo(const std::string& path) {
     const MonteCarloResult result = monte_carlo();
     poesy::write_monte_carlo(path, study, poses, result, facts);
+  }
+  void write_coupling(const std::string& path) {
+    const CouplingResult result = coupling();
+    poesy::write_coupling(path, study, poses, result, facts);
   }
   void write_evaluation(const std::string& path, Pairing pairing) const {
     poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);

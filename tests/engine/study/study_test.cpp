@@ -46,6 +46,7 @@ TEST(Names, AreThoseOfTheStudyFile) {
   EXPECT_EQ(name(Analysis::Kind::identification), "identification");
   EXPECT_EQ(name(Analysis::Kind::evaluate), "evaluate");
   EXPECT_EQ(name(Analysis::Kind::monte_carlo), "monte-carlo");
+  EXPECT_EQ(name(Analysis::Kind::coupling), "coupling");
   EXPECT_EQ(name(NotConverged::exclude), "exclude");
   EXPECT_EQ(name(NotConverged::include), "include");
   EXPECT_EQ(name(NotConverged::fail), "fail");

@@ -394,12 +394,12 @@ TEST(Machine, BoundsErrorsOfASlideByItsTravel) {
   geometry[5] = 0.4;
   const auto model = machine_catalog_entry().build(geometry, 0);
   const auto head = published("exact");
-  const auto bound = [&](const char* name) { return model->error_bound(*kMachine.find_factor(name)); };
+  const auto bound = [&](const char* name) { return model->error_bound(*kMachine.find_factor(name)).size; };
   EXPECT_EQ(bound("x_straightness_z"), 0.4);
   EXPECT_EQ(bound("y_position"), 0.6);
   EXPECT_EQ(bound("squareness"), std::numeric_limits<double>::infinity());
   for (const char* name : {"a_x_1", "l_2", "theta_A_x_3"}) {
-    EXPECT_EQ(bound(name), head->error_bound(*kHead.find_factor(name)));
+    EXPECT_EQ(bound(name), head->error_bound(*kHead.find_factor(name)).size);
   }
 }
 

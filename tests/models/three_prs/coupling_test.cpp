@@ -1,0 +1,192 @@
+#include "engine/run/coupling.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "models/three_prs/model.h"
+
+namespace poesy::three_prs {
+namespace {
+
+using Choice = ErrorPattern::Choice;
+
+const ModelDescription kModel = catalog_entry().description;
+const PoseSet kPoses(3, {0.0, 0.0, 0.8, 0.2, -0.1, 0.7, -0.3, 0.25, 0.95});
+constexpr std::size_t kExact = 0;
+constexpr std::size_t kFirstOrder = 1;
+
+std::unique_ptr<Model> build(std::size_t fidelity) {
+  const CatalogEntry entry = catalog_entry();
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  return entry.build(geometry, fidelity);
+}
+
+CouplingStudy study(const ErrorPattern& pattern, std::vector<double> sizes) {
+  CouplingStudy some{std::move(sizes), {}, pattern, {}};
+  for (const CouplingSource& source : kModel.sources) {
+    some.sources.push_back({source.name, kModel.find_set(source.set)->factors});
+  }
+  return some;
+}
+
+CouplingResult solve(const Model& model, const CouplingStudy& some) {
+  const auto evaluation = run_evaluation(model, {}, kPoses, coupling_table(some, kModel),
+                                         Pairing::every_pose_with_every_row, {1, {}, {}}, Outcomes::responses);
+  return coupling_result(*evaluation, some, kModel, NotConverged::exclude);
+}
+
+TEST(LiteratureSources, AreFactorSetsThatDoNotOverlap) {
+  ASSERT_EQ(kModel.sources.size(), 4u);
+  std::set<FactorIndex> seen;
+  std::size_t count = 0;
+  for (const CouplingSource& source : kModel.sources) {
+    const FactorSet* set = kModel.find_set(source.set);
+    ASSERT_NE(set, nullptr) << source.name;
+    seen.insert(set->factors.begin(), set->factors.end());
+    count += set->factors.size();
+  }
+  EXPECT_EQ(seen.size(), count);
+}
+
+/// Everything by hand: one solve of the named errors at a time, straight from the evaluator.
+class ByHand {
+ public:
+  ByHand(const Model& model, double size) : evaluator_(model.evaluator({})), size_(size) {}
+
+  /// The effect on one response of all errors that belongs(source, factor) takes, at one pose.
+  template <class Belongs>
+  double effect(std::size_t response, std::size_t m, const Belongs& belongs) {
+    std::vector<double> errors(kModel.factors.size(), 0.0);
+    for (const CouplingSource& source : kModel.sources) {
+      for (const FactorIndex factor : kModel.find_set(source.set)->factors) {
+        if (belongs(source.name, kModel.factors[factor.value])) errors[factor.value] = size_;
+      }
+    }
+    std::vector<double> responses(kModel.responses.size());
+    SolveStatus status{};
+    std::uint32_t iterations = 0;
+    evaluator_->evaluate({kPoses[PoseIndex(m)], errors, {}, {}, 1},
+                         {responses, std::span(&status, 1), std::span(&iterations, 1), {}});
+    EXPECT_TRUE(solved(status));
+    return responses[response];
+  }
+
+ private:
+  std::unique_ptr<Evaluator> evaluator_;
+  double size_;
+};
+
+bool takes(const ErrorPattern& pattern, const Factor& factor) {
+  const bool limb = pattern.limbs != Choice::some || factor.limb == pattern.limb;
+  const bool axis =
+      pattern.components != Choice::some || factor.axis.empty() || factor.axis == "x" || factor.axis == "z";
+  return limb && axis;
+}
+
+/// Whether two factors of one source move together.
+bool together(const ErrorPattern& pattern, const Factor& a, const Factor& b) {
+  return (pattern.limbs != Choice::independent || a.limb == b.limb) &&
+         (pattern.components != Choice::independent || (a.axis == b.axis && a.frame == b.frame));
+}
+
+void expect_by_hand(const Model& model, const ErrorPattern& pattern) {
+  constexpr double kSize = 3e-4;
+  const CouplingResult found = solve(model, study(pattern, {kSize}));
+  ByHand by_hand(model, kSize);
+  const std::size_t poses = kPoses.size();
+  for (std::size_t r = 0; r < kModel.responses.size(); ++r) {
+    for (std::size_t m = 0; m < poses; ++m) {
+      const auto own = [&](const std::string& name) {
+        return by_hand.effect(r, m, [&](const std::string& source, const Factor& factor) {
+          return source == name && takes(pattern, factor);
+        });
+      };
+      const double fs = own("FS"), t = own("T"), q = own("R"), l = own("L");
+      double worst = 0.0;
+      double squares = 0.0;
+      for (const CouplingSource& source : kModel.sources) {
+        std::vector<const Factor*> blocks;  // the first factor of each
+        for (const FactorIndex index : kModel.find_set(source.set)->factors) {
+          const Factor& factor = kModel.factors[index.value];
+          const bool is_new =
+              std::ranges::none_of(blocks, [&](const Factor* first) { return together(pattern, *first, factor); });
+          if (takes(pattern, factor) && is_new) blocks.push_back(&factor);
+        }
+        for (const Factor* first : blocks) {
+          const double alone = by_hand.effect(r, m, [&](const std::string& name, const Factor& factor) {
+            return name == source.name && takes(pattern, factor) && together(pattern, *first, factor);
+          });
+          worst += std::abs(alone);
+          squares += alone * alone;
+        }
+      }
+      const double all = by_hand.effect(r, m, [&](auto&, const Factor& factor) { return takes(pattern, factor); });
+      const double fs_r = by_hand.effect(r, m, [&](const std::string& source, const Factor& factor) {
+        return (source == "FS" || source == "R") && takes(pattern, factor);
+      });
+      const auto at = [&](std::size_t subset) { return (r * 15 + subset) * poses + m; };
+      constexpr double kRounding = 1e-15;
+      EXPECT_NEAR(found.effect[at(0)], fs, kRounding);
+      EXPECT_NEAR(found.effect[at(5)], fs_r, kRounding);  // FS, T, R, L, FS+T, FS+R
+      EXPECT_NEAR(found.effect[at(14)], all, kRounding);
+      EXPECT_NEAR(found.sum[at(14)], fs + t + q + l, kRounding);
+      EXPECT_NEAR(found.interaction[at(14)], all - (fs + t + q + l), 2 * kRounding);
+      EXPECT_NEAR(found.worst_case[at(14)], worst, 10 * kRounding);
+      EXPECT_NEAR(found.root_sum_square[at(14)], std::sqrt(squares), 10 * kRounding);
+    }
+  }
+}
+
+TEST(Coupling, IsWhatSolvesByHandGiveForEveryPattern) {
+  for (const std::size_t fidelity : {kExact, kFirstOrder}) {
+    const std::unique_ptr<Model> model = build(fidelity);
+    for (const Choice limbs : {Choice::all, Choice::some, Choice::independent}) {
+      for (const Choice components : {Choice::all, Choice::some, Choice::independent}) {
+        const bool some = components == Choice::some;
+        expect_by_hand(*model, {limbs, limbs == Choice::some ? 2u : 0u, components,
+                                some ? std::vector<std::string>{"x", "z"} : std::vector<std::string>{}});
+      }
+    }
+  }
+}
+
+/// The largest |interaction| of any subset over the poses, and the largest |effect|, of responses in metres that are
+/// components, not norms.
+std::pair<double, double> largest_of_components(const CouplingResult& found) {
+  double interaction = 0.0;
+  double effect = 0.0;
+  const std::size_t cells = found.sizes * found.subsets;
+  for (std::size_t r = 0; r < found.responses; ++r) {
+    const std::string& name = kModel.responses[r].name;
+    if (name != "x" && name != "y" && name != "z" && !name.starts_with("tip_") && !name.starts_with("theta_")) continue;
+    if (name == "tip_position") continue;
+    for (std::size_t k = r * cells; k < (r + 1) * cells; ++k) {
+      interaction = std::max(interaction, found.interaction_max[k]);
+      effect = std::max(effect, found.effect_max[k]);
+    }
+  }
+  return {interaction, effect};
+}
+
+TEST(Coupling, IsSuperpositionToFirstOrder) {
+  const auto [interaction, effect] = largest_of_components(solve(*build(kFirstOrder), study({}, {1e-4, 5e-4})));
+  EXPECT_GT(effect, 1e-4);
+  EXPECT_LT(interaction, 1e-15);
+}
+
+TEST(Coupling, DiffersFromSuperpositionInSecondOrder) {
+  const std::unique_ptr<Model> exact = build(kExact);
+  const auto [fine, fine_effect] = largest_of_components(solve(*exact, study({}, {1e-4})));
+  const auto [coarse, coarse_effect] = largest_of_components(solve(*exact, study({}, {2e-4})));
+  EXPECT_GT(fine, 1e-9);
+  EXPECT_LT(fine, 5e-3 * fine_effect);
+  EXPECT_NEAR(coarse / fine, 4.0, 0.05);
+  EXPECT_NEAR(coarse_effect / fine_effect, 2.0, 0.01);
+}
+
+}  // namespace
+}  // namespace poesy::three_prs
