@@ -214,6 +214,7 @@ std::optional<SolveCounts> run_to_end(const Job& job, ResumableRun& resumable, P
 }
 
 int run(const Options& options) {
+  const std::atomic<bool>& stop = catch_interrupts();
   Study study = read_study(options.study, registry(), StudyUse::run);
   if (options.seed) study.seed = *options.seed;
   const std::string path = options.result.empty() ? default_result(options.study) : options.result;
@@ -231,7 +232,7 @@ int run(const Options& options) {
                 *model,
                 std::move(poses),
                 path,
-                {resolved_threads(options.threads), on_progress, &catch_interrupts(), &resumable.checkpoints()},
+                {resolved_threads(options.threads), on_progress, &stop, &resumable.checkpoints()},
                 resumable};
   const std::optional<SolveCounts> solves = run_to_end(job, resumable, printer);
   if (!solves) {

@@ -43,8 +43,8 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
                                                  const RunOptions& options);
 
 /// Runs a Monte Carlo study on a pool of threads: as run_sensitivity, and memory does not grow with the number of
-/// samples either; a pose's samples are dropped once its quantiles are known, but for what MonteCarloCollector keeps for
-/// a longer study. Of the analysis it takes conf_level and quantiles.
+/// samples either; a pose's samples are dropped once its quantiles are known, but for what MonteCarloCollector keeps
+/// for a longer study. Of the analysis it takes conf_level and quantiles.
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options);
 
