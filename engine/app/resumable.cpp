@@ -72,7 +72,7 @@ ResumableRun::ResumableRun(const ResumeOptions& options, const std::string& resu
                      "leave --resume out to run the study from the beginning");
   }
   if (!resume_ && files_.exist()) {
-    throw InputError({.file = files_.newer()}, "holds an unfinished run of this result",
+    throw InputError({.file = files_.newer()}, "holds an earlier run of this result, finished or not",
                      "continue it with --resume, or remove it and " + files_.newer() + ".1 to start afresh");
   }
 }
