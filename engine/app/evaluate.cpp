@@ -76,6 +76,7 @@ int evaluate(const Options& options) {
     result = run_evaluation(*model, study.solver, poses.poses, errors, pairing,
                             {threads, [&](const Progress& progress) { printer(progress); }, &catch_interrupts()});
   }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!result) {
     std::fputs("poesy: interrupted; nothing was written\n", stderr);
     return kInterrupted;
@@ -87,7 +88,8 @@ int evaluate(const Options& options) {
     shown.responses.push_back({response.name, std::string(si_unit(response.dimension))});
   }
   if (!options.result.empty()) {
-    write_evaluation(options.result, study, poses, errors, pairing, *result, run_facts(start, threads, total.total()));
+    write_evaluation(options.result, study, poses, errors, pairing, *result,
+                     run_facts(seconds, threads, total.total()));
   }
   shown.evaluation = std::move(*result);
   std::fputs(

@@ -28,13 +28,13 @@ std::string cpu_name() {
 
 }  // namespace
 
-RunFacts run_facts(std::chrono::steady_clock::time_point start, std::size_t threads, std::uint64_t solves) {
+RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves) {
   RunFacts facts;
   facts.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   facts.host = host_name();
   facts.cpu = cpu_name();
   facts.threads = threads;
-  facts.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  facts.wall_seconds = wall_seconds;
   facts.solves = solves;
   return facts;
 }

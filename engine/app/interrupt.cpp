@@ -8,9 +8,9 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free flags");
 
-void on_signal(int signal) {
+void on_signal(int /*signal*/) {
   interrupted = true;
-  std::signal(signal, SIG_DFL);
+  std::signal(SIGINT, SIG_DFL);
 }
 
 }  // namespace
@@ -20,5 +20,7 @@ const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGTERM, on_signal);
   return interrupted;
 }
+
+void interrupt() { interrupted = true; }
 
 }  // namespace poesy::app

@@ -32,11 +32,12 @@ void ProgressPrinter::operator()(const Progress& progress) {
   if (now < next_) return;
   next_ = now + (terminal_ ? Clock::duration(kLive) : Clock::duration(kPlain));
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  const auto solves = static_cast<double>(progress.solves);
+  const auto solves = static_cast<double>(progress.solves - progress.before);
   const auto left = static_cast<double>(progress.total - progress.solves);
-  const std::string text = fmt::format("{:5.1f} % done, {:.3g} solves/s, {} not converged, {:.0f} s left",
-                                       100.0 * solves / static_cast<double>(progress.total), solves / seconds,
-                                       progress.not_converged, solves > 0.0 ? left * seconds / solves : 0.0);
+  const std::string text =
+      fmt::format("{:5.1f} % done, {:.3g} solves/s, {} not converged, {:.0f} s left",
+                  100.0 * static_cast<double>(progress.solves) / static_cast<double>(progress.total), solves / seconds,
+                  progress.not_converged, solves > 0.0 ? left * seconds / solves : 0.0);
   std::fputs((terminal_ ? "\r" + text + "\033[K" : text + "\n").c_str(), stderr);
   std::fflush(stderr);
   line_open_ = terminal_;

@@ -9,6 +9,7 @@
 #include "engine/app/facts.h"
 #include "engine/app/interrupt.h"
 #include "engine/app/progress.h"
+#include "engine/app/resumable.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
@@ -28,7 +29,24 @@ struct Options {
   std::size_t threads = 0;
   std::optional<std::uint64_t> seed;
   bool quiet = false;
+  ResumeOptions resume;
+  std::string program;  ///< as it was called
 };
+
+/// The command line that continues this run.
+std::string resume_command(const Options& options) {
+  std::vector<std::string> words{options.program, "run", options.study};
+  const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
+  if (!options.result.empty()) add("-o", options.result);
+  if (options.threads != 0) add("--threads", std::to_string(options.threads));
+  if (options.seed) add("--seed", std::to_string(*options.seed));
+  if (options.resume.every != ResumeOptions().every) add("--checkpoint-every", options.resume.every);
+  if (!options.resume.max_wall.empty()) add("--max-wall", options.resume.max_wall);
+  if (options.resume.keep) words.emplace_back("--keep-checkpoint");
+  if (options.quiet) words.emplace_back("--quiet");
+  words.emplace_back("--resume");
+  return shell_command(words);
+}
 
 /// study.toml gives study.h5 in the current folder.
 std::string default_result(const std::string& study) {
@@ -42,13 +60,16 @@ struct Job {
   SelectedPoses poses;
   std::string path;
   RunOptions options;
-  std::chrono::steady_clock::time_point start;
+  const ResumableRun& kept;
 };
 
-/// How a study's solves ended, and what they took.
+/// How a study's solves ended, and what they took, in all parts of the run.
 struct Ended {
-  Ended(const Job& job, const SolveCounts& counts)
-      : solves(counts), facts(run_facts(job.start, job.options.threads, counts.total())) {}
+  Ended(const Job& job, const SolveCounts& counts) : solves(counts) {
+    const RunTime time = job.kept.time();
+    facts = run_facts(time.wall, job.options.threads, counts.total());
+    facts.checkpoint_seconds = time.checkpoints;
+  }
 
   SolveCounts solves;
   RunFacts facts;
@@ -68,25 +89,25 @@ std::vector<Dimension> response_dimensions(const ModelDescription& model) {
 
 // Each runs a study of its kind and writes the result; nothing when it was interrupted.
 
-/// Options of one of two runs of `plan`, whose progress is shown as that of one run. `before`: solves of the other run,
-/// if it has ended.
-RunOptions as_half(const Plan& plan, const RunOptions& options, const SolveCounts& before) {
-  RunOptions half = options;
-  half.progress = [show = options.progress, solves = before.total(), failed = before.not_converged(),
-                   total = 2 * plan.solves()](const Progress& progress) {
-    show({solves + progress.solves, total, failed + progress.not_converged});
-  };
-  return half;
-}
-
 /// The study at both of its fidelities, on the same draws.
 std::optional<SensitivityResult> run_both_fidelities(const Job& job, const Plan& plan, SolveCounts& solves) {
   const Analysis& analysis = job.study.analysis;
-  auto first = run_sensitivity(plan, job.model, analysis.conf_level, as_half(plan, job.options, {}));
+  // Progress is that of both as one run. A first half that reports none was done by the run that is continued.
+  std::uint64_t before = plan.solves();
+  RunOptions options = job.options;
+  options.progress = [&](const Progress& half) {
+    before = half.before;
+    job.options.progress({half.solves, 2 * half.total, half.not_converged, before});
+  };
+  auto first = run_sensitivity(plan, job.model, analysis.conf_level, options);
   if (!first) return std::nullopt;
   solves = first->total();
+  options.progress = [&](const Progress& half) {
+    job.options.progress({solves.total() + half.solves, 2 * half.total, solves.not_converged() + half.not_converged,
+                          before + half.before});
+  };
   const std::unique_ptr<Model> other = build_model(at_compared_fidelity(job.study.mechanism));
-  const auto second = run_sensitivity(plan, *other, analysis.conf_level, as_half(plan, job.options, solves));
+  const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
   if (!second) return std::nullopt;
   solves.merge(second->total());
   first->fidelity =
@@ -180,27 +201,49 @@ int finish(const Job& job, const std::string& study_path, const Ended& ended) {
   return kTooManyNotConverged;
 }
 
+/// run_study, and what is left to say about its checkpoints when it fails.
+std::optional<Ended> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
+  try {
+    auto ended = run_study(job);
+    printer.finish();
+    return ended;
+  } catch (const BytesError& error) {
+    printer.finish();
+    resumable.refuse_state(error);
+  } catch (const FileError&) {
+    printer.finish();
+    resumable.rescue();
+    throw;
+  }
+}
+
 int run(const Options& options) {
+  const std::atomic<bool>& stop = catch_interrupts();
   Study study = read_study(options.study, registry(), StudyUse::run);
   if (options.seed) study.seed = *options.seed;
   const std::string path = options.result.empty() ? default_result(options.study) : options.result;
   check_result_path(path);
+  ResumableRun resumable(options.resume, path, resume_command(options));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);
+  resumable.start(identity_of(study, poses.poses), options.quiet);
   ProgressPrinter printer(options.quiet);
-  const Job job{
-      study,
-      *model,
-      std::move(poses),
-      path,
-      {resolved_threads(options.threads), [&](const Progress& progress) { printer(progress); }, &catch_interrupts()},
-      std::chrono::steady_clock::now()};
-  const std::optional<Ended> ended = run_study(job);
-  printer.finish();
+  const auto on_progress = [&](const Progress& progress) {
+    printer(progress);
+    resumable.check_time();
+  };
+  const Job job{study,
+                *model,
+                std::move(poses),
+                path,
+                {resolved_threads(options.threads), on_progress, &stop, &resumable.checkpoints()},
+                resumable};
+  const std::optional<Ended> ended = run_to_end(job, resumable, printer);
   if (!ended) {
-    std::fputs("poesy: interrupted; nothing was written, run the study again\n", stderr);
+    resumable.explain_interruption();
     return kInterrupted;
   }
+  resumable.finish();
   return finish(job, options.study, *ended);
 }
 
@@ -219,8 +262,14 @@ void add_run(CLI::App& program, Action& action) {
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7fffffffffffffff}))
       ->type_name("S");
   command->add_flag("--quiet", options->quiet, "no progress");
-  command->footer("Example: poesy run study.toml -o result.h5 --threads 2");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  options->resume.add_to(*command);
+  command->footer(
+      "Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once.\n"
+      "Example: poesy run study.toml -o result.h5 --threads 2");
+  command->callback([options, &program, &action] {
+    options->program = program.get_name();
+    action = [options] { return run(*options); };
+  });
 }
 
 }  // namespace poesy::app

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-constexpr std::array<Unit, 10> kUnits{{{"m", Dimension::length, 1.0},
+constexpr std::array<Unit, 11> kUnits{{{"m", Dimension::length, 1.0},
                                        {"mm", Dimension::length, 1e-3},
                                        {"um", Dimension::length, 1e-6},
                                        {"rad", Dimension::angle, 1.0},
@@ -19,7 +19,8 @@ constexpr std::array<Unit, 10> kUnits{{{"m", Dimension::length, 1.0},
                                        {"arcsec", Dimension::angle, kDegree / 3600.0},
                                        {"s", Dimension::time, 1.0},
                                        {"ms", Dimension::time, 1e-3},
-                                       {"min", Dimension::time, 60.0}}};
+                                       {"min", Dimension::time, 60.0},
+                                       {"h", Dimension::time, 3600.0}}};
 constexpr Unit kOne{"1", Dimension::number, 1.0};
 
 std::string_view trimmed(std::string_view text) {

@@ -17,7 +17,7 @@ struct Unit {
   double si;
 };
 
-/// m, mm, um, rad, mrad, deg, arcsec, s, ms, min.
+/// m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.
 std::span<const Unit> units();
 
 /// "m", "rad", "s" or "1".

@@ -1,26 +1,20 @@
 #include "engine/io/content_hash.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <memory>
-#include <stdexcept>
+
+#include "engine/io/sha256.h"
 
 namespace poesy {
 namespace {
 
-class Sha256 {
+/// SHA-256 of numbers and texts, as content_hash.h defines them.
+class ContentSha256 {
  public:
-  Sha256() : context_(EVP_MD_CTX_new()) {
-    if (context_ == nullptr) throw std::bad_alloc();
-    check(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
-  }
-
-  void bytes(const void* data, std::size_t count) { check(EVP_DigestUpdate(context_.get(), data, count)); }
+  void bytes(const void* data, std::size_t count) { sha_.bytes({static_cast<const std::byte*>(data), count}); }
 
   void number(std::uint64_t value) {
     std::array<unsigned char, 8> little_endian{};
@@ -36,29 +30,10 @@ class Sha256 {
     bytes(value.data(), value.size());
   }
 
-  std::string hex() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned length = 0;
-    check(EVP_DigestFinal_ex(context_.get(), digest.data(), &length));
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string text;
-    for (std::size_t k = 0; k < length; ++k) {
-      text += kDigits[digest[k] >> 4U];
-      text += kDigits[digest[k] & 0xfU];
-    }
-    return text;
-  }
+  std::string hex() { return poesy::hex(sha_.digest()); }
 
  private:
-  struct Free {
-    void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
-  };
-
-  static void check(int ok) {
-    if (ok != 1) throw std::runtime_error("OpenSSL cannot compute a SHA-256 hash");
-  }
-
-  std::unique_ptr<EVP_MD_CTX, Free> context_;
+  Sha256 sha_;
 };
 
 bool is_bookkeeping(std::string_view attribute) {
@@ -143,7 +118,7 @@ class ContentHasher {
   }
 
   const h5::File* file_;
-  Sha256 sha_;
+  ContentSha256 sha_;
 };
 
 }  // namespace

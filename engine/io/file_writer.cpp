@@ -21,25 +21,6 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-std::string_view remedy(int error) {
-  switch (error) {
-    case ENOSPC:
-    case EDQUOT:
-      return "free some space or choose another folder";
-    case EFBIG:
-      return "raise the limit on file sizes or choose another folder";
-    case ENOENT:
-    case ENOTDIR:
-      return "make the folder or choose another one";
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return "choose a folder that you may write to";
-    default:
-      return "choose another folder, or repair the disk";
-  }
-}
-
 /// Makes the rename survive a crash. Some file systems cannot sync a folder: the file itself is safe there.
 bool sync_folder(const std::string& path) {
   const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -53,8 +34,9 @@ bool sync_folder(const std::string& path) {
 
 }  // namespace
 
-FileWriter::FileWriter(std::string path)
-    : path_(std::move(path)), temporary_(path_ + ".tmp." + std::to_string(::getpid())) {
+FileWriter::FileWriter(std::string path, std::string temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {
+  if (temporary_.empty()) temporary_ = path_ + ".tmp." + std::to_string(::getpid());
   struct stat there {};
   if (::stat(path_.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
     throw FileError(path_, "is not a plain file and will not be replaced", "choose another name");
@@ -80,16 +62,36 @@ void FileWriter::write(std::span<const std::byte> bytes) {
 
 void FileWriter::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
-void FileWriter::commit() {
+void FileWriter::sync() {
   if (::fsync(descriptor_) != 0) fail("cannot be written", errno);
-  close_file();
+  if (::close(std::exchange(descriptor_, kClosed)) != 0) fail("cannot be written", errno);
+}
+
+void FileWriter::commit() {
+  if (descriptor_ != kClosed) sync();
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be put in place", errno);
   temporary_.clear();
   if (!sync_folder(path_)) fail("is in place, but its folder cannot be synced", errno);
 }
 
-void FileWriter::close_file() {
-  if (::close(std::exchange(descriptor_, kClosed)) != 0) fail("cannot be written", errno);
+std::string FileWriter::remedy(int error) const {
+  const std::string size = expected_ == 0 ? "some space" : std::to_string(expected_) + " bytes";
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free " + size + " or choose another folder";
+    case EFBIG:
+      return "raise the limit on file sizes" + (expected_ == 0 ? "" : " to " + size) + " or choose another folder";
+    case ENOENT:
+    case ENOTDIR:
+      return "make the folder or choose another one";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a folder that you may write to";
+    default:
+      return "choose another folder, or repair the disk";
+  }
 }
 
 void FileWriter::fail(std::string_view action, int error) const {

@@ -131,12 +131,14 @@ void read_poses(const h5::File& file, StoredResult& result) {
 }
 
 RunFacts read_facts(const h5::File& file) {
+  const bool timed = file.exists("/run/checkpoint_seconds");  // not in files of older versions
   return {.created = file.read<std::string>("/run/created").at(0),
           .host = file.read<std::string>("/run/host").at(0),
           .cpu = file.read<std::string>("/run/cpu").at(0),
           .threads = file.read<std::uint64_t>("/run/threads").at(0),
           .ranks = file.read<std::uint64_t>("/run/ranks").at(0),
           .wall_seconds = file.read<double>("/run/wall_seconds").at(0),
+          .checkpoint_seconds = timed ? file.read<double>("/run/checkpoint_seconds").at(0) : 0.0,
           .solves = file.read<std::uint64_t>("/run/solves").at(0)};
 }
 

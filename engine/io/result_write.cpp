@@ -108,6 +108,7 @@ void add_run(ResultBuilder& result, const RunFacts& facts) {
   result.add_scalar<std::uint64_t>("/run/threads", facts.threads, {"1", "Threads in each rank"});
   result.add_scalar<std::uint64_t>("/run/ranks", facts.ranks, {"1", "MPI ranks"});
   result.add_scalar("/run/wall_seconds", facts.wall_seconds, {"s", "Time the solves took"});
+  result.add_scalar("/run/checkpoint_seconds", facts.checkpoint_seconds, {"s", "Of that time, spent on checkpoints"});
   result.add_scalar<std::uint64_t>("/run/solves", facts.solves, {"1", "Solves of the mechanism"});
   const double rate = facts.wall_seconds > 0.0 ? static_cast<double>(facts.solves) / facts.wall_seconds : 0.0;
   result.add_scalar("/run/solves_per_second", rate, {"1/s", "Solves a second, all threads and ranks together"});
@@ -115,8 +116,10 @@ void add_run(ResultBuilder& result, const RunFacts& facts) {
 
 void write_file(const std::string& path, h5::File& file) {
   file.set_attribute("/", "content_sha256", content_sha256(file));
+  const auto image = file.image();
   FileWriter writer(path);
-  writer.write(file.image());
+  writer.expect(image.size());
+  writer.write(image);
   writer.commit();
 }
 

@@ -30,7 +30,7 @@ std::string title(Analysis::Kind kind) {
 std::string head(const ModelDescription& model, Analysis::Kind kind) {
   return comment(model.name + ": " + model.title) +
          "# Run this study with: poesy run STUDY.toml\n"
-         "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec, s, ms, min.\n"
+         "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.\n"
          "# A key behind a '#' shows a default or an alternative.\n" +
          fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}  # optional, free text\n",
                      quoted(title(kind) + " of " + model.name));

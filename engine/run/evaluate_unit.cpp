@@ -21,6 +21,18 @@ void UnitStats::merge(const UnitStats& other) {
   solves.merge(other.solves);
 }
 
+void UnitStats::write(ByteWriter& to) const {
+  for (const Moments& moments : responses) moments.write(to);
+  solves.write(to);
+}
+
+UnitStats UnitStats::read(ByteReader& from, std::size_t responses) {
+  UnitStats stats;
+  for (std::size_t r = 0; r < responses; ++r) stats.responses.push_back(Moments::read(from));
+  stats.solves = SolveCounts::read(from);
+  return stats;
+}
+
 UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
     : plan_(&plan),
       responses_(model.description().responses.size()),

@@ -16,6 +16,9 @@ struct UnitStats {
   SolveCounts solves;
 
   void merge(const UnitStats& other);
+
+  void write(ByteWriter& to) const;
+  static UnitStats read(ByteReader& from, std::size_t responses);
 };
 
 /// Solves work units serially. Owns the scratch of one thread; stats depend on the plan and the unit alone.

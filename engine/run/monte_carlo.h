@@ -12,14 +12,6 @@
 
 namespace poesy {
 
-/// What some of the samples at a pose contribute to one response.
-struct ResponseSamples {
-  Moments moments;
-  QuantileSketch sketch;
-
-  void merge(const ResponseSamples& other);
-};
-
 /// What one work unit contributes to one response.
 struct ResponseUnit {
   Moments moments;
@@ -53,28 +45,6 @@ class PoseUnitEvaluator {
   std::vector<SolveStatus> status_;
   std::vector<std::uint32_t> iterations_;
   std::vector<double> kept_;  ///< one response of the samples that count
-};
-
-/// Puts units together, in the order of the plan. Holds the samples of one pose, as sketches, and those of all poses
-/// together: memory grows neither with the samples nor, but for the result, with the poses.
-class MonteCarloCollector {
- public:
-  MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis);
-
-  /// Units of a pose come one after another.
-  void add(PoseIndex pose, const PoseUnit& unit);
-  /// Precondition: every unit was added.
-  MonteCarloResult result() &&;
-
- private:
-  void finish_pose();
-
-  std::size_t samples_;
-  PoseIndex pose_;
-  std::vector<ResponseSamples> at_pose_;  ///< [R]
-  SolveCounts solves_at_pose_;
-  std::vector<ResponseSamples> overall_;  ///< [R]
-  MonteCarloResult result_;
 };
 
 }  // namespace poesy

@@ -1,6 +1,7 @@
 #include "engine/run/result.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace poesy {
@@ -36,6 +37,22 @@ void SolveCounts::merge(const SolveCounts& other) {
   for (std::size_t s = 0; s < by_status.size(); ++s) by_status[s] += other.by_status[s];
   iterations += other.iterations;
   most_iterations = std::max(most_iterations, other.most_iterations);
+}
+
+void SolveCounts::write(ByteWriter& to) const {
+  for (const std::uint64_t count : by_status) to.number(count);
+  to.number(iterations);
+  to.number(most_iterations);
+}
+
+SolveCounts SolveCounts::read(ByteReader& from) {
+  SolveCounts solves;
+  for (std::uint64_t& count : solves.by_status) {
+    count = from.number_up_to(std::numeric_limits<std::uint64_t>::max() - solves.total());
+  }
+  solves.iterations = from.number();
+  solves.most_iterations = static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
+  return solves;
 }
 
 SolveCounts SensitivityResult::total() const { return sum_of(solves); }

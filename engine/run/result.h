@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/bytes.h"
 #include "engine/model/pose_set.h"
 #include "engine/model/status.h"
 
@@ -23,6 +24,9 @@ struct SolveCounts {
   std::uint64_t not_converged() const;
   void add(SolveStatus status, std::uint32_t sample_iterations);
   void merge(const SolveCounts& other);
+
+  void write(ByteWriter& to) const;
+  static SolveCounts read(ByteReader& from);
 };
 
 /// Which part of each error's effect the actuators can take away, to first order: P errors, M poses. Effects are those
@@ -193,7 +197,8 @@ struct RunFacts {
   std::string cpu;
   std::size_t threads = 1;
   std::size_t ranks = 1;
-  double wall_seconds = 0.0;
+  double wall_seconds = 0.0;        ///< of all parts of a run that was stopped and resumed
+  double checkpoint_seconds = 0.0;  ///< of these, for checkpoints
   std::uint64_t solves = 0;
 };
 

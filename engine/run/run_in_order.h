@@ -41,7 +41,10 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
 /// Reports progress after each finished piece of work.
 class ProgressCounter {
  public:
-  ProgressCounter(std::uint64_t total, const RunOptions& options) : options_(&options) { progress_.total = total; }
+  /// before: how the solves of an earlier run ended that is continued.
+  ProgressCounter(std::uint64_t total, const SolveCounts& before, const RunOptions& options) : options_(&options) {
+    progress_ = {before.total(), total, before.not_converged(), before.total()};
+  }
 
   void add(const SolveCounts& solves) {
     progress_.solves += solves.total();

@@ -4,10 +4,14 @@
 #include <thread>
 
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/evaluation_state.h"
 #include "engine/run/identification.h"
 #include "engine/run/monte_carlo.h"
+#include "engine/run/monte_carlo_collector.h"
+#include "engine/run/pending_units.h"
 #include "engine/run/run_in_order.h"
 #include "engine/run/sensitivity.h"
+#include "engine/run/sensitivity_collector.h"
 
 namespace poesy {
 namespace {
@@ -100,31 +104,42 @@ std::size_t resolved_threads(std::size_t threads) {
 
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options) {
-  std::vector<UnitStats> cells(plan.factors().size() * plan.poses().size());
-  ProgressCounter counter(plan.solves(), options);
+  SensitivityCollector collect(plan, model.description().responses.size());
+  Stage stage(options.checkpoints);
+  stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
+  const PendingUnits pending(plan, [&](std::size_t cell) { return collect.units_done(cell); });
+  ProgressCounter counter(plan.solves(), collect.total(), options);
+  const auto state = [&] { return collect.state(); };
   const bool complete = run_in_order(
-      plan.units(), options, [&] { return UnitEvaluator(plan, model); },
-      [&](UnitEvaluator& evaluate, std::size_t u) { return evaluate(plan.unit(u)); },
-      [&](std::size_t u, const UnitStats& stats) {
-        const WorkUnit unit = plan.unit(u);
-        cells[unit.slot * plan.poses().size() + unit.pose.value].merge(stats);
+      pending.size(), options, [&] { return UnitEvaluator(plan, model); },
+      [&](UnitEvaluator& evaluate, std::size_t n) { return evaluate(pending[n]); },
+      [&](std::size_t n, const UnitStats& stats) {
+        collect.add(pending[n], stats);
         counter.add(stats.solves);
+        stage.merged(state);
       });
+  stage.end(complete, state);
   if (!complete) return std::nullopt;
-  return sensitivity_result(plan, cells, background_responses(plan, model), conf_level);
+  return sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
 }
 
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options) {
   MonteCarloCollector collect(plan, model.description().responses.size(), analysis);
-  ProgressCounter counter(plan.solves(), options);
+  Stage stage(options.checkpoints);
+  stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
+  const PendingUnits pending(plan, [&](std::size_t pose) { return collect.units_done(PoseIndex(pose)); });
+  ProgressCounter counter(plan.solves(), collect.total(), options);
+  const auto state = [&] { return collect.state(); };
   const bool complete = run_in_order(
-      plan.units(), options, [&] { return PoseUnitEvaluator(plan, model); },
-      [&](PoseUnitEvaluator& evaluate, std::size_t u) { return evaluate(plan.unit(u)); },
-      [&](std::size_t u, const PoseUnit& found) {
-        collect.add(plan.unit(u).pose, found);
+      pending.size(), options, [&] { return PoseUnitEvaluator(plan, model); },
+      [&](PoseUnitEvaluator& evaluate, std::size_t n) { return evaluate(pending[n]); },
+      [&](std::size_t n, const PoseUnit& found) {
+        collect.add(pending[n].pose, found);
         counter.add(found.solves);
+        stage.merged(state);
       });
+  stage.end(complete, state);
   if (!complete) return std::nullopt;
   return std::move(collect).result();
 }
@@ -136,16 +151,28 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
   const std::size_t samples = paired ? 1 : errors.rows;
   EvaluationResult result = empty_evaluation(model, poses, samples, outcomes);
   const std::size_t blocks = (samples + kBlockRows - 1) / kBlockRows;
-  ProgressCounter counter(poses.size() * samples, options);
+  EvaluationProgress done(result, kBlockRows);
+  Stage stage(options.checkpoints);
+  stage.begin([&](std::span<const std::byte> state) { done.restore(state); });
+  ProgressCounter counter(poses.size() * samples, done.total(), options);
+  const std::size_t first_block = done.blocks();
+  const auto state = [&] { return done.state(); };
   const bool complete = run_in_order(
-      poses.size() * blocks, options, [&] { return TableEvaluator(model, solver, poses, errors, result); },
+      poses.size() * blocks - first_block, options,
+      [&] { return TableEvaluator(model, solver, poses, errors, result); },
       [&](TableEvaluator& evaluate, std::size_t n) {
-        const std::size_t pose = n / blocks;
-        const std::size_t first = n % blocks * kBlockRows;
+        const std::size_t block = first_block + n;
+        const std::size_t pose = block / blocks;
+        const std::size_t first = block % blocks * kBlockRows;
         const std::size_t count = std::min(kBlockRows, samples - first);
         return evaluate(PoseIndex(pose), first, paired ? pose : first, count);
       },
-      [&](std::size_t, const SolveCounts& solves) { counter.add(solves); });
+      [&](std::size_t, const SolveCounts& solves) {
+        done.add_block();
+        counter.add(solves);
+        stage.merged(state);
+      });
+  stage.end(complete, state);
   if (!complete) return std::nullopt;
   return result;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/run/checkpoints.h"
 #include "engine/run/result.h"
 #include "engine/study/plan.h"
 
@@ -18,6 +19,7 @@ struct Progress {
   std::uint64_t solves = 0;
   std::uint64_t total = 0;
   std::uint64_t not_converged = 0;
+  std::uint64_t before = 0;  ///< of the solves, those of an earlier run that is continued
 };
 
 struct RunOptions {
@@ -26,19 +28,23 @@ struct RunOptions {
   std::function<void(const Progress&)> progress;
   /// Set by somebody else to stop the run soon. May be null.
   const std::atomic<bool>* stop = nullptr;
+  /// Where the run's state comes from and goes to. May be null. Then a run function throws BytesError for a state that
+  /// is not one of its own.
+  Checkpoints* checkpoints = nullptr;
 };
 
 /// Number of threads that RunOptions::threads stands for.
 std::size_t resolved_threads(std::size_t threads);
 
 /// Runs a sensitivity study on a pool of threads. Units are merged in plan order, so the result has the same bits
-/// for any number of threads. Memory does not grow with the number of samples. Empty when stopped.
+/// for any number of threads, and whether it was continued from checkpoints or not: also from those of a plan with
+/// fewer samples. Memory does not grow with the number of samples. Empty when stopped.
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
 
 /// Runs a Monte Carlo study on a pool of threads: as run_sensitivity, and memory does not grow with the number of
-/// samples either; a pose's samples are dropped once its quantiles are known. Of the analysis it takes conf_level and
-/// quantiles.
+/// samples either; a pose's samples are dropped once its quantiles are known, but for what MonteCarloCollector keeps
+/// for a longer study. Of the analysis it takes conf_level and quantiles.
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options);
 

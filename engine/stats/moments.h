@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/base/bytes.h"
+
 namespace poesy {
 
 /// Count, mean and central moments to fourth order of a stream of numbers, in one pass and mergeable
@@ -22,6 +24,10 @@ class Moments {
   double standard_deviation() const;
   /// Kurtosis m4 / m2^2 of the sample (3 for a normal); NaN when the variance is zero or undefined.
   double kurtosis() const;
+
+  /// Every bit of it, and back.
+  void write(ByteWriter& to) const;
+  static Moments read(ByteReader& from);
 
  private:
   std::uint64_t count_ = 0;

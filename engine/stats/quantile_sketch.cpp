@@ -17,6 +17,8 @@ static_assert(std::numeric_limits<double>::is_iec559);
 constexpr int kIgnoredBits = 44;
 /// The bucket of the smallest normal number; below it the exponent's bits are zero.
 constexpr std::uint32_t kFirstNormal = std::uint32_t{1} << (52 - kIgnoredBits);
+/// The bucket of the largest finite number.
+constexpr std::uint32_t kLast = (std::uint32_t{0x7ff} << (52 - kIgnoredBits)) - 1;
 
 constexpr std::uint32_t kSign = std::uint32_t{1} << (63 - kIgnoredBits);
 
@@ -111,6 +113,28 @@ double QuantileSketch::Store::magnitude(std::uint64_t k) const {
   return middle(first + at);
 }
 
+void QuantileSketch::Store::write(ByteWriter& to) const {
+  to.number(counts.size());
+  if (counts.empty()) return;
+  to.number(first);
+  for (const std::uint64_t count : counts) to.number(count);
+}
+
+QuantileSketch::Store QuantileSketch::Store::read(ByteReader& from) {
+  Store store;
+  store.counts.resize(from.count(1));
+  if (store.counts.empty()) return store;
+  store.first = static_cast<std::size_t>(from.number_up_to(kLast));
+  if (store.first < kFirstNormal || store.counts.size() > kLast - store.first + 1) {
+    throw BytesError("a histogram has buckets for numbers that do not exist");
+  }
+  for (std::uint64_t& count : store.counts) {
+    count = from.number_up_to(std::numeric_limits<std::uint64_t>::max() - store.total);
+    store.total += count;
+  }
+  return store;
+}
+
 void QuantileSketch::add(const BucketedValues& values) {
   if (values.negatives != 0) negative_.reach(values.lowest, values.highest);
   if (values.positives != 0) positive_.reach(values.lowest, values.highest);
@@ -153,6 +177,30 @@ double QuantileSketch::quantile(double q) const {
     value = positive_.magnitude(k - negative_.total - zeros_);
   }
   return std::clamp(value, min_, max_);
+}
+
+void QuantileSketch::write(ByteWriter& to) const {
+  negative_.write(to);
+  positive_.write(to);
+  to.number(zeros_);
+  to.real(min_);
+  to.real(max_);
+}
+
+QuantileSketch QuantileSketch::read(ByteReader& from) {
+  QuantileSketch sketch;
+  sketch.negative_ = Store::read(from);
+  sketch.positive_ = Store::read(from);
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  if (sketch.negative_.total > kMost - sketch.positive_.total) throw BytesError("a histogram counts too much");
+  sketch.zeros_ = from.number_up_to(kMost - sketch.negative_.total - sketch.positive_.total);
+  sketch.min_ = from.real();
+  sketch.max_ = from.real();
+  const bool has_range = std::isfinite(sketch.min_) && std::isfinite(sketch.max_) && sketch.min_ <= sketch.max_;
+  const QuantileSketch nothing;
+  const bool has_none = sketch.min_ == nothing.min_ && sketch.max_ == nothing.max_;
+  if (sketch.count() == 0 ? !has_none : !has_range) throw BytesError("a histogram has no range");
+  return sketch;
 }
 
 }  // namespace poesy

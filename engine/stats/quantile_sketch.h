@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/bytes.h"
+
 namespace poesy {
 
 /// A block of numbers as a sketch takes it: all that can be worked out without the sketch.
@@ -47,6 +49,11 @@ class QuantileSketch {
   /// function, rank ceil(q n), to kRelativeError. NaN when empty. Precondition: 0 <= q <= 1.
   double quantile(double q) const;
 
+  /// Every count of it, and back: about two bytes for each bucket. read() throws BytesError for counts that no stream
+  /// of numbers gives.
+  void write(ByteWriter& to) const;
+  static QuantileSketch read(ByteReader& from);
+
  private:
   /// Counts of the buckets first, first + 1, ... of one sign; a bucket is numbered by the leading bits of a magnitude.
   struct Store {
@@ -59,6 +66,8 @@ class QuantileSketch {
     void merge(const Store& other);
     /// The middle of the bucket that holds rank k of the magnitudes, k = 1 for the smallest.
     double magnitude(std::uint64_t k) const;
+    void write(ByteWriter& to) const;
+    static Store read(ByteReader& from);
   };
 
   Store negative_;

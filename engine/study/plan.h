@@ -31,8 +31,11 @@ class Plan {
   Plan(const Study& study, PoseSet poses);
 
   std::size_t slots() const { return slots_; }
-  std::size_t units() const { return slots_ * poses_.size() * units_per_cell_; }
-  /// Unit u: slot by slot, pose by pose, samples in order.
+  /// A cell is one slot at one pose. Cells are counted slot by slot, pose by pose.
+  std::size_t cells() const { return slots_ * poses_.size(); }
+  std::size_t units_per_cell() const { return units_per_cell_; }
+  std::size_t units() const { return cells() * units_per_cell_; }
+  /// Unit u: cell by cell, samples in order.
   WorkUnit unit(std::size_t u) const;
 
   std::size_t samples() const { return samples_; }

@@ -7,3 +7,4 @@ poesy_test(result_file_test LABELS unit
 poesy_test(content_hash_test LABELS unit SOURCES engine/io/content_hash_test.cpp LINKS poesy_io hdf5::hdf5)
 poesy_test(result_robustness_test LABELS robustness SOURCES engine/io/h5_heap_test.cpp engine/io/result_robustness_test.cpp
            LINKS poesy_io hdf5::hdf5)
+poesy_test(checkpoint_test LABELS robustness SOURCES engine/io/checkpoint_test.cpp LINKS poesy_io)

@@ -1,7 +1,7 @@
 poesy_test(stats_test LABELS unit
            SOURCES engine/stats/mean_interval_test.cpp engine/stats/moments_test.cpp
                    engine/stats/quantile_sketch_test.cpp engine/stats/sensitivity_index_test.cpp
-                   engine/stats/tolerance_test.cpp
+                   engine/stats/stored_stats_test.cpp engine/stats/tolerance_test.cpp
            LINKS poesy_stats)
 poesy_test(stats_property_test LABELS property
            SOURCES engine/stats/moments_property_test.cpp engine/stats/quantile_sketch_property_test.cpp

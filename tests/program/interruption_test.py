@@ -23,7 +23,8 @@ class Interruption(ProgramTest):
                 self.assertEqual(run.returncode, 4, message)
                 self.assertIn(b"interrupted", message)
                 self.assertEqual(result.read_text(), "an older result")
-                self.assertEqual({path.name for path in self.folder.iterdir()}, {"study.toml", "out.h5"})
+                self.assertEqual({path.name for path in self.folder.iterdir()}, {"study.toml", "out.h5", "out.h5.part"})
+                (self.folder / "out.h5.part").unlink()
 
     def test_full_disk(self):
         if os.geteuid() != 0:

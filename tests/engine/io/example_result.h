@@ -46,6 +46,7 @@ class Example {
              .threads = 2,
              .ranks = 1,
              .wall_seconds = 0.5,
+             .checkpoint_seconds = 0.25,
              .solves = 800};
   }
   Example(const Example&) = delete;

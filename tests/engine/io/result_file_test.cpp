@@ -91,6 +91,7 @@ TEST(ResultFile, FactsReadBackAsWritten) {
   EXPECT_EQ(facts.threads, example.facts.threads);
   EXPECT_EQ(facts.ranks, example.facts.ranks);
   EXPECT_EQ(facts.wall_seconds, example.facts.wall_seconds);
+  EXPECT_EQ(facts.checkpoint_seconds, example.facts.checkpoint_seconds);
   EXPECT_EQ(facts.solves, example.facts.solves);
 }
 

@@ -1,0 +1,147 @@
+#include "engine/app/resumable.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/app/duration.h"
+#include "engine/app/interrupt.h"
+#include "engine/base/error.h"
+
+namespace poesy::app {
+namespace {
+
+/// A checkpoint that took a time to write is followed by another after so many of these at the earliest: under 1 %,
+/// also when the last one is much the longest.
+constexpr double kLeastRatio = 200.0;
+
+void say(const std::string& text) { std::fputs(("poesy: " + text + "\n").c_str(), stderr); }
+
+/// A time that no run lasts stands for all that are longer, and for "never".
+std::chrono::steady_clock::duration duration_of(double seconds) {
+  constexpr double kCentury = 3.2e9;
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(std::min(seconds, kCentury)));
+}
+
+bool is_plain(const std::string& word) {
+  constexpr std::string_view kPlain = "_-+./=:,@%";
+  return !word.empty() && std::ranges::all_of(word, [&](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
+  });
+}
+
+}  // namespace
+
+void ResumeOptions::add_to(CLI::App& command) {
+  command.add_flag("--resume", resume, "continue the run that was stopped, from RESULT.h5.part");
+  command.add_option("--checkpoint-every", every, "time between checkpoints of the run; default: 10 s")
+      ->type_name("TIME");
+  command.add_option("--max-wall", max_wall, "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\"")
+      ->type_name("TIME");
+  command.add_flag("--keep-checkpoint", keep, "keep RESULT.h5.part when done, so that --resume can add samples");
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string command;
+  for (const std::string& word : words) {
+    if (!command.empty()) command += ' ';
+    if (is_plain(word)) {
+      command += word;
+      continue;
+    }
+    command += '\'';
+    for (const char c : word) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    command += '\'';
+  }
+  return command;
+}
+
+ResumableRun::ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
+    : resume_(options.resume),
+      keep_(options.keep),
+      command_(std::move(resume_command)),
+      files_(result_path),
+      every_(duration_of(parse_duration(options.every, "--checkpoint-every"))) {
+  if (!options.max_wall.empty()) end_ = Clock::now() + duration_of(parse_duration(options.max_wall, "--max-wall"));
+  if (resume_ && !files_.exist()) {
+    throw InputError({.file = files_.newer()}, "there is no such checkpoint to resume from",
+                     "leave --resume out to run the study from the beginning");
+  }
+  if (!resume_ && files_.exist()) {
+    throw InputError({.file = files_.newer()}, "holds an earlier run of this result, finished or not",
+                     "continue it with --resume, or remove it and " + files_.newer() + ".1 to start afresh");
+  }
+}
+
+void ResumableRun::start(const CheckpointIdentity& run, bool quiet) {
+  identity_ = run;
+  std::vector<Bytes> stages;
+  if (auto found = files_.find()) {
+    check_continues(run, found->checkpoint.identity, found->path);
+    if (!found->passed_over.empty()) {
+      say(files_.newer() + " " + found->passed_over + "; continuing from the one before, " + found->path);
+    } else if (!quiet) {
+      say("continuing from " + found->path);
+    }
+    taken_ = found->path;
+    before_ = found->checkpoint.time;
+    stages = std::move(found->checkpoint.stages);
+  }
+  checkpoints_.emplace([this] { return due(); }, [this](std::span<const Bytes> all) { save(all); }, std::move(stages));
+  start_ = Clock::now();
+  next_ = start_ + every_;
+}
+
+RunTime ResumableRun::time() const {
+  return {before_.wall + std::chrono::duration<double>(Clock::now() - start_).count(),
+          before_.checkpoints + checkpoint_seconds_};
+}
+
+void ResumableRun::check_time() const {
+  if (end_ && Clock::now() >= *end_) interrupt();
+}
+
+void ResumableRun::save(std::span<const Bytes> stages) {
+  const Clock::time_point before = Clock::now();
+  no_room_ = true;
+  files_.write(identity_, time(), stages);
+  no_room_ = false;
+  const Clock::time_point after = Clock::now();
+  const double seconds = std::chrono::duration<double>(after - before).count();
+  checkpoint_seconds_ += seconds;
+  next_ = after + std::max(every_, duration_of(kLeastRatio * seconds));
+}
+
+void ResumableRun::finish() {
+  if (keep_) {
+    checkpoints_->save();
+  } else {
+    files_.remove();
+  }
+}
+
+void ResumableRun::rescue() {
+  try {
+    if (!no_room_ && checkpoints_) checkpoints_->save();
+  } catch (const FileError&) {
+    // The message of the first trouble counts.
+  }
+  if (files_.exist()) {
+    say("the work up to the last checkpoint is kept in " + files_.newer() +
+        "; when this is mended, continue with: " + command_);
+  }
+}
+
+void ResumableRun::explain_interruption() const {
+  say("interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_);
+}
+
+void ResumableRun::refuse_state(const BytesError& error) const {
+  throw FileError(taken_, error.what(), "restore a copy, or move it away to start afresh");
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "engine/io/checkpoint_files.h"
+#include "engine/run/checkpoints.h"
+#include "engine/run/runner.h"
+
+namespace poesy::app {
+
+/// How a run keeps itself and ends early, as the command line says.
+struct ResumeOptions {
+  bool resume = false;
+  bool keep = false;  ///< the last checkpoint stays beside a finished result
+  std::string every = "10 s";
+  std::string max_wall;  ///< empty: no limit
+
+  void add_to(CLI::App& command);
+};
+
+/// A command line, word by word, as a shell takes it.
+std::string shell_command(const std::vector<std::string>& words);
+
+/// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, for they
+/// are hours of somebody's work; with it, where there are none.
+class ResumableRun {
+ public:
+  /// Throws InputError or FileError when the run must not start. resume_command: for messages.
+  ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command);
+  ResumableRun(const ResumableRun&) = delete;
+  ResumableRun& operator=(const ResumableRun&) = delete;
+
+  /// Takes up the checkpoint, if the run is to. Throws InputError when it is not one of this run. Says what it takes on
+  /// stderr, unless quiet, but always when it is not the newest.
+  void start(const CheckpointIdentity& run, bool quiet);
+  /// Those to run with. Precondition: started.
+  Checkpoints& checkpoints() { return *checkpoints_; }
+  /// That all parts of the run took since they were started.
+  RunTime time() const;
+  /// Interrupts the run when its time is over.
+  void check_time() const;
+
+  /// The result is there: removes the checkpoints, or keeps the last one.
+  void finish();
+  /// The result could not be written: keeps the last state if that is possible, and says what to do.
+  void rescue();
+  /// The run was interrupted: says what to do.
+  void explain_interruption() const;
+  /// The state of the checkpoint that was taken up is not one.
+  [[noreturn]] void refuse_state(const BytesError& error) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool due() const { return Clock::now() >= next_; }
+  void save(std::span<const Bytes> stages);
+
+  bool resume_;
+  bool keep_;
+  std::string command_;
+  CheckpointFiles files_;
+  CheckpointIdentity identity_;
+  std::string taken_;  ///< the file that was taken up
+  Clock::duration every_;
+  std::optional<Clock::time_point> end_;
+  Clock::time_point start_;
+  RunTime before_;  ///< that earlier parts of the run took
+  double checkpoint_seconds_ = 0.0;
+  Clock::time_point next_;
+  bool no_room_ = false;  ///< the last checkpoint could not be written
+  std::optional<Checkpoints> checkpoints_;
+};
+
+}  // namespace poesy::app

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace poesy {
+
+using Bytes = std::vector<std::byte>;
+
+/// Bytes are not what they should be. what() is a clause without a place.
+class BytesError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Writes values one behind the other, the same bytes on every machine.
+///
+///     number    LEB128: seven bits a byte, the lowest first, the highest bit set in all bytes but the last
+///     real      64 bits (IEEE 754), little-endian; every bit is kept
+///     block     number of bytes, the bytes
+///     text      as a block, UTF-8
+class ByteWriter {
+ public:
+  void number(std::uint64_t value);
+  void real(double value) { reals(std::span(&value, 1)); }
+  /// Without their number.
+  void reals(std::span<const double> values);
+  void block(std::span<const std::byte> bytes);
+  void text(std::string_view value) { block(std::as_bytes(std::span(value))); }
+  /// The bytes as they are, without their number.
+  void raw(std::span<const std::byte> bytes);
+
+  Bytes take() { return std::exchange(bytes_, {}); }
+
+ private:
+  Bytes bytes_;
+};
+
+/// Reads what ByteWriter wrote. The bytes may come from anywhere: every member throws BytesError for what cannot have
+/// been written, and no memory is asked for that the bytes left could not fill.
+class ByteReader {
+ public:
+  /// Refers to the bytes.
+  explicit ByteReader(std::span<const std::byte> bytes) : left_(bytes) {}
+
+  std::uint64_t number();
+  std::uint64_t number_up_to(std::uint64_t most);
+  /// The number of things that follow, of at least so many bytes each. Precondition: least_bytes > 0.
+  std::size_t count(std::size_t least_bytes);
+  double real();
+  /// Fills `values`.
+  void reals(std::span<double> values);
+  std::vector<double> reals(std::size_t count);
+  std::span<const std::byte> block();
+  std::string text();
+  std::span<const std::byte> raw(std::size_t count);
+
+  std::size_t left() const { return left_.size(); }
+  /// Throws when something is left.
+  void expect_end() const;
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+}  // namespace poesy

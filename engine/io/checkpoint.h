@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/bytes.h"
+#include "engine/model/pose_set.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// What a run must have in common with the checkpoint that it takes up.
+struct CheckpointIdentity {
+  std::string poesy_version;
+  std::string git_commit;
+  std::string model;
+  std::uint64_t seed = 0;
+  std::uint64_t samples = 0;  ///< 0 where the kind of study draws none; a run may have more than its checkpoint
+  std::string study;          ///< the resolved study, without seed and samples
+  std::string poses;          ///< SHA-256 of the poses, hexadecimal
+
+  bool operator==(const CheckpointIdentity&) const = default;
+};
+
+/// That of a run of this program.
+CheckpointIdentity identity_of(const Study& study, const PoseSet& poses);
+
+/// Seconds that a run took.
+struct RunTime {
+  double wall = 0.0;
+  double checkpoints = 0.0;  ///< of these, for checkpoints
+};
+
+/// An unfinished run.
+struct Checkpoint {
+  CheckpointIdentity identity;
+  RunTime time;               ///< that it took so far
+  std::vector<Bytes> stages;  ///< states of its stages (engine/run/checkpoints.h)
+};
+
+/// Throws InputError that names the first difference, unless a run of this identity may take up the checkpoint of that
+/// file: nothing differs, or it asks for more samples.
+void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path);
+
+/// The bytes of a checkpoint file, piece by piece, for states may be large. In the notation of engine/base/bytes.h:
+///
+///     16 bytes "poesy-checkpoint"
+///     number   version of the format, 1
+///     text     poesy_version, git_commit, model
+///     number   seed, samples
+///     text     study, poses
+///     real     seconds that the run took, and of these for checkpoints
+///     number   stages, and each as a block
+///     32 bytes SHA-256 of everything before
+///
+/// What a state consists of is for the program that wrote it alone: its version is part of the identity.
+class CheckpointPieces {
+ public:
+  /// Refers to the stages.
+  CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
+
+  std::size_t size() const;
+  /// Calls write(bytes) with each piece in order.
+  template <class Write>
+  void for_each(const Write& write) const {
+    write(std::span<const std::byte>(head_));
+    for (std::size_t k = 0; k < stages_.size(); ++k) {
+      write(std::span<const std::byte>(lengths_[k]));
+      write(std::span<const std::byte>(stages_[k]));
+    }
+    write(std::span<const std::byte>(digest_));
+  }
+
+ private:
+  Bytes head_;
+  std::vector<Bytes> lengths_;
+  std::span<const Bytes> stages_;
+  Bytes digest_;
+};
+
+/// Reads a whole checkpoint file back. Throws BytesError for anything that CheckpointPieces does not give.
+Checkpoint decode_checkpoint(std::span<const std::byte> file);
+
+}  // namespace poesy

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/io/checkpoint.h"
+
+namespace poesy {
+
+/// A checkpoint that was found.
+struct FoundCheckpoint {
+  Checkpoint checkpoint;
+  std::string path;
+  std::string passed_over;  ///< why the newer one could not be taken; empty when this is the newer one
+};
+
+/// The checkpoints of an unfinished run beside its result: RESULT.h5.part, and the one before it as RESULT.h5.part.1.
+/// Each has its own digest and comes into being whole: written as RESULT.h5.part.tmp, synced and renamed, after the
+/// newer one was renamed to be the older one. At any moment at least one of those that were there is there.
+class CheckpointFiles {
+ public:
+  explicit CheckpointFiles(const std::string& result_path);
+
+  const std::string& newer() const { return newer_; }
+  /// Whether there is a file, sound or not.
+  bool exist() const;
+  /// The newest one that is sound, if there is a file at all. Throws FileError when there is and none is sound.
+  std::optional<FoundCheckpoint> find();
+  /// Throws FileError; then the checkpoints that were there are there.
+  void write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
+  /// Removes all of them. Throws FileError.
+  void remove();
+
+ private:
+  std::string newer_;
+  std::string older_;
+  std::string temporary_;
+  bool newer_is_sound_ = false;  ///< only then it may replace the older one
+};
+
+}  // namespace poesy

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/base/bytes.h"
+
+namespace poesy {
+
+/// What a run keeps of itself now and then, so that another run may take it up. A run merges finished work in a fixed
+/// order, so between two merges its accumulators are all there is to keep. A study may consist of several runs one
+/// after another, its stages: each call of a run function (engine/run/runner.h) is one. A continued study goes through
+/// the same stages, and those that were finished have nothing left to solve.
+class Checkpoints {
+ public:
+  /// Whether it is time for another checkpoint.
+  using Due = std::function<bool()>;
+  /// Keeps the states of all stages, in order. Never called from two threads at once.
+  using Save = std::function<void(std::span<const Bytes> stages)>;
+
+  /// stages: what an earlier run kept; empty for a run from the beginning.
+  Checkpoints(Due due, Save save, std::vector<Bytes> stages = {})
+      : due_(std::move(due)), save_(std::move(save)), stages_(std::move(stages)) {}
+
+  /// The next stage begins: the state to take up, empty where it begins at its beginning.
+  const Bytes& begin() {
+    if (begun_ == stages_.size()) stages_.emplace_back();
+    return stages_[begun_++];
+  }
+
+  /// Work was merged. state() gives the stage's state, if that is wanted.
+  template <class State>
+  void merged(const State& state) {
+    if (!due_()) return;
+    stages_[begun_ - 1] = state();
+    save();
+  }
+
+  /// The stage ended with this state.
+  void end(Bytes state) { stages_[begun_ - 1] = std::move(state); }
+
+  void save() const { save_(stages_); }
+
+ private:
+  Due due_;
+  Save save_;
+  std::vector<Bytes> stages_;  ///< those begun, then what is left of the earlier run's
+  std::size_t begun_ = 0;
+};
+
+/// One stage's dealings with checkpoints, if there are any.
+class Stage {
+ public:
+  explicit Stage(Checkpoints* checkpoints) : checkpoints_(checkpoints) {}
+
+  /// Calls restore(state) if there is a state to take up.
+  template <class Restore>
+  void begin(const Restore& restore) {
+    if (checkpoints_ == nullptr) return;
+    const Bytes& state = checkpoints_->begin();
+    if (!state.empty()) restore(std::span<const std::byte>(state));
+  }
+
+  template <class State>
+  void merged(const State& state) {
+    if (checkpoints_ != nullptr) checkpoints_->merged(state);
+  }
+
+  /// The stage is complete, or was stopped; then a checkpoint is kept.
+  template <class State>
+  void end(bool complete, const State& state) {
+    if (checkpoints_ == nullptr) return;
+    checkpoints_->end(state());
+    if (!complete) checkpoints_->save();
+  }
+
+ private:
+  Checkpoints* checkpoints_;
+};
+
+}  // namespace poesy

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/base/bytes.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/study/plan.h"
+
+namespace poesy {
+
+/// Puts the units of a sensitivity study together, cell by cell. What a cell becomes depends on the order of its own
+/// units alone. A last unit with fewer than Plan::kUnitSamples samples is kept apart, for it is not the beginning of
+/// any unit of a study with more samples; all others are.
+class SensitivityCollector {
+ public:
+  /// Refers to the plan.
+  SensitivityCollector(const Plan& plan, std::size_t responses);
+
+  /// Precondition: the unit after those done in its cell.
+  void add(const WorkUnit& unit, const UnitStats& stats);
+
+  /// Units of this cell that were added.
+  std::size_t units_done(std::size_t cell) const;
+  /// Over all that was added.
+  SolveCounts total() const;
+  /// Precondition: every unit was added.
+  std::vector<UnitStats> cells() &&;
+
+  /// Everything added so far.
+  Bytes state() const;
+  /// Takes up a state of this plan, or of one that differs by fewer samples. Throws BytesError for anything else.
+  /// Precondition: nothing was added.
+  void restore(std::span<const std::byte> state);
+
+ private:
+  std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
+  bool has_part(std::size_t cell) const { return !parts_.empty() && parts_[cell].solves.total() > 0; }
+  void restore_cell(ByteReader& from, std::size_t cell, std::size_t samples);
+
+  const Plan* plan_;
+  std::size_t responses_;
+  std::vector<UnitStats> whole_;  ///< [cells] units of full size
+  std::vector<UnitStats> parts_;  ///< [cells] the last unit where it is smaller; empty when the plan has none such
+};
+
+}  // namespace poesy

@@ -1,0 +1,1 @@
+poesy_test(base_test LABELS unit SOURCES engine/base/bytes_test.cpp LINKS poesy_base)

@@ -1,0 +1,78 @@
+"""Runs that are killed at random moments and resumed give what undisturbed runs give.
+
+POESY_KILLS says how often (default 20), POESY_KILL_SEED at which moments.
+"""
+
+import os
+import random
+import signal
+import time
+
+from poesy_program import main
+from resumption import STUDIES, ResumptionTest
+
+KILLS = int(os.environ.get("POESY_KILLS", "20"))
+TERMINATIONS = max(4, KILLS // 5)
+
+
+class Kill(ResumptionTest):
+    def setUp(self):
+        super().setUp()
+        self.random = random.Random(int(os.environ.get("POESY_KILL_SEED", "20240707")))
+        self.expected = {}
+        self.seconds = {}
+        for kind, study in STUDIES.items():
+            start = time.monotonic()
+            self.expected[kind] = self.undisturbed(study)
+            self.seconds[kind] = time.monotonic() - start
+
+    def run_and_stop(self, kind, number, *options):
+        moment = self.random.uniform(0.0, self.seconds[kind])
+        return self.run_for(moment, "--threads", self.random.randint(1, 3), *options, number=number)
+
+    def test_sigkill(self):
+        resumed = 0
+        for n in range(KILLS):
+            kind = list(STUDIES)[n % len(STUDIES)]
+            with self.subTest(n=n, kind=kind):
+                self.write("study.toml", STUDIES[kind])
+                code, messages = self.run_and_stop(kind, signal.SIGKILL)
+                self.assertIn(code, (0, -signal.SIGKILL), messages)
+                while code != 0:
+                    taken_up = self.newer.exists() or self.older.exists()
+                    resumed += taken_up
+                    moment = self.random.uniform(0.1, 2.0) * self.seconds[kind]  # some are killed again
+                    code, messages = self.run_for(moment, *["--resume"] * taken_up)
+                    self.assertIn(code, (0, -signal.SIGKILL), messages)
+                self.assertEqual(self.content_hash(), self.expected[kind])
+                self.assertEqual({path.name for path in self.folder.iterdir()} - {"study.toml", "undisturbed.h5", "out.h5"},
+                                 {path.name for path in self.folder.glob("out.h5.tmp.*")})
+                for path in self.folder.glob("out.h5*"):
+                    path.unlink()
+        print(f"{KILLS} runs killed, {resumed} times resumed from a checkpoint")
+        self.assertGreaterEqual(resumed, KILLS // 2)
+
+    def test_sigterm(self):
+        stopped = 0
+        for n in range(TERMINATIONS):
+            kind = list(STUDIES)[n % len(STUDIES)]
+            with self.subTest(n=n, kind=kind):
+                self.write("study.toml", STUDIES[kind])
+                # A signal that comes before the program listens ends it, with nothing to lose.
+                code, messages = self.run_and_stop(kind, signal.SIGTERM)
+                self.assertIn(code, (0, 4, -signal.SIGTERM), messages)
+                stopped += code == 4
+                if code == 4:
+                    self.assertIn("interrupted", messages)
+                    self.assertTrue(self.newer.exists())
+                if code != 0:
+                    code, messages = self.run_for(120, *["--resume"] * (code == 4))
+                    self.assertEqual(code, 0, messages)
+                self.assertEqual(self.content_hash(), self.expected[kind])
+                (self.folder / "out.h5").unlink()
+        print(f"{TERMINATIONS} runs terminated, {stopped} left a checkpoint")
+        self.assertGreaterEqual(stopped, TERMINATIONS // 2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,254 @@
+"""What is resumed and what is refused, and what stays when a checkpoint is damaged or finds no room."""
+
+import os
+import re
+import resource
+import shlex
+import signal
+import subprocess
+import time
+
+import h5py
+
+from poesy_program import PROGRAM, main
+from resumption import CASES, FIDELITIES, MONTE_CARLO, SENSITIVITY, STUDIES, ResumptionTest
+
+
+class Resume(ResumptionTest):
+    def test_every_kind(self):
+        for kind, study in STUDIES.items():
+            with self.subTest(kind):
+                expected = self.undisturbed(study)
+                self.stop_early("--threads", 2)
+                seconds = 0.2
+                while (done := self.resume("--max-wall", f"{seconds} s", "--threads", 1)).returncode == 4:
+                    seconds *= 1.5
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(self.content_hash(), expected)
+
+    def test_facts_are_of_all_parts(self):
+        self.undisturbed(SENSITIVITY)
+        self.write("study.toml", SENSITIVITY.replace("12300", "49300"))
+        done = self.poesy("run", "study.toml", "-o", "out.h5", "--max-wall", "0.6 s")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        start = time.monotonic()
+        self.resume_to_end()
+        last_part = time.monotonic() - start
+        with h5py.File(self.folder / "undisturbed.h5") as whole, h5py.File(self.folder / "out.h5") as parts:
+            self.assertEqual(parts["run/solves"][()] * 12300, whole["run/solves"][()] * 49300)
+            self.assertGreater(parts["run/wall_seconds"][()], last_part)
+
+    def test_printed_command(self):
+        expected = self.undisturbed(SENSITIVITY)
+        self.write("my study.toml", SENSITIVITY)
+        for seconds in (0.4, 0.3, 0.2, 0.1):
+            code, messages = self.run_for(seconds, "--seed", 5, number=signal.SIGINT, study="my study.toml")
+            if code != 0:
+                break
+        self.assertEqual(code, 4, messages)
+        command = messages.split("continue with: ")[1]
+        self.assertIn("--resume", shlex.split(command))
+        done = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.content_hash(), expected)
+
+    def test_second_interrupt_stops_at_once(self):
+        self.write("study.toml", SENSITIVITY.replace("12300", "100000000"))
+        command = [PROGRAM, "run", "study.toml", "-o", "out.h5"]
+        for first in (signal.SIGINT, signal.SIGTERM):
+            # Both signals are pending when the program is next scheduled, or the first one ends it in time.
+            with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE) as run:
+                with self.assertRaises(subprocess.TimeoutExpired):
+                    run.communicate(timeout=1.0)
+                run.send_signal(first)
+                run.send_signal(signal.SIGINT)
+                run.communicate(timeout=60)
+            self.assertIn(run.returncode, (4, -signal.SIGINT))
+            for path in self.folder.glob("out.h5*"):
+                path.unlink()
+
+    def test_more_samples(self):
+        for study in (SENSITIVITY, MONTE_CARLO, FIDELITIES):
+            for old, new in (("12300", "15000"), ("12000", "12300"), ("300", "12300"), ("3000", "12001")):
+                with self.subTest(study=study, old=old, new=new):
+                    expected = self.undisturbed(study.replace("12300", new))
+                    self.write("study.toml", study.replace("12300", old))
+                    self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")
+                    self.write("study.toml", study.replace("12300", new))
+                    self.assertEqual(self.resume_to_end(), expected)
+
+    def test_more_samples_of_an_unfinished_run(self):
+        for study in (SENSITIVITY, MONTE_CARLO, FIDELITIES):
+            with self.subTest(study=study):
+                longest = study.replace("12300", "14600")
+                expected = self.undisturbed(longest)
+                self.write("study.toml", study)
+                self.stop_early()
+                for samples in ("13500", "14600"):
+                    self.write("study.toml", study.replace("12300", samples))
+                    self.stop_early("--resume")
+                self.assertEqual(self.resume_to_end(), expected)
+
+    def test_extending_solves_only_what_is_new(self):
+        for study in (SENSITIVITY, MONTE_CARLO):
+            with self.subTest(study=study):
+                self.write("study.toml", study)
+                self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")
+                wall = float(re.search(r"in ([\d.]+) s", self.succeeds("run", "study.toml", "-o", "again.h5")).group(1))
+                self.write("study.toml", study.replace("12300", "12999"))
+                done = self.resume()
+                self.assertEqual(done.returncode, 0, done.stderr)
+                both = float(re.search(rb"in ([\d.]+) s", done.stdout).group(1))
+                self.assertLess(both, 1.7 * wall)
+
+    def refused(self, *words, code=2):
+        before = self.generations()
+        done = self.resume()
+        message = done.stderr.decode()
+        self.assertEqual(done.returncode, code, message)
+        for word in words:
+            self.assertIn(word, message)
+        self.assertEqual(self.generations(), before)
+        self.assertFalse((self.folder / "out.h5").exists())
+
+    def test_refusals(self):
+        self.write("study.toml", SENSITIVITY)
+        self.refused("out.h5.part", "no such checkpoint", "leave --resume out")
+        self.stop_early()
+        for old, new, words in [
+            ("seed = 5", "seed = 6", ["seed 5", "6"]),
+            ("0.2 deg", "0.3 deg", ["angular", "another study"]),
+            ("samples = 12300", "samples = 300", ["12300", "300"]),
+            ('"delta_1_1_y", ', "", ["delta_1_1_y"]),
+            ('kind = "sensitivity"', 'kind = "monte-carlo"', ["sensitivity", "monte-carlo"]),
+            ("gauss-newton", "newton", ["gauss-newton"]),
+        ]:
+            with self.subTest(new):
+                self.write("study.toml", SENSITIVITY.replace(old, new))
+                self.refused("out.h5.part", *words)
+        other = SENSITIVITY.replace("2upr-rpu", "3-prs").replace('"delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"', '"delta_1_1_x"')
+        self.write("study.toml", other.replace('factors = ["delta_1_1_x"]', 'factors = "all"'))
+        self.refused("2upr-rpu", "3-prs")
+
+    def test_changed_pose_file(self):
+        poses = "z,beta,gamma\n" + "".join(f"{-0.25 + 1e-6 * k},0.1,0.1\n" for k in range(4000))
+        self.write("poses.csv", poses)
+        self.write("study.toml", CASES.replace("count = 4000", 'select = "file"\nfile = "poses.csv"'))
+        self.stop_early()
+        self.write("poses.csv", poses.replace("0.1,0.1", "0.1,0.1000001"))
+        self.refused("poses")
+        self.write("poses.csv", poses)
+        self.resume_to_end()
+
+    def test_another_version(self):
+        """A checkpoint whose version was changed, digest and all."""
+        import hashlib
+        self.write("study.toml", SENSITIVITY)
+        self.stop_early()
+        content = self.newer.read_bytes()[:-32]
+        version = content[18:18 + content[17]]
+        changed = content.replace(version, version[:-1] + b"x", 1)
+        self.newer.write_bytes(changed + hashlib.sha256(changed).digest())
+        self.refused(version.decode()[:-1] + "x")
+
+    def test_forgotten_option(self):
+        self.write("study.toml", SENSITIVITY)
+        self.stop_early()
+        before = self.generations()
+        done = self.poesy("run", "study.toml", "-o", "out.h5", "--quiet")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"--resume", done.stderr)
+        self.assertEqual(self.generations(), before)
+
+    def test_bad_times(self):
+        self.write("study.toml", SENSITIVITY)
+        for option in ("--max-wall", "--checkpoint-every"):
+            for value in ("5", "0 s", "-1 s", "nan s", "2 days", "s", ""):
+                with self.subTest(option=option, value=value):
+                    done = self.poesy("run", "study.toml", "-o", "out.h5", f"{option}={value}")
+                    if (option, value) != ("--max-wall", ""):
+                        self.assertEqual(done.returncode, 2, done.stderr)
+
+    def test_damaged_newest(self):
+        expected = self.undisturbed(SENSITIVITY)
+        self.two_generations()
+        sound = self.generations()
+        newest = sound[self.newer.name]
+        flipped = bytearray(newest)
+        flipped[len(newest) // 2] ^= 4
+        for name, damaged in {"cut": newest[:-1], "half": newest[:len(newest) // 2], "empty": b"", "flipped": bytes(flipped),
+                              "rubbish": os.urandom(5000), "missing": None}.items():
+            with self.subTest(name):
+                for path, content in sound.items():
+                    (self.folder / path).write_bytes(content)
+                if damaged is None:
+                    self.newer.unlink()
+                else:
+                    self.newer.write_bytes(damaged)
+                done = self.resume("--max-wall", "0.1 s")
+                self.assertEqual(done.returncode, 4, done.stderr)
+                self.assertIn(b"out.h5.part.1", done.stderr)
+                # The sound one of before is still there.
+                self.assertEqual(self.older.read_bytes(), sound[self.older.name])
+                self.assertEqual(self.resume_to_end(), expected)
+
+    def test_both_broken(self):
+        self.write("study.toml", SENSITIVITY)
+        self.two_generations()
+        for path in (self.newer, self.older):
+            path.write_bytes(path.read_bytes()[:-40])
+        self.refused("out.h5.part", "out.h5.part.1", code=3)
+
+    def test_size_limit(self):
+        expected = self.undisturbed(SENSITIVITY)
+        self.stop_early()
+        before = self.generations()
+        done = subprocess.run(
+            [PROGRAM, "run", "study.toml", "-o", "out.h5", "--resume", "--checkpoint-every", "0.01 s"], cwd=self.folder,
+            capture_output=True, check=False, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn(b"out.h5.part: cannot be written (File too large)", done.stderr)
+        self.assertIn(b"--resume", done.stderr)
+        self.assertEqual(self.generations(), before)
+        self.assertEqual(self.resume_to_end(), expected)
+
+    def mount_disk(self, size):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if os.geteuid() != 0:
+            self.skipTest("mounting a small file system needs root")
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", disk], check=False).returncode != 0:
+            self.skipTest("a small file system cannot be mounted here")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        return disk
+
+    def test_full_disk(self):
+        expected = self.undisturbed(SENSITIVITY)
+        disk = self.mount_disk("1m")
+        self.folder = disk
+        self.newer = disk / "out.h5.part"
+        self.older = disk / "out.h5.part.1"
+        self.write("study.toml", SENSITIVITY)
+        self.two_generations()
+        before = self.generations()
+        for every, name in (("0.01 s", b"out.h5.part: "), ("1 h", b"out.h5: ")):
+            with self.subTest(every):
+                with open(disk / "filler", "wb", buffering=0) as filler:
+                    try:
+                        while True:
+                            filler.write(bytes(1024))
+                    except OSError:
+                        pass
+                done = self.resume("--checkpoint-every", every)
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertIn(name + b"cannot be written (No space left on device); free ", done.stderr)
+                self.assertRegex(done.stderr, rb"free \d+ bytes")
+                self.assertIn(b"--resume", done.stderr)
+                self.assertEqual(self.generations(), before)
+                self.assertEqual(set(disk.glob("out.h5*")), {self.newer, self.older})
+                (disk / "filler").unlink()
+        self.assertEqual(self.resume_to_end(), expected)
+
+
+if __name__ == "__main__":
+    main()

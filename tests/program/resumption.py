@@ -1,0 +1,132 @@
+"""What the tests of checkpoints share: a study of each kind that is under way for a second or so, and stopping it."""
+
+import os
+import signal
+import subprocess
+import tempfile
+from pathlib import Path
+
+import h5py
+
+from poesy_program import PROGRAM, ProgramTest
+
+HEAD = """\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "2upr-rpu"
+[errors]
+linear = { distribution = "normal", sigma = "1 mm" }
+angular = { distribution = "normal", sigma = "0.2 deg" }
+[solver]
+method = "gauss-newton"
+[run]
+seed = 5
+"""
+SENSITIVITY = HEAD + """\
+[poses]
+count = 16
+[analysis]
+kind = "sensitivity"
+factors = ["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]
+samples = 12300
+"""
+MONTE_CARLO = HEAD + """\
+[poses]
+count = 12
+[analysis]
+kind = "monte-carlo"
+factors = "deforming"
+samples = 12300
+"""
+CASES = HEAD + """\
+[poses]
+count = 4000
+[analysis]
+kind = "evaluate"
+cases = [
+""" + "".join(f'  {{ errors = {{ linear = "0.1 mm", angular = "{0.01 * k} deg" }} }},\n' for k in range(1, 16)) + "]\n"
+IDENTIFICATION = HEAD + """\
+[poses]
+count = 1500
+[analysis]
+kind = "identification"
+"""
+COUPLING = """\
+format = "poesy-study"
+version = 1
+mechanism = { model = "3-prs" }
+poses = { count = 20000 }
+[analysis]
+kind = "coupling"
+linear = ["0.1 mm", "0.3 mm", "0.5 mm"]
+sources = [{ name = "FS", factors = "platform-hinges" }, { name = "R", factors = "revolute-gap" },
+           { name = "L", factors = "rod-length" }]
+"""
+FIDELITIES = """\
+format = "poesy-study"
+version = 1
+mechanism = { model = "3-prs", fidelity = "both" }
+poses = { count = 20 }
+errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
+analysis = { kind = "sensitivity", samples = 12300 }
+"""
+STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "evaluate": CASES, "identification": IDENTIFICATION,
+           "coupling": COUPLING, "fidelities": FIDELITIES}
+
+
+class ResumptionTest(ProgramTest):
+    """Runs the program in a folder in memory, if there is one: there checkpoints cost nothing, so there are many."""
+
+    def setUp(self):
+        shared = Path("/dev/shm")
+        holder = tempfile.TemporaryDirectory(dir=shared if os.access(shared, os.W_OK) else None)
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+        self.newer = self.folder / "out.h5.part"
+        self.older = self.folder / "out.h5.part.1"
+
+    def content_hash(self, name="out.h5"):
+        with h5py.File(self.folder / name) as result:
+            return result.attrs["content_sha256"]
+
+    def undisturbed(self, study):
+        """The content hash of the study's result."""
+        self.write("study.toml", study)
+        self.succeeds("run", "study.toml", "-o", "undisturbed.h5", "--quiet")
+        return self.content_hash("undisturbed.h5")
+
+    def run_for(self, seconds, *options, number=signal.SIGKILL, study="study.toml"):
+        """Runs the study until it ends or that time is over and the signal stops it; its exit code and messages."""
+        command = [PROGRAM, "run", study, "-o", "out.h5", "--checkpoint-every", "0.01 s", *map(str, options)]
+        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as run:
+            try:
+                _, messages = run.communicate(timeout=seconds)
+            except subprocess.TimeoutExpired:
+                run.send_signal(number)
+                _, messages = run.communicate(timeout=120)
+        return run.returncode, messages.decode(errors="replace")
+
+    def stop_early(self, *options):
+        """Runs the study for a moment, so that a checkpoint stays."""
+        done = self.poesy("run", "study.toml", "-o", "out.h5", "--max-wall", "0.01 s", "--quiet", *options)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertTrue(self.newer.exists())
+
+    def two_generations(self):
+        self.stop_early()
+        self.stop_early("--resume")
+        self.assertTrue(self.older.exists())
+
+    def resume(self, *options):
+        return self.poesy("run", "study.toml", "-o", "out.h5", "--quiet", "--resume", *options)
+
+    def resume_to_end(self, *options):
+        """Resumes the run; the content hash of its result."""
+        done = self.resume(*options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(list(self.folder.glob("out.h5.*")), [], "checkpoints stay behind")
+        return self.content_hash()
+
+    def generations(self):
+        return {path.name: path.read_bytes() for path in (self.newer, self.older) if path.exists()}
