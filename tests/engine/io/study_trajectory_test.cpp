@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TooManyPoints", "{ curve = \"wave\", points = ^100000000 }", {"at most 10000000"}},
         Bad{"BareTime", "{ curve = \"wave\", time = [^0, \"1 s\"] }", {"bare number 0", "\"1 s\""}},
         Bad{"LengthAsTime", "{ curve = \"wave\", time = [^\"0 mm\", \"1 s\"] }", {"must be a time"}},
-        Bad{"UnknownTimeUnit", "{ curve = \"wave\", time = [^\"0 h\", \"1 s\"] }", {"'h'", "ms"}},
+        Bad{"UnknownTimeUnit", "{ curve = \"wave\", time = [^\"0 fortnights\", \"1 s\"] }", {"fortnights", "ms"}},
         Bad{"OneTime", "{ curve = \"wave\", time = ^[\"1 s\"] }", {"has 1 values"}},
         Bad{"ReversedTime", "{ curve = \"wave\", time = ^[\"2 s\", \"1 s\"] }", {"from 2 s to 1 s", "start first"}},
         Bad{"EmptyTime", "{ curve = \"wave\", time = ^[\"1 s\", \"1000 ms\"] }", {"from 1 s to 1 s"}},
