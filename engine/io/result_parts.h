@@ -44,9 +44,7 @@ inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
-/// The standard deviations of the errors that the study varies, [P].
-std::vector<double> sigma_of(const Study& study);
-/// These as /factors/sigma.
+/// The standard deviations of the errors that the study varies, as /factors/sigma.
 void add_sigma(ResultBuilder& result, const Study& study);
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);

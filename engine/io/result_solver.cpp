@@ -14,16 +14,8 @@ std::vector<T> each(const std::vector<SolveCounts>& solves, const Get& get) {
 
 }  // namespace
 
-std::vector<double> sigma_of(const Study& study) {
-  std::vector<double> sigma;
-  for (const FactorIndex factor : study.analysis.factors) {
-    sigma.push_back(study.errors.by_factor[factor.value].standard_deviation());
-  }
-  return sigma;
-}
-
 void add_sigma(ResultBuilder& result, const Study& study) {
-  result.add("/factors/sigma", {"factor"}, sigma_of(study),
+  result.add("/factors/sigma", {"factor"}, standard_deviations(study),
              {"SI: factor unit, see /factors/unit", "Standard deviation of the error, as set in the study"});
 }
 

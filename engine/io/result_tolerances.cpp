@@ -33,7 +33,7 @@ std::optional<ReferenceError> reference_for(const Study& study, const ResponseSt
 }
 
 Columns columns_of(const Study& study, const SensitivityResult& found) {
-  const std::vector<double> sigma = sigma_of(study);
+  const std::vector<double> sigma = standard_deviations(study);
   Columns columns;
   for (std::size_t r = 0; r < found.responses; ++r) {
     const ResponseStudy response = response_study(found, sigma, r);

@@ -9,31 +9,46 @@
 
 namespace poesy {
 
-/// The units of a plan that are still to be solved, in the plan's order, when some of each cell's first units are done.
+/// The units of a plan that are still to be solved, in the plan's order: of each cell those between the first ones that
+/// are done and as many as are wanted.
 class PendingUnits {
  public:
-  /// done(cell): how many. Precondition: at most units_per_cell(). Refers to the plan.
-  template <class Done>
-  PendingUnits(const Plan& plan, const Done& done) : plan_(&plan), ends_(plan.cells()) {
+  /// done(cell), wanted(cell): how many of the cell's units. Precondition: at most units_per_cell(). Refers to the
+  /// plan.
+  template <class Done, class Wanted>
+  PendingUnits(const Plan& plan, const Done& done, const Wanted& wanted) : plan_(&plan) {
     std::size_t end = 0;
-    for (std::size_t cell = 0; cell < ends_.size(); ++cell) {
-      POESY_EXPECTS(done(cell) <= plan.units_per_cell());
-      end += plan.units_per_cell() - done(cell);
-      ends_[cell] = end;
+    for (std::size_t cell = 0; cell < plan.cells(); ++cell) {
+      const std::size_t last = wanted(cell);
+      POESY_EXPECTS(done(cell) <= plan.units_per_cell() && last <= plan.units_per_cell());
+      if (last > done(cell)) end += last - done(cell);
+      ends_.push_back({end, last});
     }
   }
 
-  std::size_t size() const { return ends_.empty() ? 0 : ends_.back(); }
+  /// All units of each cell are wanted.
+  template <class Done>
+  PendingUnits(const Plan& plan, const Done& done)
+      : PendingUnits(plan, done, [&](std::size_t) { return plan.units_per_cell(); }) {}
+
+  std::size_t size() const { return ends_.empty() ? 0 : ends_.back().pending; }
 
   WorkUnit operator[](std::size_t n) const {
     POESY_EXPECTS(n < size());
-    const auto cell = static_cast<std::size_t>(std::ranges::upper_bound(ends_, n) - ends_.begin());
-    return plan_->unit((cell + 1) * plan_->units_per_cell() - (ends_[cell] - n));
+    const auto end = std::ranges::upper_bound(ends_, n, {}, &End::pending);
+    const auto cell = static_cast<std::size_t>(end - ends_.begin());
+    return plan_->unit(cell * plan_->units_per_cell() + end->unit - (end->pending - n));
   }
 
  private:
+  /// Where a cell's pending units end: how many there are up to and with this cell, and the unit within the cell.
+  struct End {
+    std::size_t pending;
+    std::size_t unit;
+  };
+
   const Plan* plan_;
-  std::vector<std::size_t> ends_;  ///< [cells] pending units up to and with each cell
+  std::vector<End> ends_;  ///< [cells]
 };
 
 }  // namespace poesy

@@ -71,6 +71,14 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
   return errors;
 }
 
+std::vector<double> standard_deviations(const Study& study) {
+  std::vector<double> sigma;
+  for (const FactorIndex factor : study.analysis.factors) {
+    sigma.push_back(study.errors.by_factor[factor.value].standard_deviation());
+  }
+  return sigma;
+}
+
 MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
   POESY_EXPECTS(mechanism.compared.has_value());
   mechanism.fidelity = *mechanism.compared;

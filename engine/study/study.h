@@ -141,6 +141,9 @@ std::string_view name(SolverOptions::Method method);
 /// The constant errors, [F]: the background's value where it applies, else zero.
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);
 
+/// Those of the errors that the study varies, [P], SI.
+std::vector<double> standard_deviations(const Study& study);
+
 /// The mechanism at its second fidelity alone. Precondition: it compares two.
 MechanismChoice at_compared_fidelity(MechanismChoice mechanism);
 

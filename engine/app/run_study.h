@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/app/resumable.h"
+#include "engine/run/result.h"
+#include "engine/run/runner.h"
+#include "engine/study/study.h"
+
+namespace poesy::app {
+
+/// A study that is ready to run.
+struct Job {
+  const Study& study;
+  const Model& model;
+  SelectedPoses poses;
+  std::string path;  ///< of the result
+  RunOptions options;
+  const ResumableRun& kept;
+};
+
+/// How a study's solves ended, and what they took, in all parts of the run.
+struct Ended {
+  SolveCounts solves;
+  RunFacts facts;
+};
+
+/// Runs a study of any kind and writes its result. Empty when it was interrupted. Throws FileError.
+std::optional<Ended> run_study(const Job& job);
+
+}  // namespace poesy::app
