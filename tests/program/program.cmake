@@ -16,6 +16,7 @@ program_test(fidelity unit)
 program_test(interruption robustness)
 program_test(kill robustness)
 program_test(resume robustness)
+program_test(shard robustness)
 if(POESY_SANITIZE)
   # Runs take ten times as long there.
   set_property(TEST program.kill APPEND PROPERTY ENVIRONMENT POESY_KILLS=6)
