@@ -6,6 +6,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
+#include "engine/app/failure_limit.h"
 #include "engine/app/interrupt.h"
 #include "engine/app/progress.h"
 #include "engine/app/resumable.h"
@@ -50,17 +51,12 @@ std::string default_result(const std::string& study) {
 
 /// Says what came out; the exit code.
 int finish(const Job& job, const std::string& study_path, const Ended& ended) {
-  const std::uint64_t failed = ended.solves.not_converged();
   std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, ended.facts.solves,
-                         ended.facts.wall_seconds, ended.facts.threads, failed)
+                         ended.facts.wall_seconds, ended.facts.threads, ended.solves.not_converged())
                  .c_str(),
              stdout);
-  if (job.study.not_converged != NotConverged::fail || failed == 0) return kDone;
-  std::fputs(fmt::format("poesy: {}: {} samples did not converge and the study allows none; the result is kept in {}\n",
-                         study_path, failed, job.path)
-                 .c_str(),
-             stderr);
-  return kTooManyNotConverged;
+  return judge_failures(job.study, ended.solves, study_path,
+                        fmt::format("the result is kept; see 'poesy show {}'", job.path));
 }
 
 /// run_study, and what is left to say about its checkpoints when it fails.

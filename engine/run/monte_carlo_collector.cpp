@@ -56,22 +56,29 @@ void PoseSamples::add(const PoseUnit& unit) {
     responses[r].sketch.add(unit.responses[r].values);
   }
   solves.merge(unit.solves);
+  failed.merge(unit.failed);
 }
 
 void PoseSamples::write(ByteWriter& to) const {
   for (const ResponseSamples& response : responses) response.write(to);
   solves.write(to);
+  failed.write(to);
 }
 
 PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
   PoseSamples samples;
   for (std::size_t r = 0; r < responses; ++r) samples.responses.push_back(ResponseSamples::read(from));
   samples.solves = SolveCounts::read(from);
+  samples.failed = FailedSamples::read(from, samples.solves.not_converged(), 0, samples.solves.total());
   return samples;
 }
 
 MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis)
-    : plan_(&plan), responses_(responses), overall_(responses), kept_(plan.poses().size()) {
+    : plan_(&plan),
+      responses_(responses),
+      overall_(responses),
+      failed_(plan.poses().size()),
+      kept_(plan.poses().size()) {
   result_.responses = responses;
   result_.poses = plan.poses().size();
   result_.conf_level = analysis.conf_level;
@@ -133,6 +140,7 @@ void MonteCarloCollector::finish_pose() {
     overall_[r].merge(at_pose_.responses[r]);
   }
   result_.solves[pose_.value] = at_pose_.solves;
+  failed_[pose_.value] = std::move(at_pose_.failed);
   at_pose_ = {};
   ++pose_.value;
 }
@@ -162,6 +170,7 @@ MonteCarloResult MonteCarloCollector::result() && {
     result_.overall_count.push_back(moments.count());
     for (const double level : result_.levels) result_.overall_quantiles.push_back(sketch.quantile(level));
   }
+  for (std::size_t m = 0; m < result_.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], result_.failures);
   return std::move(result_);
 }
 
@@ -177,6 +186,7 @@ void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const
     to.reals(std::span(result_.quantiles).subspan(cell * levels, levels));
   }
   result_.solves[pose].write(to);
+  failed_[pose].write(to);
 }
 
 void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose) {
@@ -188,6 +198,7 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose) {
     from.reals(std::span(result_.quantiles).subspan(cell * levels, levels));
   }
   result_.solves[pose] = SolveCounts::read(from);
+  failed_[pose] = FailedSamples::read(from, result_.solves[pose].not_converged(), 0, result_.solves[pose].total());
 }
 
 Bytes MonteCarloCollector::state() const {

@@ -25,6 +25,7 @@ struct ResponseSamples {
 struct PoseSamples {
   std::vector<ResponseSamples> responses;  ///< [R]
   SolveCounts solves;
+  FailedSamples failed;
 
   void add(const PoseUnit& unit);
   void write(ByteWriter& to) const;
@@ -76,6 +77,7 @@ class MonteCarloCollector {
   PoseSamples at_pose_;                   ///< its samples
   std::vector<ResponseSamples> overall_;  ///< [R] of the finished poses
   MonteCarloResult result_;               ///< of the finished poses
+  std::vector<FailedSamples> failed_;     ///< [M] of the finished poses
   std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; open ones from a shorter study
   std::size_t kept_bytes_ = 0;
 };

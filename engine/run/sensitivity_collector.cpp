@@ -70,14 +70,14 @@ void SensitivityCollector::restore(std::span<const std::byte> state) {
 void SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std::size_t samples) {
   const std::uint64_t holds = from.number_up_to(kWhole | kPart);
   if ((holds & kWhole) != 0) {
-    whole_[cell] = UnitStats::read(from, responses_);
+    whole_[cell] = UnitStats::read(from, responses_, 0);
     const std::uint64_t solves = whole_[cell].solves.total();
     if (solves == 0 || solves % Plan::kUnitSamples != 0 || solves > samples) {
       throw BytesError("has a cell that is no number of whole units");
     }
   }
   if ((holds & kPart) == 0) return;
-  UnitStats part = UnitStats::read(from, responses_);
+  UnitStats part = UnitStats::read(from, responses_, whole_[cell].solves.total());
   const std::uint64_t solves = part.solves.total();
   if (solves == 0 || solves >= Plan::kUnitSamples || whole_[cell].solves.total() + solves != samples) {
     throw BytesError("has a last unit of the wrong size");

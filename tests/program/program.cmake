@@ -15,6 +15,7 @@ program_test(determinism determinism)
 program_test(fidelity unit)
 program_test(interruption robustness)
 program_test(kill robustness)
+program_test(replay unit)
 program_test(resume robustness)
 if(POESY_SANITIZE)
   # Runs take ten times as long there.
