@@ -19,7 +19,8 @@ struct FailedSample {
   bool operator==(const FailedSample&) const = default;
 };
 
-/// The first samples of one cell, or of a part of it, that were not solved. Allocates nothing while none fails.
+/// The first samples of one cell, or of a part of it, that were not solved. Allocates once, when one
+/// fails.
 class FailedSamples {
  public:
   /// No more of a cell are kept; which ones depends on its samples alone.
@@ -27,7 +28,9 @@ class FailedSamples {
 
   /// Samples come in ascending order.
   void add(SampleIndex sample, SolveStatus status) {
-    if (!solved(status) && first_.size() < kMost) first_.push_back({sample, status});
+    if (solved(status) || first_.size() == kMost) return;
+    first_.reserve(kMost);
+    first_.push_back({sample, status});
   }
   /// Precondition: all samples of `later` come after those of this.
   void merge(const FailedSamples& later);

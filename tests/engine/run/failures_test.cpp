@@ -167,7 +167,7 @@ TEST_P(Failures, ReplayToTheirStatusAndDraws) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Failures, testing::Values(Kind::sensitivity, Kind::monte_carlo),
-                         [](const auto& info) { return info.param == Kind::sensitivity ? "sensitivity" : "together"; });
+                         [](const auto& made) { return made.param == Kind::sensitivity ? "sensitivity" : "together"; });
 
 }  // namespace
 }  // namespace poesy
