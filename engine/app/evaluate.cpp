@@ -7,6 +7,7 @@
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/facts.h"
+#include "engine/app/failure_limit.h"
 #include "engine/app/interrupt.h"
 #include "engine/app/progress.h"
 #include "engine/base/error.h"
@@ -96,9 +97,9 @@ int evaluate(const Options& options) {
       fmt::format("{} solves, {} not converged\n{}", total.total(), total.not_converged(), evaluation_table(shown))
           .c_str(),
       stdout);
-  if (study.not_converged != NotConverged::fail || total.not_converged() == 0) return kDone;
-  std::fputs("poesy: samples did not converge and the study allows none; see /evaluate/status in the result\n", stderr);
-  return kTooManyNotConverged;
+  return judge_failures(study, total, options.study,
+                        options.result.empty() ? "run it again with -o RESULT.h5 to see which failed"
+                                               : "the result is kept: see /evaluate/status in " + options.result);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
-#include "engine/io/study_file.h"
+#include "engine/io/stored_study.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -30,13 +30,13 @@ int merge(const Options& options) {
   for (const std::string& path : options.shards) shards.push_back(read_shard(path));
   std::vector<Bytes> merged = merge_shards(shards);
   const StoredShard& first = shards.front();
-  // A stored study's poses are stored with it, so a file that they came from is not asked for.
-  const Study study = study_of_text(first.study_text, "the study in " + first.path, registry(), StudyUse::evaluate);
+  const StoredStudy whole = stored_study(first.study_text, first.poses, first.path, registry());
+  const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   // The whole run from here on: as one that is resumed when all its solves are done.
   Checkpoints done([] { return false; }, [](std::span<const Bytes>) {}, std::move(merged));
   RunOptions run{.threads = first.facts.threads, .progress = [](const Progress&) {}, .checkpoints = &done};
-  const Job job{study, *model, first.poses, options.result, std::move(run), [time = time_of(shards)] { return time; }};
+  const Job job{study, *model, whole.poses, options.result, std::move(run), [time = time_of(shards)] { return time; }};
   try {
     return report_end(job, options.result, run_study(job).value());
   } catch (const BytesError& error) {

@@ -6,6 +6,7 @@
 
 #include "engine/app/exit_code.h"
 #include "engine/app/facts.h"
+#include "engine/app/failure_limit.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
 #include "engine/run/cases.h"
@@ -128,17 +129,13 @@ std::optional<Ended> run_study(const Job& job) {
 }
 
 int report_end(const Job& job, const std::string& study_path, const Ended& ended) {
-  const std::uint64_t failed = ended.solves.not_converged();
   std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, ended.facts.solves,
-                         ended.facts.wall_seconds, ended.facts.threads, failed)
+                         ended.facts.wall_seconds, ended.facts.threads, ended.solves.not_converged())
                  .c_str(),
              stdout);
-  if (job.study.not_converged != NotConverged::fail || failed == 0) return kDone;
-  std::fputs(fmt::format("poesy: {}: {} samples did not converge and the study allows none; the result is kept in {}\n",
-                         study_path, failed, job.path)
-                 .c_str(),
-             stderr);
-  return kTooManyNotConverged;
+  if (job.options.shard) return kDone;  // the limit on failures is one of the whole study
+  return judge_failures(job.study, ended.solves, study_path,
+                        fmt::format("the result is kept; see 'poesy show {}'", job.path));
 }
 
 }  // namespace poesy::app

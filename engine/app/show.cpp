@@ -39,6 +39,7 @@ int show(const Options& options) {
   const std::string response = response_of(options, result);
   if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
   std::fputs(summary_text(result).c_str(), stdout);
+  std::fputs(failures_text(result, options.result).c_str(), stdout);
   std::fputs("\n", stdout);
   std::fputs(result_tables(result, response).c_str(), stdout);
   return kDone;

@@ -74,6 +74,7 @@ std::string program(const CheckpointIdentity& identity) {
 CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard) {
   Study rest = study;
   rest.seed = 0;
+  rest.max_not_converged = 1.0;  // judges the run when it is done
   if (draws_samples(study)) rest.analysis.samples = 0;
   return {.poesy_version = poesy_version(),
           .git_commit = git_commit(),

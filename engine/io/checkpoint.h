@@ -20,7 +20,7 @@ struct CheckpointIdentity {
   std::string model;
   std::uint64_t seed = 0;
   std::uint64_t samples = 0;  ///< 0 where the kind of study draws none; a run may have more than its checkpoint
-  std::string study;          ///< the resolved study, without seed and samples
+  std::string study;          ///< the resolved study, without seed, samples and max_not_converged
   std::string poses;          ///< SHA-256 of the poses, hexadecimal
   std::string shard;          ///< "2/5"; empty for the whole study
 

@@ -91,6 +91,7 @@ void export_sensitivity(TableFolder& folder, const StoredResult& result) {
   write_local(folder, result, "mean", found.mean, response_unit);
   write_local(folder, result, "std", found.std, response_unit);
   write_solver(folder, result);
+  export_failures(folder, result);
   export_tolerances(folder, result);
   export_separation(folder, result);
   export_fidelity(folder, result);

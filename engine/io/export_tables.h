@@ -78,6 +78,9 @@ void add_solve_columns(std::vector<std::string>& columns);
 /// How solves ended: not converged, mean and most iterations, then the number of each status.
 void append_solves(const SolveCounts& solves, std::vector<double>& row);
 
+/// failures.csv, of a sensitivity or Monte Carlo result.
+void export_failures(TableFolder& folder, const StoredResult& result);
+
 /// factors.csv: the standard deviation of each error.
 void write_factors(TableFolder& folder, const StoredResult& result);
 

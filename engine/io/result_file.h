@@ -73,6 +73,7 @@ struct StoredResult {
   std::string model;
   std::string study_text;
   std::string poesy_version;
+  std::string git_commit;
   std::string content_sha256;
   std::vector<NamedUnit> pose_coordinates;
   PoseSet poses;
@@ -103,6 +104,15 @@ struct StoredResult {
   RunFacts facts;
 };
 
+/// What a failure's address says where all errors vary together.
+inline constexpr std::string_view kAllFactors = "all";
+
+/// The name of what varies in a slot of a sampled result: an error, or kAllFactors.
+std::string varied_name(const StoredResult& result, std::size_t slot);
+
+/// The listed failures of a sampled result; of another kind there are none.
+const std::vector<Failure>& listed_failures(const StoredResult& result);
+
 /// Reads a result file. Throws FileError when it is not one, or of a newer major version. Does not check the hash.
 StoredResult read_result(const std::string& path);
 
@@ -123,6 +133,7 @@ Verification verify_result(const std::string& path);
 ///     local_RESPONSE.csv   factor | one column a pose, SI
 ///     not_converged.csv    factor | one column a pose
 ///     factors.csv          factor | standard deviation
+///     failures.csv         factor | pose, sample, status (position in kStatusNames) of the listed failures
 ///     poses.csv            pose | time (s) on a trajectory, coordinates, condition number
 ///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
 ///                               share, equal-effect tolerance in SI and in the units people read ("inf": no effect)
@@ -150,7 +161,7 @@ Verification verify_result(const std::string& path);
 ///     single_below.csv     factor | poses; like it: single_max, not_solved, coupled_below, coupled_reduced
 ///     couplings.csv        the two factors, "a+b" | group, their rows in identification.csv from 0, poses
 ///
-/// Tables of a Monte Carlo result: poses.csv, factors.csv and
+/// Tables of a Monte Carlo result: poses.csv, factors.csv, failures.csv (its factor is "all") and
 ///
 ///     monte_carlo_RESPONSE.csv   pose | mean, mean_ci_low, mean_ci_high, std, min, max, count, q_0.05 ... (quantiles)
 ///     overall.csv                response | mean, std, min, max, count, q_0.05 ... over the samples of all poses, SI

@@ -58,6 +58,7 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
                        found.quantile_relative_error);
   }
   add_solver(result, {"pose"}, found.solves);
+  add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
 
 void read_monte_carlo(const h5::File& file, StoredResult& result) {
@@ -87,6 +88,7 @@ void read_monte_carlo(const h5::File& file, StoredResult& result) {
   found.overall_count = read_exactly<std::uint64_t>(file, "/monte_carlo/overall_count", found.responses);
   found.overall_quantiles = read("overall_quantiles", found.responses * found.levels.size());
   found.solves = read_solver(file, found.poses);
+  found.failures = read_failures(file, result);
 }
 
 }  // namespace poesy

@@ -58,6 +58,11 @@ void add_sigma(ResultBuilder& result, const Study& study);
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
 std::vector<SolveCounts> read_solver(const h5::File& file, std::size_t cells);
+/// The first failures, as addresses, `total` in all; slots: the name of each. Follows add_solver.
+void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
+                  std::uint64_t total);
+/// None in files of older versions. Reads `kind`, `poses` and `factors` of the result.
+std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result);
 
 void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found);
 /// Fills in `sensitivity` and `factor_sigma`.

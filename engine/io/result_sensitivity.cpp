@@ -79,11 +79,15 @@ void add_sensitivity(ResultBuilder& result, const Study& study, const Sensitivit
   if (found.separation) add_separation(result, study, *found.separation);
   if (found.fidelity) add_fidelity(result, study, *found.fidelity);
   add_solver(result, {"factor", "pose"}, found.solves);
+  std::vector<std::string> names;
+  for (const FactorIndex factor : study.analysis.factors) names.push_back(study.model().factors[factor.value].name);
+  add_failures(result, found.failures, names, found.total().not_converged());
 }
 
 void read_sensitivity(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_exactly<double>(file, "/factors/sigma", result.factors.size());
   result.sensitivity = read_indices(file);
+  result.sensitivity.failures = read_failures(file, result);
   if (file.exists("/tolerances")) read_tolerances(file, result);
   if (file.exists("/separation")) read_separation(file, result);
   if (file.exists("/fidelity")) read_fidelity(file, result);

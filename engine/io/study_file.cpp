@@ -81,13 +81,23 @@ SolverOptions read_solver(const StudySection& section) {
   return solver;
 }
 
-NotConverged read_not_converged(const StudySection& section) {
-  constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::fail};
-  const auto value = section.find("not_converged");
-  if (!value) return NotConverged::exclude;
-  std::vector<std::string_view> words;
-  for (const NotConverged policy : kPolicies) words.push_back(name(policy));
-  return kPolicies[value->word(words)];
+/// What becomes of samples that were not solved. "fail" is short for "exclude" and a limit of 0.
+void read_not_converged(const StudySection& section, Study& study) {
+  constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::exclude};
+  constexpr std::size_t kFail = 2;
+  if (const auto value = section.find("not_converged")) {
+    const std::size_t word = value->word(std::array{name(kPolicies[0]), name(kPolicies[1]), std::string_view("fail")});
+    study.not_converged = kPolicies[word];
+    if (word == kFail) {
+      section.refuse("max_not_converged", "not_converged = \"fail\", which allows none");
+      study.max_not_converged = 0.0;
+    }
+  }
+  const auto limit = section.find("max_not_converged");
+  if (!limit) return;
+  study.max_not_converged = limit->number();
+  if (study.max_not_converged >= 0.0 && study.max_not_converged <= 1.0) return;
+  limit->fail("is " + shortest(study.max_not_converged), "it is a share of all samples, from 0 to 1, e.g. 0.001");
 }
 
 /// What a study asks for at each pose, and what these numbers are the product of.
@@ -165,9 +175,9 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
   study.errors = read_error_model(root, study.model());
   study.analysis = read_analysis(root, study.model(), use);
   const StudySection solver = root.section("solver");
-  solver.allow({"method", "tolerance", "max_iterations", "not_converged"});
+  solver.allow({"method", "tolerance", "max_iterations", "not_converged", "max_not_converged"});
   study.solver = read_solver(solver);
-  study.not_converged = read_not_converged(solver);
+  read_not_converged(solver, study);
   const StudySection run = root.section("run");
   run.allow({"seed"});
   if (const auto seed = run.find("seed")) study.seed = static_cast<std::uint64_t>(seed->whole_number(0));

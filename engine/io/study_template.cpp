@@ -310,8 +310,8 @@ std::string solver_and_run_sections() {
          "method = \"newton\"  # or \"gauss-newton\", as published: slower, and more samples do not converge\n"
          "tolerance = 1e-15  # converged: the residual's largest change (rad, m) in one iteration is below this\n"
          "max_iterations = 50  # at least 1\n"
-         "not_converged = \"exclude\"  # from all statistics; include: keep the last iterate; fail: exclude, exit code "
-         "5\n"
+         "not_converged = \"exclude\"  # from all statistics; include: keep the last iterate\n"
+         "max_not_converged = 1  # share of all samples; if more fail, exit code 5, the result kept\n"
          "\n[run]\n"
          "seed = 1  # a whole number from 0; the same seed gives the same bits on any number of threads\n";
 }

@@ -273,8 +273,9 @@ std::string set_name(std::span<const FactorIndex> factors, const ModelDescriptio
 std::string resolved_text(const Study& study) {
   const SolverOptions& solver = study.solver;
   const std::string solver_text = fmt::format(
-      "[solver]\nmethod = {}\ntolerance = {}\nmax_iterations = {}\nnot_converged = {}\n", quoted(name(solver.method)),
-      shortest(solver.tolerance), solver.max_iterations, quoted(name(study.not_converged)));
+      "[solver]\nmethod = {}\ntolerance = {}\nmax_iterations = {}\nnot_converged = {}\nmax_not_converged = {}\n",
+      quoted(name(solver.method)), shortest(solver.tolerance), solver.max_iterations, quoted(name(study.not_converged)),
+      shortest(study.max_not_converged));
   return fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}\n\n{}\n{}\n{}\n{}\n{}\n[run]\nseed = {}\n",
                      quoted(study.title), mechanism_text(study), poses_text(study), errors_text(study),
                      analysis_text(study), solver_text, study.seed);

@@ -24,6 +24,11 @@ std::optional<std::vector<double>> Model::pose_from_chart(std::size_t /*chart*/,
   return std::nullopt;
 }
 
+std::optional<SolveTrace> Model::trace(std::span<const double> /*pose*/, std::span<const double> /*errors*/,
+                                       const SolverOptions& /*options*/) const {
+  return std::nullopt;
+}
+
 Separation Model::separation(std::span<const double> /*pose*/) const { return {}; }
 
 ErrorBound Model::error_bound(FactorIndex /*factor*/) const { return {}; }

@@ -197,6 +197,23 @@ class Evaluator {
   virtual void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) = 0;
 };
 
+/// A number by which a solver's iteration is judged.
+struct TraceColumn {
+  std::string name;
+  std::string unit;
+};
+
+/// One solve by a mechanism's plain reference solver, iteration by iteration. An evaluator may come to the same
+/// solution in other steps, or start elsewhere.
+struct SolveTrace {
+  std::string solver;  ///< which it is, and where it starts: "Newton, from ..."
+  std::vector<TraceColumn> columns;
+  std::vector<double> rows;  ///< [iterations x columns], row-major; empty where nothing is iterated
+  SolveStatus status = SolveStatus::converged;
+  std::uint32_t iterations = 0;
+  std::vector<double> responses;  ///< [R], SI; the last iterate where not converged
+};
+
 /// A mechanism with its geometry: immutable, shared by all threads.
 class Model {
  public:
@@ -217,6 +234,10 @@ class Model {
   virtual double condition(std::span<const double> pose) const = 0;
 
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
+
+  /// The solve of these errors [F] at a reachable pose, SI; none: the model does not show it.
+  virtual std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
+                                          const SolverOptions& options) const;
 
   /// The pose with these coordinates of a chart (SI), whether the mechanism reaches it or not; empty when there is
   /// none.

@@ -12,6 +12,10 @@ namespace poesy {
 /// What was run, how long it took and how many solves did not converge, a few lines.
 std::string summary_text(const StoredResult& result);
 
+/// How many samples of a result failed, the first one's address, and how to replay it; empty where none is listed.
+/// path: of the result.
+std::string failures_text(const StoredResult& result, std::string_view path);
+
 /// The factors of a sensitivity result, ranked by the spread that each gives one response at the size the study sets
 /// (global index x sigma), with the indices and intervals of the headline's responses, in mm and deg.
 /// ranked_by is a response of the result.

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/run/failed_samples.h"
 #include "engine/run/result.h"
 #include "engine/stats/moments.h"
 #include "engine/study/plan.h"
@@ -14,11 +16,22 @@ namespace poesy {
 struct UnitStats {
   std::vector<Moments> responses;  ///< [R], over the samples that count
   SolveCounts solves;
+  FailedSamples failed;
 
+  /// Precondition: the samples of `other` come after those of this.
   void merge(const UnitStats& other);
 
   void write(ByteWriter& to) const;
-  static UnitStats read(ByteReader& from, std::size_t responses);
+  /// Of samples from `first` on.
+  static UnitStats read(ByteReader& from, std::size_t responses, std::uint64_t first);
+};
+
+/// What the samples of one work unit came to. Refers to the scratch of who solved them, until it solves others.
+struct UnitOutcomes {
+  std::span<const double> values;     ///< [V x B] errors that vary, SI
+  std::span<const double> responses;  ///< [R x B]
+  std::span<const SolveStatus> status;
+  std::span<const std::uint32_t> iterations;
 };
 
 /// Solves work units serially. Owns the scratch of one thread; stats depend on the plan and the unit alone.
@@ -27,6 +40,8 @@ class UnitEvaluator {
   UnitEvaluator(const Plan& plan, const Model& model);
 
   UnitStats operator()(const WorkUnit& unit);
+  /// Any samples of a cell, at most Plan::kUnitSamples of them: what they come to is the same whatever the unit.
+  UnitOutcomes solve(const WorkUnit& unit);
 
  private:
   const Plan* plan_;

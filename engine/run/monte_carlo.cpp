@@ -16,12 +16,13 @@ PoseUnitEvaluator::PoseUnitEvaluator(const Plan& plan, const Model& model)
   kept_.reserve(Plan::kUnitSamples);
 }
 
-void PoseUnitEvaluator::draw(const WorkUnit& unit) {
+std::span<const double> PoseUnitEvaluator::draw(const WorkUnit& unit) {
   for (std::size_t v = 0; v < plan_->factors().size(); ++v) {
     const std::span row = std::span(values_).subspan(v * unit.count, unit.count);
     fill_uniforms({plan_->seed(), Purpose::error_samples, plan_->factors()[v], unit.pose}, unit.first, row);
     plan_->distributions()[v].transform(row);
   }
+  return std::span(values_).first(plan_->factors().size() * unit.count);
 }
 
 std::span<const double> PoseUnitEvaluator::only_counting(std::span<const double> outcomes,
@@ -33,23 +34,29 @@ std::span<const double> PoseUnitEvaluator::only_counting(std::span<const double>
   return kept_;
 }
 
-PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
-  draw(unit);
+UnitOutcomes PoseUnitEvaluator::solve(const WorkUnit& unit) {
+  const std::span values = draw(unit);
+  const std::span outcome = std::span(outcome_).first(responses_ * unit.count);
   const std::span status = std::span(status_).first(unit.count);
   const std::span iterations = std::span(iterations_).first(unit.count);
-  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), plan_->factors(),
-                        std::span(values_).first(plan_->factors().size() * unit.count), unit.count},
-                       {std::span(outcome_).first(responses_ * unit.count), status, iterations, {}});
+  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), plan_->factors(), values, unit.count},
+                       {outcome, status, iterations, {}});
+  return {values, outcome, status, iterations};
+}
+
+PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
+  const UnitOutcomes outcomes = solve(unit);
   PoseUnit found;
   std::size_t counting = 0;
   for (std::size_t b = 0; b < unit.count; ++b) {
-    found.solves.add(status[b], iterations[b]);
-    counting += counts(status[b], plan_->not_converged()) ? 1 : 0;
+    found.solves.add(outcomes.status[b], outcomes.iterations[b]);
+    found.failed.add(SampleIndex(unit.first.value + b), outcomes.status[b]);
+    counting += counts(outcomes.status[b], plan_->not_converged()) ? 1 : 0;
   }
   found.responses.reserve(responses_);
   for (std::size_t r = 0; r < responses_; ++r) {
-    std::span<const double> kept = std::span(outcome_).subspan(r * unit.count, unit.count);
-    if (counting != unit.count) kept = only_counting(kept, status);
+    std::span<const double> kept = outcomes.responses.subspan(r * unit.count, unit.count);
+    if (counting != unit.count) kept = only_counting(kept, outcomes.status);
     found.responses.push_back({Moments::of(kept), BucketedValues(kept)});
   }
   return found;

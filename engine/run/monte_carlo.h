@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/moments.h"
 #include "engine/stats/quantile_sketch.h"
@@ -22,6 +23,7 @@ struct ResponseUnit {
 struct PoseUnit {
   std::vector<ResponseUnit> responses;  ///< [R], over the samples that count
   SolveCounts solves;
+  FailedSamples failed;
 };
 
 /// Solves work units of a Monte Carlo study serially, all factors varying together. Factor f draws from the address
@@ -32,9 +34,11 @@ class PoseUnitEvaluator {
   PoseUnitEvaluator(const Plan& plan, const Model& model);
 
   PoseUnit operator()(const WorkUnit& unit);
+  /// As UnitEvaluator::solve.
+  UnitOutcomes solve(const WorkUnit& unit);
 
  private:
-  void draw(const WorkUnit& unit);
+  std::span<const double> draw(const WorkUnit& unit);
   std::span<const double> only_counting(std::span<const double> outcomes, std::span<const SolveStatus> status);
 
   const Plan* plan_;

@@ -46,17 +46,20 @@ void PoseSamples::add(const PoseUnit& unit) {
     responses[r].sketch.add(unit.responses[r].values);
   }
   solves.merge(unit.solves);
+  failed.merge(unit.failed);
 }
 
 void PoseSamples::write(ByteWriter& to) const {
   for (const ResponseSamples& response : responses) response.write(to);
   solves.write(to);
+  failed.write(to);
 }
 
 PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
   PoseSamples samples;
   for (std::size_t r = 0; r < responses; ++r) samples.responses.push_back(ResponseSamples::read(from));
   samples.solves = SolveCounts::read(from);
+  samples.failed = FailedSamples::read(from, samples.solves.not_converged(), 0, samples.solves.total());
   return samples;
 }
 
@@ -65,6 +68,7 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
       responses_(responses),
       sketches_(responses),
       moments_(plan.poses().size() * responses),
+      failed_(plan.poses().size()),
       kept_(plan.poses().size()) {
   result_.responses = responses;
   result_.poses = plan.poses().size();
@@ -139,6 +143,7 @@ void MonteCarloCollector::finish_pose() {
     sketches_[r].merge(sketch);
   }
   result_.solves[open_.value] = at_pose_.solves;
+  failed_[open_.value] = std::move(at_pose_.failed);
   at_pose_ = {};
 }
 
@@ -174,6 +179,7 @@ MonteCarloResult MonteCarloCollector::result() && {
     result_.overall_count.push_back(overall.count());
     for (const double level : result_.levels) result_.overall_quantiles.push_back(sketches_[r].quantile(level));
   }
+  for (std::size_t m = 0; m < result_.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], result_.failures);
   return std::move(result_);
 }
 
@@ -187,6 +193,7 @@ void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const
     to.reals(std::span(result_.quantiles).subspan(cell * levels, levels));
   }
   result_.solves[pose].write(to);
+  failed_[pose].write(to);
 }
 
 void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std::size_t samples) {
@@ -201,6 +208,7 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
   }
   result_.solves[pose] = SolveCounts::read(from);
   if (result_.solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
+  failed_[pose] = FailedSamples::read(from, result_.solves[pose].not_converged(), 0, result_.solves[pose].total());
 }
 
 Bytes MonteCarloCollector::state() const {

@@ -24,6 +24,7 @@ struct ResponseSamples {
 struct PoseSamples {
   std::vector<ResponseSamples> responses;  ///< [R]
   SolveCounts solves;
+  FailedSamples failed;
 
   void add(const PoseUnit& unit);
   void write(ByteWriter& to) const;
@@ -84,6 +85,7 @@ class MonteCarloCollector {
   std::vector<QuantileSketch> sketches_;  ///< [R] of the finished poses together
   std::vector<Moments> moments_;          ///< [M x R] of the finished poses
   MonteCarloResult result_;               ///< of the finished poses
+  std::vector<FailedSamples> failed_;     ///< [M] of the finished poses
   std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; others from a shorter study
   std::size_t kept_bytes_ = 0;
 };

@@ -10,6 +10,7 @@
 #include "engine/base/bytes.h"
 #include "engine/model/pose_set.h"
 #include "engine/model/status.h"
+#include "engine/run/failed_samples.h"
 
 namespace poesy {
 
@@ -72,6 +73,7 @@ struct SensitivityResult {
   std::vector<double> global_ci_high;          ///< [R x P]
   std::vector<double> background;              ///< [R x M] all varied errors zero; NaN where that was not solved
   std::vector<SolveCounts> solves;             ///< [P x M] of the samples; the background's solves are not among them
+  std::vector<Failure> failures;               ///< the first, in the order of factors, poses, samples
   std::optional<SeparationResult> separation;  ///< where the model separates its errors
   std::optional<FidelityResult> fidelity;      ///< where the study compares two fidelities
 
@@ -103,6 +105,7 @@ struct MonteCarloResult {
   std::vector<std::uint64_t> overall_count;  ///< [R]
   std::vector<double> overall_quantiles;     ///< [R x Q]
   std::vector<SolveCounts> solves;           ///< [M]
+  std::vector<Failure> failures;             ///< the first, in the order of poses and samples
 
   SolveCounts total() const;
 };

@@ -70,7 +70,10 @@ SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats
                  result);
     }
   }
-  for (const UnitStats& cell : cells) result.solves.push_back(cell.solves);
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    result.solves.push_back(cells[cell].solves);
+    append_failures(cell / result.poses, PoseIndex(cell % result.poses), cells[cell].failed, result.failures);
+  }
   return result;
 }
 

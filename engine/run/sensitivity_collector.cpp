@@ -74,14 +74,14 @@ void SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std:
   const std::uint64_t holds = from.number_up_to(kWhole | kPart);
   if (holds != 0 && units_done(cell) > 0) throw BytesError("has a cell twice");
   if ((holds & kWhole) != 0) {
-    whole_[cell] = UnitStats::read(from, responses_);
+    whole_[cell] = UnitStats::read(from, responses_, 0);
     const std::uint64_t solves = whole_[cell].solves.total();
     if (solves == 0 || solves % Plan::kUnitSamples != 0 || solves > samples) {
       throw BytesError("has a cell that is no number of whole units");
     }
   }
   if ((holds & kPart) == 0) return;
-  UnitStats part = UnitStats::read(from, responses_);
+  UnitStats part = UnitStats::read(from, responses_, whole_[cell].solves.total());
   const std::uint64_t solves = part.solves.total();
   if (solves == 0 || solves >= Plan::kUnitSamples || whole_[cell].solves.total() + solves != samples) {
     throw BytesError("has a last unit of the wrong size");

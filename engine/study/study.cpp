@@ -44,11 +44,9 @@ std::string_view name(NotConverged policy) {
     case NotConverged::exclude:
       return "exclude";
     case NotConverged::include:
-      return "include";
-    case NotConverged::fail:
       break;
   }
-  return "fail";
+  return "include";
 }
 
 std::string_view name(SolverOptions::Method method) {

@@ -112,8 +112,7 @@ struct Analysis {
 
 enum class NotConverged {
   exclude,  ///< samples that did not reach their fixed point are left out of every statistic
-  include,  ///< the last iterate counts, as in the published procedure
-  fail      ///< excluded, and the run ends with exit code 5 if there is one
+  include   ///< the last iterate counts, as in the published procedure
 };
 
 /// What a study file says, complete and consistent. See engine/io/study_file.h for reading one.
@@ -125,6 +124,8 @@ struct Study {
   Analysis analysis;
   SolverOptions solver;
   NotConverged not_converged = NotConverged::exclude;
+  /// The share of all samples, 0 to 1, that may fail: above it the program ends with exit code 5, the result kept.
+  double max_not_converged = 1.0;
   std::uint64_t seed = 1;
 
   const ModelDescription& model() const { return mechanism.entry->description; }

@@ -44,7 +44,7 @@ DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOpt
       equations_(chain) {}
 
 Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
-                                     std::span<double> delta_mu) {
+                                     std::span<double> delta_mu, const DeformationObserver& observe) {
   POESY_EXPECTS(frames.size() == chain_->frames());
   POESY_EXPECTS(displacements.size() == chain_->joints());
   POESY_EXPECTS(delta_mu.size() == previous_.size());
@@ -59,6 +59,7 @@ Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> fra
     std::copy(delta_mu.begin(), delta_mu.end(), previous_.begin());
     evaluate(frames, displacements, delta_mu);
     const double change = largest_change(delta_mu);
+    if (observe) observe({equations_.solution(), delta_mu, change});
     if (change < options_.tolerance) return {SolveStatus::converged, done};
     flat = change < smallest ? 0 : flat + 1;
     smallest = std::min(smallest, change);

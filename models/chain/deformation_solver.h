@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,15 @@ struct Deformation {
   SolveStatus status;
   std::uint32_t iterations;
 };
+
+/// What one iteration did.
+struct DeformationIteration {
+  std::span<const double> step;      ///< [passive joints] that the displacements moved (rad, m)
+  std::span<const double> delta_mu;  ///< [6 x pairs] the residual after the step
+  double change;                     ///< c_j of the stopping rule
+};
+/// Called after each iteration.
+using DeformationObserver = std::function<void(const DeformationIteration&)>;
 
 /// Changes of the residual below this may be rounding: 64 eps x max(1, reach in m): rounding errors of positions scale
 /// with the reach.
@@ -39,9 +49,9 @@ class DeformationSolver {
 
   /// frames [chain.frames()]: fixed frames with errors, limb by limb. displacements [chain.joints()] (rad, m): the
   /// start on entry, the last iterate on return; actuated entries stay. delta_mu [6 x pairs]: the residual at the last
-  /// iterate, [omega; v] in the base frame (rad, m), Eq. 41.
+  /// iterate, [omega; v] in the base frame (rad, m), Eq. 41. observe: may be empty.
   Deformation solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
-                    std::span<double> delta_mu);
+                    std::span<double> delta_mu, const DeformationObserver& observe = {});
 
  private:
   void evaluate(std::span<const lie::Transform<double>> frames, std::span<const double> displacements,

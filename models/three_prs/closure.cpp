@@ -89,7 +89,7 @@ PlatformMotion ClosureStart::operator()(const std::array<LimbWithErrors, kLimbs>
 double rounding_level(const Vector3& r) { return 64.0 * kEpsilon * std::max(1.0, r.norm()); }
 
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const SolverOptions& options,
-                    PlatformMotion& motion) {
+                    PlatformMotion& motion, const ClosureObserver& observe) {
   const double rounding = rounding_level(r);
   Equations equations;
   double smallest = std::numeric_limits<double>::infinity();
@@ -102,6 +102,7 @@ Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vecto
     const Step step = -factors.solve(equations.residual);
     motion.E = lie::exp(Vector3(step.head<3>())) * motion.E;
     motion.dr += step.tail<3>();
+    if (observe) observe({equations.residual, step});
     const double change = step.cwiseAbs().maxCoeff();
     if (change < options.tolerance) return {SolveStatus::converged, done};
     if (change <= rounding && change >= smallest) return {SolveStatus::stagnated, done};

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "engine/model/model.h"
@@ -55,6 +56,14 @@ class ClosureStart {
 /// Below which a change (rad, m) may be rounding: 64 eps x max(1, |r|).
 double rounding_level(const lie::Vector3<double>& r);
 
+/// What one iteration did.
+struct ClosureIteration {
+  lie::Screw<double> residual;  ///< of the six equations before the step: of rods (m^2), of joints (m)
+  lie::Screw<double> step;      ///< [delta; dr] (rad, m)
+};
+/// Called after each iteration.
+using ClosureObserver = std::function<void(const ClosureIteration&)>;
+
 /// Finds the motion at which all limbs close, to finite size of all errors: the nine equations
 ///   r + dr + E R R_i (c0 + dc_i) = R_i (a0 + da_i) + R_i E(tA_i) e3 (q_i + dq_i) + R_i E(tA_i) E(tB_i) db_i
 ///                                  + R_i E(tA_i) E(tB_i) Ry(th_i + dphi_i) E(tB'_i) e3 (l + dl_i),  i = 1, 2, 3
@@ -68,9 +77,9 @@ double rounding_level(const lie::Vector3<double>& r);
 ///   iteration_cap  when j is the allowed number of iterations;
 ///   singular       when a pivot of the Jacobian falls to rounding;
 ///   non_finite     when an equation's value is not finite.
-/// `motion` is the start on entry, the last iterate on return.
+/// `motion` is the start on entry, the last iterate on return. observe: may be empty.
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
-                    const SolverOptions& options, PlatformMotion& motion);
+                    const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
 
 /// Swing of a limb's rod from th = 0 in the revolute's frame at this motion, th_i + dphi_i (rad).
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);

@@ -87,16 +87,17 @@ void ClosureSolver::solve(const Configuration& nominal, const SampleBlock& sampl
   });
   if (given_up == 0) return;
   for (std::size_t b = 0; b < samples.count; ++b) {
-    if (outcomes.iterations[b] == 0) solve_alone(nominal, samples, b, start, outcomes);
+    if (outcomes.iterations[b] == 0) close_sample(geometry_, nominal, samples, b, start, options_, outcomes);
   }
 }
 
-void ClosureSolver::solve_alone(const Configuration& nominal, const SampleBlock& samples, std::size_t sample,
-                                const ClosureStart& start, const OutcomeBlock& outcomes) const {
-  const auto limbs = limbs_of_sample(geometry_, nominal, samples, sample);
+void close_sample(const Geometry& geometry, const Configuration& nominal, const SampleBlock& samples,
+                  std::size_t sample, const ClosureStart& start, const SolverOptions& options,
+                  const OutcomeBlock& outcomes, const ClosureObserver& observe) {
+  const auto limbs = limbs_of_sample(geometry, nominal, samples, sample);
   PlatformMotion motion = start(limbs);
-  const Closing closing = close_limbs(limbs, nominal.platform.p, options_, motion);
-  const Vector3 to_tip = tool(geometry_, nominal.platform.R);
+  const Closing closing = close_limbs(limbs, nominal.platform.p, options, motion, observe);
+  const Vector3 to_tip = tool(geometry, nominal.platform.R);
   const std::array<Vector3, 3> vectors{lie::log(motion.E), motion.dr, motion.dr + (motion.E * to_tip - to_tip)};
   for (std::size_t n = 0; n < vectors.size(); ++n) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -21,8 +21,6 @@ class ClosureSolver {
 
  private:
   void prepare(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start);
-  void solve_alone(const Configuration& nominal, const SampleBlock& samples, std::size_t sample,
-                   const ClosureStart& start, const OutcomeBlock& outcomes) const;
 
   Geometry geometry_;
   SolverOptions options_;
@@ -32,6 +30,11 @@ class ClosureSolver {
   ClosureOptions kernel_options_{};
   std::vector<double> scratch_;
 };
+
+/// Solves one sample of a block by close_limbs; no details.
+void close_sample(const Geometry& geometry, const Configuration& nominal, const SampleBlock& samples,
+                  std::size_t sample, const ClosureStart& start, const SolverOptions& options,
+                  const OutcomeBlock& outcomes, const ClosureObserver& observe = {});
 
 /// Limbs of one sample of a block.
 std::array<LimbWithErrors, kLimbs> limbs_of_sample(const Geometry& geometry, const Configuration& nominal,

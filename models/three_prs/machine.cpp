@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "models/three_prs/closure_trace.h"
 #include "models/three_prs/kinematics.h"
 #include "models/three_prs/machine_evaluator.h"
 #include "models/three_prs/model.h"
@@ -108,8 +109,16 @@ class Machine final : public Model {
   double condition(std::span<const double> pose) const override { return head_->condition(head_pose(pose)); }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    if (fidelity_ == kFirstOrder) return first_order_machine_evaluator(geometry_, head_->evaluator(options));
-    return exact_machine_evaluator(geometry_, head_->evaluator(options));
+    return with_head(head_->evaluator(options));
+  }
+
+  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
+                                  const SolverOptions& options) const override {
+    std::optional<SolveTrace> trace = head_->trace(head_pose(pose), errors.first(kFactors), options);
+    const SolveTrace head = *trace;
+    solve_once(*with_head(evaluator_of(head)), pose, errors, *trace);
+    trace->solver += "; the slides carry its outcome";
+    return trace;
   }
 
   std::optional<std::vector<double>> pose_from_chart(std::size_t /*chart*/,
@@ -133,6 +142,11 @@ class Machine final : public Model {
   }
 
  private:
+  std::unique_ptr<Evaluator> with_head(std::unique_ptr<Evaluator> head) const {
+    if (fidelity_ == kFirstOrder) return first_order_machine_evaluator(geometry_, std::move(head));
+    return exact_machine_evaluator(geometry_, std::move(head));
+  }
+
   static std::span<const double> head_pose(std::span<const double> pose) {
     POESY_EXPECTS(pose.size() == kHeadCoordinates + 2);
     return pose.first(kHeadCoordinates);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "engine/base/contract.h"
+#include "models/three_prs/closure_trace.h"
 #include "models/three_prs/error_mapping.h"
 #include "models/three_prs/errors.h"
 #include "models/three_prs/evaluators.h"
@@ -139,6 +140,12 @@ class ThreePrs final : public Model {
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     if (fidelity_ == Fidelity::first_order) return first_order_evaluator(geometry_);
     return exact_evaluator(geometry_, options);
+  }
+
+  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
+                                  const SolverOptions& options) const override {
+    if (fidelity_ == Fidelity::first_order) return first_order_trace(geometry_, pose, errors);
+    return closure_trace(geometry_, pose, errors, options);
   }
 
   ErrorBound error_bound(FactorIndex factor) const override {

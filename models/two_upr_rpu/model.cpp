@@ -7,6 +7,7 @@
 
 #include "engine/base/contract.h"
 #include "models/chain/deformation_model.h"
+#include "models/chain/deformation_trace.h"
 #include "models/chain/passive_condition.h"
 #include "models/two_upr_rpu/errors.h"
 #include "models/two_upr_rpu/kinematics.h"
@@ -91,6 +92,11 @@ class TwoUprRpu final : public Model {
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     return chain::deformation_evaluator(deformation_, options);
+  }
+
+  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
+                                  const SolverOptions& options) const override {
+    return chain::deformation_trace(deformation_, pose, errors, options);
   }
 
   /// The smaller of the platform and the base, which every limb joins; the offsets c and d are no links and may be 0.

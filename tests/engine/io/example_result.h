@@ -73,6 +73,8 @@ class Example {
       result.solves.push_back(
           {.by_status = {90 - cell, 7, 2, 1, cell}, .iterations = 700 + cell, .most_iterations = 50});
     }
+    result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::iteration_cap}},
+                       {1, PoseIndex(3), {SampleIndex(99), SolveStatus::non_finite}}};
     return result;
   }
 
@@ -105,6 +107,7 @@ class Example {
     for (std::size_t m = 0; m < kPoses; ++m) {
       result.solves.push_back({.by_status = {90 - m, 7, 2, 1, m}, .iterations = 700 + m, .most_iterations = 50});
     }
+    result.failures = {{0, PoseIndex(2), {SampleIndex(0), SolveStatus::singular}}};
     return result;
   }
 

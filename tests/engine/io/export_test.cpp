@@ -50,6 +50,7 @@ TEST_F(Export, SensitivityHasThePromisedTables) {
             (std::vector<std::string>{"count_angular_deformation.csv",
                                       "count_linear_deformation.csv",
                                       "factors.csv",
+                                      "failures.csv",
                                       "global.csv",
                                       "iterations_max.csv",
                                       "iterations_mean.csv",
@@ -72,6 +73,13 @@ TEST_F(Export, SensitivityHasThePromisedTables) {
                                       "std_linear_deformation.csv",
                                       "tolerances_angular_deformation.csv",
                                       "tolerances_linear_deformation.csv"}));
+}
+
+TEST_F(Export, FailuresAreAddresses) {
+  export_tables(folder_ / "s.h5", folder_.path());
+  EXPECT_EQ(read_table(folder_ / "failures.csv"),
+            (std::vector<Cells>{
+                {"factor", "pose", "sample", "status"}, {"epsilon_1", "1", "7", "2"}, {"delta_1", "3", "99", "4"}}));
 }
 
 TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {

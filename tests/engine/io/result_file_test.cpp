@@ -72,6 +72,7 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   expect_same(found.global_ci_low, expected.global_ci_low, "global_ci_low");
   expect_same(found.global_ci_high, expected.global_ci_high, "global_ci_high");
   expect_same(found.background, expected.background, "background");
+  EXPECT_EQ(found.failures, expected.failures);
   ASSERT_EQ(found.solves.size(), expected.solves.size());
   for (std::size_t cell = 0; cell < found.solves.size(); ++cell) {
     EXPECT_EQ(found.solves[cell].by_status, expected.solves[cell].by_status) << cell;

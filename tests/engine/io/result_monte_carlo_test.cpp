@@ -47,6 +47,7 @@ TEST_F(MonteCarloFile, IsReadBackAsItWas) {
         &MonteCarloResult::overall_max, &MonteCarloResult::overall_quantiles}) {
     expect_same(found.*member, written.*member);
   }
+  EXPECT_EQ(found.failures, written.failures);
   EXPECT_EQ(found.count, written.count);
   EXPECT_EQ(found.overall_count, written.overall_count);
   ASSERT_EQ(found.solves.size(), kPoses);
@@ -77,7 +78,7 @@ std::string first_lines(const std::string& text, std::size_t count) {
 
 TEST_F(MonteCarloFile, IsExportedPoseByPose) {
   const std::string tables = folder_.file("tables");
-  EXPECT_EQ(export_tables(path_, tables).size(), 6u);
+  EXPECT_EQ(export_tables(path_, tables).size(), 7u);
   EXPECT_EQ(first_lines(test::read_bytes(tables + "/monte_carlo_linear_deformation.csv"), 2),
             "pose,mean [m],mean_ci_low [m],mean_ci_high [m],std [m],min [m],max [m],count,q_0.05 [m],q_0.995 [m]\n"
             "0,0.625,1.625,2.625,3.625,4.625,5.625,93,7.125,7.25\n");

@@ -83,6 +83,7 @@ TEST(ReadStudy, FillsInDefaults) {
   EXPECT_EQ(study.solver.tolerance, 1e-15);
   EXPECT_EQ(study.solver.max_iterations, 50);
   EXPECT_EQ(study.not_converged, NotConverged::exclude);
+  EXPECT_EQ(study.max_not_converged, 1.0);
   EXPECT_EQ(study.seed, 1u);
 }
 
@@ -438,6 +439,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"BackgroundKey", "linear = \"1 mm\", angular", "^lineal = \"1 mm\", angular", {"'linear'?"}}),
     kName);
 
+TEST(StudyFile, FailIsALimitOfZero) {
+  const Study none = study_of(changed("not_converged = \"include\"", "not_converged = \"fail\""));
+  EXPECT_EQ(none.not_converged, NotConverged::exclude);
+  EXPECT_EQ(none.max_not_converged, 0.0);
+  const Study some = study_of(changed("not_converged = \"include\"", "max_not_converged = 0.001"));
+  EXPECT_EQ(some.not_converged, NotConverged::exclude);
+  EXPECT_EQ(some.max_not_converged, 0.001);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     SolverAndRun, BadStudies,
     testing::Values(
@@ -450,6 +460,22 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"NoIterations", "max_iterations = 30", "max_iterations = ^0", {"at least 1"}},
         BadStudy{"IterationsHuge", "max_iterations = 30", "max_iterations = ^3000000000", {"at most 2147483647"}},
         BadStudy{"UnknownPolicy", "\"include\"", "^\"ignore\"", {"solver.not_converged is 'ignore'", "exclude"}},
+        BadStudy{"LimitAboveOne",
+                 "not_converged = \"include\"",
+                 "max_not_converged = ^1.5",
+                 {"solver.max_not_converged is 1.5", "from 0 to 1"}},
+        BadStudy{"LimitNegative",
+                 "not_converged = \"include\"",
+                 "max_not_converged = ^-0.1",
+                 {"solver.max_not_converged is -0.1"}},
+        BadStudy{"LimitText",
+                 "not_converged = \"include\"",
+                 "max_not_converged = ^\"0.1 %\"",
+                 {"solver.max_not_converged is the text '0.1 %'"}},
+        BadStudy{"LimitBesideFail",
+                 "not_converged = \"include\"",
+                 "not_converged = \"fail\"\n^max_not_converged = 0.1",
+                 {"max_not_converged", "not_converged = \"fail\""}},
         BadStudy{"UnknownSolverKey", "tolerance =", "^tolerence =", {"did you mean 'tolerance'?"}},
         BadStudy{"SeedNegative", "seed = 5", "seed = ^-1", {"run.seed is -1", "at least 0"}},
         BadStudy{"SeedText", "seed = 5", "seed = ^\"5\"", {"run.seed is the text '5'"}},

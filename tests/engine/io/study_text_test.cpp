@@ -71,6 +71,7 @@ void expect_same(const Study& a, const Study& b) {
   EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
   EXPECT_EQ(a.solver.max_iterations, b.solver.max_iterations);
   EXPECT_EQ(a.not_converged, b.not_converged);
+  EXPECT_EQ(a.max_not_converged, b.max_not_converged);
   EXPECT_EQ(a.seed, b.seed);
 }
 
@@ -133,6 +134,7 @@ method = "newton"
 tolerance = 1e-15
 max_iterations = 50
 not_converged = "exclude"
+max_not_converged = 1
 
 [run]
 seed = 1
@@ -222,6 +224,7 @@ TEST(Template, NamesEveryKey) {
                           "tolerance = ",
                           "max_iterations = ",
                           "not_converged = ",
+                          "max_not_converged = ",
                           "seed = ",
                           "normal",
                           "truncated-normal",
@@ -229,7 +232,6 @@ TEST(Template, NamesEveryKey) {
                           "triangular",
                           "exclude",
                           "include",
-                          "fail",
                           "interior",
                           "boundary",
                           "grid",

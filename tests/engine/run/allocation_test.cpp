@@ -118,6 +118,7 @@ TEST(Allocation, NoneInAWarmHybridMachine) {
   }
 }
 
+/// But for the list of failed samples, in the units that have any.
 template <class UnitOfWork>
 std::size_t allocations_per_unit(Analysis::Kind kind, std::size_t samples) {
   Study study = bench::published_study(4, samples);
@@ -125,11 +126,15 @@ std::size_t allocations_per_unit(Analysis::Kind kind, std::size_t samples) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const Plan plan(study, select_poses(study.poses, *model).poses);
   UnitOfWork evaluate(plan, *model);
+  std::size_t with_failures = 0;
   const auto evaluate_all = [&] {
-    for (std::size_t u = 0; u < plan.units(); ++u) evaluate(plan.unit(u));
+    with_failures = 0;
+    for (std::size_t u = 0; u < plan.units(); ++u) {
+      if (!evaluate(plan.unit(u)).failed.first().empty()) ++with_failures;
+    }
   };
   evaluate_all();
-  const std::size_t warm = allocations_of(evaluate_all);
+  const std::size_t warm = allocations_of(evaluate_all) - with_failures;
   EXPECT_EQ(warm % plan.units(), 0u) << "every unit allocates alike";
   return warm / plan.units();
 }

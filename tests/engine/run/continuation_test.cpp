@@ -8,7 +8,7 @@
 #include "engine/run/monte_carlo_collector.h"
 #include "engine/run/runner.h"
 #include "engine/run/sensitivity_collector.h"
-#include "tests/support/fake_model.h"
+#include "tests/support/failing_model.h"
 
 namespace poesy {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 using Kind = Analysis::Kind;
 
 const Catalog& catalog() {
-  static const Catalog fake = test::fake_catalog();
-  return fake;
+  static const Catalog failing = test::failing_catalog();
+  return failing;
 }
 
 Study study_of(Kind kind, std::size_t samples) {
@@ -54,6 +54,13 @@ void append(Bits& bits, const SolveCounts& solves) {
   bits.insert(bits.end(), {solves.iterations, solves.most_iterations});
 }
 
+void append(Bits& bits, const std::vector<Failure>& failures) {
+  for (const Failure& failure : failures) {
+    bits.insert(bits.end(), {failure.slot, failure.pose.value, failure.failed.sample.value,
+                             static_cast<std::uint64_t>(failure.failed.status)});
+  }
+}
+
 Bits bits_of(const SensitivityResult& result) {
   Bits bits;
   for (const auto* values : {&result.local, &result.local_ci_low, &result.global, &result.global_ci_high, &result.mean,
@@ -61,6 +68,7 @@ Bits bits_of(const SensitivityResult& result) {
     append(bits, *values);
   }
   for (const SolveCounts& solves : result.solves) append(bits, solves);
+  append(bits, result.failures);
   return bits;
 }
 
@@ -74,6 +82,7 @@ Bits bits_of(const MonteCarloResult& result) {
   bits.insert(bits.end(), result.count.begin(), result.count.end());
   bits.insert(bits.end(), result.overall_count.begin(), result.overall_count.end());
   for (const SolveCounts& solves : result.solves) append(bits, solves);
+  append(bits, result.failures);
   return bits;
 }
 

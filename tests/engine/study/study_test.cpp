@@ -49,7 +49,6 @@ TEST(Names, AreThoseOfTheStudyFile) {
   EXPECT_EQ(name(Analysis::Kind::coupling), "coupling");
   EXPECT_EQ(name(NotConverged::exclude), "exclude");
   EXPECT_EQ(name(NotConverged::include), "include");
-  EXPECT_EQ(name(NotConverged::fail), "fail");
   EXPECT_EQ(name(SolverOptions::Method::newton), "newton");
   EXPECT_EQ(name(SolverOptions::Method::gauss_newton), "gauss-newton");
 }

@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "engine/app/command.h"
+#include "engine/app/exit_code.h"
+#include "engine/base/error.h"
+#include "engine/io/stored_study.h"
+#include "engine/io/version.h"
+#include "engine/run/cases.h"
+#include "engine/run/replay.h"
+#include "models/registry.h"
+
+namespace poesy::app {
+namespace {
+
+struct Options {
+  std::string result;
+  std::string factor;
+  std::size_t pose = 0;
+  std::optional<std::size_t> sample;
+};
+
+[[noreturn]] void refuse(const Options& options, const std::string& problem, const std::string& remedy) {
+  throw InputError({.file = options.result}, problem, remedy);
+}
+
+/// Throws unless `number` is one of 0 .. count - 1.
+void check_number(const Options& options, const std::string& what, std::size_t number, std::size_t count) {
+  if (number < count) return;
+  refuse(options, fmt::format("{} {}: the result has {} {}s", what, number, count, what),
+         count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
+}
+
+/// The position of the command line's name among these.
+std::size_t position_of(const Options& options, const std::string& what, const std::vector<std::string>& known) {
+  const auto found = std::ranges::find(known, options.factor);
+  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+  refuse(options, fmt::format("no {} '{}' in this result", what, options.factor),
+         fmt::format("it has {}", fmt::join(known, ", ")));
+}
+
+void refuse_sample(const Options& options, const std::string& why) {
+  if (options.sample) refuse(options, why, fmt::format("write 'poesy replay {} NAME POSE'", options.result));
+}
+
+std::size_t required_sample(const Options& options, std::size_t count) {
+  if (!options.sample) refuse(options, "no sample given", fmt::format("give a number from 0 to {}", count - 1));
+  check_number(options, "sample", *options.sample, count);
+  return *options.sample;
+}
+
+/// One of the samples that the study drew.
+ReplayedSample replay_drawn(const Options& options, const StoredResult& result, const StoredStudy& stored,
+                            const Model& model) {
+  const Analysis& analysis = stored.study.analysis;
+  if (name(analysis.kind) != result.kind || analysis.factors.size() != result.factors.size()) {
+    throw FileError(options.result, "keeps a study that does not fit it", "take another copy, or run the study again");
+  }
+  std::vector<std::string> names;
+  const bool together = analysis.kind == Analysis::Kind::monte_carlo;
+  for (std::size_t p = 0; p < (together ? 1 : result.factors.size()); ++p) names.push_back(varied_name(result, p));
+  const std::size_t slot = position_of(options, "varied error", names);
+  const SampleIndex sample(required_sample(options, analysis.samples));
+  return replay_sample(stored.study, model, stored.poses.poses, slot, PoseIndex(options.pose), sample);
+}
+
+/// A named case, or one of the errors that 'poesy evaluate' was given.
+ReplayedSample replay_given(const Options& options, const StoredResult& result, const StoredStudy& stored,
+                            const Model& model) {
+  std::size_t row = 0;
+  if (!result.cases.empty()) {
+    refuse_sample(options, "a case has no samples");
+    row = position_of(options, "case", result.cases);
+  } else {
+    position_of(options, "varied error", {std::string(kAllFactors)});
+    const std::size_t sample = required_sample(options, result.evaluation.samples);
+    row = result.pairing == Pairing::row_by_row ? options.pose : sample;
+  }
+  ErrorTable errors{.factors = {}, .values = {}, .rows = 1};
+  for (const NamedUnit& factor : result.factors) {
+    const auto known = model.description().find_factor(factor.name);
+    if (!known) throw FileError(options.result, "names an unknown error", "use the poesy that wrote it");
+    errors.factors.push_back(*known);
+  }
+  const auto begin = result.errors.begin() + static_cast<std::ptrdiff_t>(row * errors.factors.size());
+  errors.values.assign(begin, begin + static_cast<std::ptrdiff_t>(errors.factors.size()));
+  const auto pose = result.poses[PoseIndex(options.pose)];
+  return replay_row(stored.study.solver, model, PoseSet(pose.size(), {pose.begin(), pose.end()}), errors);
+}
+
+ReplayedSample replay_of(const Options& options, const StoredResult& result, const StoredStudy& stored,
+                         const Model& model) {
+  if (result.kind == "sensitivity" || result.kind == "monte-carlo") {
+    return replay_drawn(options, result, stored, model);
+  }
+  if (result.kind == "evaluate") return replay_given(options, result, stored, model);
+  refuse(options, "a result of kind " + result.kind + " keeps no addresses of single solves",
+         "replay one of a sensitivity, Monte Carlo or evaluate result");
+}
+
+void warn_of_other_program(const Options& options, const StoredResult& result) {
+  if (result.poesy_version == poesy_version() && result.git_commit == git_commit()) return;
+  std::fputs(fmt::format("poesy: warning: {} was written by poesy {} ({}), and this is {} ({}): draws and solves may "
+                         "differ\n",
+                         options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit())
+                 .c_str(),
+             stderr);
+}
+
+/// Where the result lists this sample as a failure of another kind, or solved where it was not.
+void warn_of_difference(const Options& options, const StoredResult& result, const ReplayedSample& replayed) {
+  for (const Failure& failure : listed_failures(result)) {
+    if (varied_name(result, failure.slot) != options.factor || failure.pose.value != options.pose ||
+        failure.failed.sample.value != options.sample || failure.failed.status == replayed.status) {
+      continue;
+    }
+    std::fputs(fmt::format("poesy: warning: the result lists this sample as {}\n",
+                           kStatusNames[static_cast<std::size_t>(failure.failed.status)])
+                   .c_str(),
+               stderr);
+  }
+}
+
+/// "-0.25 m = -250 mm"
+std::string value_text(double si, Dimension dimension) {
+  const Unit& unit = display_unit(dimension);
+  std::string text = shortest(si);
+  if (dimension == Dimension::number) return text;
+  return text + fmt::format(" {} = {:.6g} {}", si_unit(dimension), si / unit.si, unit.name);
+}
+
+std::string line(std::string_view name, double si, Dimension dimension) {
+  return fmt::format("  {:<22} {}\n", name, value_text(si, dimension));
+}
+
+std::string end_text(SolveStatus status, std::uint32_t iterations) {
+  return fmt::format("{} after {} iterations", kStatusNames[static_cast<std::size_t>(status)], iterations);
+}
+
+std::string sample_text(const Options& options, const StoredResult& result, const ModelDescription& model,
+                        const ReplayedSample& sample) {
+  std::string text = fmt::format("pose {}\n", options.pose);
+  const auto pose = result.poses[PoseIndex(options.pose)];
+  for (std::size_t c = 0; c < pose.size(); ++c) {
+    text += line(model.pose_coordinates[c].name, pose[c], model.pose_coordinates[c].dimension);
+  }
+  text += "errors that vary\n";
+  for (std::size_t v = 0; v < sample.varied.size(); ++v) {
+    const Factor& factor = model.factors[sample.varied[v].value];
+    text += line(factor.name, sample.values[v], factor.dimension);
+  }
+  return text;
+}
+
+std::string outcome_text(const ModelDescription& model, const ReplayedSample& sample, std::string_view method) {
+  std::string text =
+      fmt::format("solved as in the run, method {}: {}\n", method, end_text(sample.status, sample.iterations));
+  for (std::size_t r = 0; r < model.responses.size(); ++r) {
+    text += line(model.responses[r].name, sample.responses[r], model.responses[r].dimension);
+  }
+  return text;
+}
+
+std::string iterations_text(const SolveTrace& trace) {
+  if (trace.columns.empty()) return {};
+  std::string text = fmt::format("{:>9}", "iteration");
+  for (const TraceColumn& column : trace.columns) {
+    text += fmt::format(" {:>22}", column.unit == "1" ? column.name : column.name + " [" + column.unit + "]");
+  }
+  for (std::size_t k = 0; k < trace.rows.size(); ++k) {
+    if (k % trace.columns.size() == 0) text += fmt::format("\n{:>9}", k / trace.columns.size() + 1);
+    text += fmt::format(" {:>22.6g}", trace.rows[k]);
+  }
+  return text + "\n";
+}
+
+/// Whether both solvers say the same. Where one was not solved, responses are last iterates of different ways.
+std::string agreement_text(const ModelDescription& model, const ReplayedSample& sample, const SolveTrace& trace) {
+  std::string text = fmt::format("status: {}\n", sample.status == trace.status ? "the same" : "not the same");
+  for (std::size_t r = 0; r < model.responses.size(); ++r) {
+    const Response& response = model.responses[r];
+    text += fmt::format("  {:<22} {}; difference {:.3g}\n", response.name,
+                        value_text(trace.responses[r], response.dimension),
+                        std::abs(trace.responses[r] - sample.responses[r]));
+  }
+  return text;
+}
+
+std::string reference_text(const ModelDescription& model, const ReplayedSample& sample,
+                           const std::optional<SolveTrace>& trace) {
+  if (!trace) return "this mechanism shows no iterations\n";
+  return fmt::format(
+      "\nby the reference solver, whose iterations these are and not those above ({}): {}\n{}compared with the run, {}",
+      trace->solver, end_text(trace->status, trace->iterations), iterations_text(*trace),
+      agreement_text(model, sample, *trace));
+}
+
+int replay(const Options& options) {
+  const StoredResult result = read_result(options.result);
+  warn_of_other_program(options, result);
+  check_number(options, "pose", options.pose, result.poses.size());
+  const StoredStudy stored = stored_study(result, options.result, registry());
+  const std::unique_ptr<Model> model = build_model(stored.study.mechanism);
+  const auto pose = stored.poses.poses[PoseIndex(options.pose)];
+  if (const auto reason = model->unreachable(pose)) {
+    throw FileError(options.result, "has a pose that the mechanism does not reach: " + *reason,
+                    "use the poesy that wrote it");
+  }
+  const ReplayedSample sample = replay_of(options, result, stored, *model);
+  warn_of_difference(options, result, sample);
+  const ModelDescription& description = model->description();
+  std::fputs((sample_text(options, result, description, sample) +
+              outcome_text(description, sample, name(stored.study.solver.method)) +
+              reference_text(description, sample, model->trace(pose, sample.errors, stored.study.solver)))
+                 .c_str(),
+             stdout);
+  return kDone;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("replay", "solve one sample of a result again, iteration by iteration");
+  command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
+  command->add_option("factor", options->factor, "error that varied; all: a Monte Carlo result; or the name of a case")
+      ->required()
+      ->type_name("FACTOR");
+  command->add_option("pose", options->pose, "number of the pose, from 0")->required()->type_name("POSE");
+  command->add_option("sample", options->sample, "number of the sample, from 0; not of a case")->type_name("SAMPLE");
+  command->footer(
+      "'poesy show' names a sample that failed, failures.csv of 'poesy export' and /solver/failed_* the first ones.\n"
+      "Example: poesy replay result.h5 epsilon_1_4_z 12 345");
+  command->callback([options, &action] { action = [options] { return replay(*options); }; });
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,45 @@
+#include "engine/run/replay.h"
+
+#include "engine/base/contract.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/monte_carlo.h"
+
+namespace poesy {
+namespace {
+
+ReplayedSample sample_of(const UnitOutcomes& outcomes, std::vector<FactorIndex> varied, std::vector<double> errors) {
+  ReplayedSample sample;
+  sample.varied = std::move(varied);
+  sample.values.assign(outcomes.values.begin(), outcomes.values.end());
+  sample.errors = std::move(errors);
+  for (std::size_t v = 0; v < sample.varied.size(); ++v) sample.errors[sample.varied[v].value] = sample.values[v];
+  sample.responses.assign(outcomes.responses.begin(), outcomes.responses.end());
+  sample.status = outcomes.status[0];
+  sample.iterations = outcomes.iterations[0];
+  return sample;
+}
+
+}  // namespace
+
+ReplayedSample replay_sample(const Study& study, const Model& model, const PoseSet& poses, std::size_t slot,
+                             PoseIndex pose, SampleIndex sample) {
+  const Plan plan(study, poses);
+  POESY_EXPECTS(slot < plan.slots() && pose.value < poses.size() && sample.value < plan.samples());
+  const WorkUnit unit{slot, pose, sample, 1};
+  std::vector<double> errors(plan.background().begin(), plan.background().end());
+  if (study.analysis.kind == Analysis::Kind::monte_carlo) {
+    PoseUnitEvaluator evaluator(plan, model);
+    return sample_of(evaluator.solve(unit), {plan.factors().begin(), plan.factors().end()}, std::move(errors));
+  }
+  UnitEvaluator evaluator(plan, model);
+  return sample_of(evaluator.solve(unit), {plan.factors()[slot]}, std::move(errors));
+}
+
+ReplayedSample replay_row(const SolverOptions& solver, const Model& model, const PoseSet& pose, const ErrorTable& row) {
+  POESY_EXPECTS(pose.size() == 1 && row.rows == 1);
+  const auto found = run_evaluation(model, solver, pose, row, Pairing::row_by_row, {1, {}, {}}, Outcomes::responses);
+  return sample_of({row.values, found->response, found->status, found->iterations}, row.factors,
+                   std::vector<double>(model.description().factors.size(), 0.0));
+}
+
+}  // namespace poesy

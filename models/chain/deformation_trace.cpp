@@ -1,0 +1,99 @@
+#include "models/chain/deformation_trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/contract.h"
+#include "models/chain/deformation_solver.h"
+#include "models/chain/passive_condition.h"
+
+namespace poesy::chain {
+namespace {
+
+double largest(std::span<const double> values) {
+  double most = 0.0;
+  for (const double value : values) most = std::isnan(value) ? value : std::max(most, std::abs(value));
+  return most;
+}
+
+/// All fixed frames with these errors, limb by limb.
+std::vector<lie::Transform<double>> frames_with(const DeformationModel& model, std::span<const double> errors) {
+  std::vector<lie::Transform<double>> frames;
+  for (std::size_t i = 0; i < model.chain.limbs.size(); ++i) {
+    const Limb& limb = model.chain.limbs[i];
+    std::vector<FrameError<double>> of_limb(limb.frames(), FrameError<double>::Zero());
+    for (std::size_t f = 0; f < model.slots.size(); ++f) {
+      const ErrorSlot& slot = model.slots[f];
+      if (slot.limb == i) of_limb[slot.frame][static_cast<Eigen::Index>(slot.component)] = errors[f];
+    }
+    for (std::size_t j = 0; j < limb.frames(); ++j) frames.push_back(frame_with_error(limb, j, of_limb[j]));
+  }
+  return frames;
+}
+
+std::vector<JointType> passive_types(const ParallelChain& chain) {
+  std::vector<JointType> types;
+  for (const Limb& limb : chain.limbs) {
+    for (const Joint& joint : limb.joints) {
+      if (!joint.actuated) types.push_back(joint.type);
+    }
+  }
+  return types;
+}
+
+/// Largest step of a passive joint of this type.
+double largest_step(const std::vector<JointType>& types, JointType type, std::span<const double> step) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < step.size(); ++k) {
+    if (types[k] == type) most = std::max(most, std::abs(step[k]));
+  }
+  return most;
+}
+
+/// NaN where an iterate is no number.
+double condition(const ParallelChain& chain, std::span<const double> displacements) {
+  const bool is_finite = std::ranges::all_of(displacements, [](double value) { return std::isfinite(value); });
+  return is_finite ? passive_condition(chain, displacements) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Eqs. 49, 50 and 45.
+std::vector<double> responses_of(std::span<const double> delta_mu) {
+  const std::size_t pairs = delta_mu.size() / 6;
+  std::vector<double> responses(3, 0.0);
+  for (std::size_t n = 0; n < pairs; ++n) {
+    const Eigen::Map<const lie::Screw<double>> screw(delta_mu.data() + 6 * n);
+    responses[0] += screw.head<3>().norm() / static_cast<double>(pairs);
+    responses[1] += screw.tail<3>().norm() / static_cast<double>(pairs);
+    responses[2] = std::max(responses[2], screw.norm());
+  }
+  return responses;
+}
+
+}  // namespace
+
+SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
+                             std::span<const double> errors, const SolverOptions& options) {
+  POESY_EXPECTS(errors.size() == model.slots.size());
+  std::vector<double> displacements = model.joint_displacements(pose);
+  std::vector<double> delta_mu(6 * model.chain.pairs.size());
+  const std::vector<JointType> types = passive_types(model.chain);
+  SolveTrace trace;
+  trace.solver = "Gauss-Newton as published, in plain double precision, from nominal displacements";
+  trace.columns = {
+      {"change", "rad, m"}, {"residual", "rad, m"}, {"step_angle", "rad"}, {"step_length", "m"}, {"condition", "1"}};
+  const auto observe = [&](const DeformationIteration& iteration) {
+    trace.rows.insert(
+        trace.rows.end(),
+        {iteration.change, largest(iteration.delta_mu), largest_step(types, JointType::revolute, iteration.step),
+         largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements)});
+  };
+  DeformationSolver solver(model.chain, options);
+  const Deformation end = solver.solve(frames_with(model, errors), displacements, delta_mu, observe);
+  trace.status = end.status;
+  trace.iterations = end.iterations;
+  trace.responses = responses_of(delta_mu);
+  return trace;
+}
+
+}  // namespace poesy::chain

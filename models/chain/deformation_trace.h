@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+
+#include "models/chain/deformation_model.h"
+
+namespace poesy::chain {
+
+/// A solve by DeformationSolver, Gauss-Newton as published, from nominal displacements, whatever the options' method.
+/// pose: reachable; errors: [F], SI.
+SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
+                             std::span<const double> errors, const SolverOptions& options);
+
+}  // namespace poesy::chain

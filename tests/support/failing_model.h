@@ -1,0 +1,43 @@
+#pragma once
+
+#include "tests/support/fake_model.h"
+
+namespace poesy::test {
+
+/// The fake mechanism, whose solver gives up where the first response is above kLimit, and finds no number above twice
+/// that. With errors of standard deviation 1e-3 the limit lies at three of delta_1 and two of epsilon_1, about.
+class FailingModel final : public FakeModel {
+ public:
+  static constexpr double kLimit = 4.5e-4;
+
+  using FakeModel::FakeModel;
+
+  static SolveStatus status(double first_response) {
+    if (first_response > 2.0 * kLimit) return SolveStatus::non_finite;
+    return first_response > kLimit ? SolveStatus::iteration_cap : SolveStatus::converged;
+  }
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& /*options*/) const override {
+    return std::make_unique<Failing>();
+  }
+
+ private:
+  class Failing final : public FakeEvaluator {
+   public:
+    Failing() : FakeEvaluator(kArm) {}
+
+    void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+      FakeEvaluator::evaluate(samples, outcomes);
+      for (std::size_t b = 0; b < samples.count; ++b) outcomes.status[b] = status(outcomes.responses[b]);
+    }
+  };
+};
+
+/// A catalog of it alone.
+inline Catalog failing_catalog() {
+  return {{FakeModel::describe(), [](std::span<const double> /*geometry*/, std::size_t /*fidelity*/) {
+             return std::make_unique<FailingModel>();
+           }}};
+}
+
+}  // namespace poesy::test
