@@ -76,6 +76,7 @@ void export_monte_carlo(TableFolder& folder, const StoredResult& result) {
   for (std::size_t r = 0; r < result.responses.size(); ++r) write_response(folder, result, r);
   write_overall(folder, result);
   write_not_converged(folder, result);
+  export_convergence(folder, result);
 }
 
 }  // namespace poesy
