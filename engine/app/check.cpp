@@ -12,6 +12,7 @@
 #include "engine/run/coupling_rows.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/monte_carlo.h"
+#include "engine/run/rounds.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"
 
@@ -23,7 +24,25 @@ struct Outlook {
   std::string solves;     ///< their number, and what it is the product of
   std::size_t bytes;      ///< of the result
   double thread_seconds;  ///< that one thread would take
+  double least = 1.0;     ///< share of the solves that are made in any case
 };
+
+/// What adaptive samples leave open: "1000 to 100000".
+std::string samples_text(const Plan& plan) {
+  const std::size_t least = least_samples(plan);
+  return least == plan.samples() ? std::to_string(least) : fmt::format("{} to {}", least, plan.samples());
+}
+
+std::string solves_text(const Plan& plan, std::size_t fidelities) {
+  const std::uint64_t most = fidelities * plan.solves();
+  const std::size_t least = least_samples(plan);
+  if (least == plan.samples()) return fmt::format("{} solves", most);
+  return fmt::format("at least {} and at most {} solves", most / plan.samples() * least, most);
+}
+
+double least_share(const Plan& plan) {
+  return static_cast<double>(least_samples(plan)) / static_cast<double>(plan.samples());
+}
 
 /// Runs pieces of a study for about a quarter of a second. run_piece(at) runs one that stands at this share of the
 /// study, 0 <= at < 1, and gives the share of the whole that it was.
@@ -57,10 +76,10 @@ Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSe
   const std::size_t per_response = sizeof(Moments) + 6 * sizeof(double);
   const std::size_t fidelities = study.mechanism.compared ? 2 : 1;
   Outlook expected{
-      fmt::format("{} errors x {} poses x {} samples{} = {} solves", plan.factors().size(), poses.size(),
-                  plan.samples(), fidelities == 2 ? " x 2 fidelities" : "", fidelities * plan.solves()),
+      fmt::format("{} errors x {} poses x {} samples{} = {}", plan.factors().size(), poses.size(), samples_text(plan),
+                  fidelities == 2 ? " x 2 fidelities" : "", solves_text(plan, fidelities)),
       fidelities * cells * (study.model().responses.size() * per_response + sizeof(UnitStats) + sizeof(SolveCounts)),
-      sampling_seconds(plan, UnitEvaluator(plan, model))};
+      sampling_seconds(plan, UnitEvaluator(plan, model)), least_share(plan)};
   if (fidelities == 1) return expected;
   const std::unique_ptr<Model> other = build_model(at_compared_fidelity(study.mechanism));
   expected.thread_seconds += sampling_seconds(plan, UnitEvaluator(plan, *other));
@@ -70,10 +89,10 @@ Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSe
 Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const Plan plan(study, poses);
   const std::size_t per_response = (7 + study.analysis.quantiles.size()) * sizeof(double);
-  return {fmt::format("{} poses x {} samples of {} errors together = {} solves", poses.size(), plan.samples(),
-                      plan.factors().size(), plan.solves()),
+  return {fmt::format("{} poses x {} samples of {} errors together = {}", poses.size(), samples_text(plan),
+                      plan.factors().size(), solves_text(plan, 1)),
           poses.size() * (study.model().responses.size() * per_response + sizeof(SolveCounts)),
-          sampling_seconds(plan, PoseUnitEvaluator(plan, model))};
+          sampling_seconds(plan, PoseUnitEvaluator(plan, model)), least_share(plan)};
 }
 
 /// Bytes that an evaluation of this many rows at each pose keeps.
@@ -166,6 +185,12 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
   return text + "\n";
 }
 
+/// seconds: of all solves that there may be.
+std::string time_text(const Outlook& expected, double seconds) {
+  if (expected.least == 1.0) return fmt::format("about {:.2g} s", seconds);
+  return fmt::format("at least about {:.2g} s, at most about {:.2g} s", expected.least * seconds, seconds);
+}
+
 int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
@@ -175,9 +200,9 @@ int check(const std::string& path) {
   const Outlook expected = outlook(study, *model, poses.poses);
   std::fputs(fmt::format("\n# valid: {}\n"
                          "# memory for the result: about {:.3g} MB\n"
-                         "# time: about {:.2g} s on {} threads of this machine\n",
+                         "# time: {} on {} threads of this machine\n",
                          expected.solves, static_cast<double>(expected.bytes) / 1e6,
-                         expected.thread_seconds / static_cast<double>(threads), threads)
+                         time_text(expected, expected.thread_seconds / static_cast<double>(threads)), threads)
                  .c_str(),
              stdout);
   std::fputs(trajectory_line(poses, study.model()).c_str(), stdout);

@@ -77,6 +77,7 @@ void export_monte_carlo(TableFolder& folder, const StoredResult& result) {
   write_overall(folder, result);
   write_not_converged(folder, result);
   export_failures(folder, result);
+  export_convergence(folder, result);
 }
 
 }  // namespace poesy

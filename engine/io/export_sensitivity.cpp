@@ -95,6 +95,7 @@ void export_sensitivity(TableFolder& folder, const StoredResult& result) {
   export_tolerances(folder, result);
   export_separation(folder, result);
   export_fidelity(folder, result);
+  export_convergence(folder, result);
 }
 
 }  // namespace poesy

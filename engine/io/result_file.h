@@ -15,9 +15,9 @@
 namespace poesy {
 
 /// Writes the result of a sensitivity study: /sensitivity, /tolerances and /solver, and with them /separation where the
-/// model separates its errors and /fidelity where the study compares two fidelities. The file appears whole or not at
-/// all under its name: written beside it under a temporary name, synced, renamed. Throws FileError and leaves an
-/// existing file as it was.
+/// model separates its errors, /fidelity where the study compares two fidelities and /convergence where its samples are
+/// adaptive. The file appears whole or not at all under its name: written beside it under a temporary name, synced,
+/// renamed. Throws FileError and leaves an existing file as it was.
 void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts);
 
@@ -146,6 +146,11 @@ Verification verify_result(const std::string& path);
 ///                               discrepancy, nonlinearity, SI; where the study compares two, as the next:
 ///     fidelity_not_converged.csv   factor | one column a pose, samples that the second fidelity did not solve
 ///
+///     convergence.csv           factor | samples, and for each response 1 or 0 for reached and the relative
+///     half-width;
+///                               where the study has adaptive samples, as the next:
+///     convergence_RESPONSE.csv  factor | samples at a milestone, index and half-width there, SI
+///
 /// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
 /// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and
 ///
@@ -166,6 +171,7 @@ Verification verify_result(const std::string& path);
 ///     monte_carlo_RESPONSE.csv   pose | mean, mean_ci_low, mean_ci_high, std, min, max, count, q_0.05 ... (quantiles)
 ///     overall.csv                response | mean, std, min, max, count, q_0.05 ... over the samples of all poses, SI
 ///     not_converged.csv          pose | not_converged, iterations_mean, iterations_max, solves_STATUS
+///     convergence.csv, convergence_RESPONSE.csv   "all" | as for a sensitivity result, with the mean for the index
 ///
 /// Tables of a coupling result: poses.csv and
 ///

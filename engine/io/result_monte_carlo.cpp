@@ -1,3 +1,4 @@
+#include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
 
 namespace poesy {
@@ -57,6 +58,7 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
     file.set_attribute(std::string("/monte_carlo/") + quantiles, "quantile_relative_error",
                        found.quantile_relative_error);
   }
+  if (found.convergence) add_convergence(result, result_format::kMonteCarlo, *found.convergence);
   add_solver(result, {"pose"}, found.solves);
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
@@ -87,6 +89,7 @@ void read_monte_carlo(const h5::File& file, StoredResult& result) {
   found.overall_max = read("overall_max", found.responses);
   found.overall_count = read_exactly<std::uint64_t>(file, "/monte_carlo/overall_count", found.responses);
   found.overall_quantiles = read("overall_quantiles", found.responses * found.levels.size());
+  if (file.exists("/convergence")) found.convergence = read_convergence(file, result.kind);
   found.solves = read_solver(file, found.poses);
   found.failures = read_failures(file, result);
 }

@@ -83,6 +83,10 @@ void add_fidelity(ResultBuilder& result, const Study& study, const FidelityResul
 /// Fills in `sensitivity.fidelity` and `fidelities`.
 void read_fidelity(const h5::File& file, StoredResult& result);
 
+/// How adaptive samples came to their end: /convergence.
+void add_convergence(ResultBuilder& result, std::string_view kind, const ConvergenceResult& found);
+ConvergenceResult read_convergence(const h5::File& file, std::string_view kind);
+
 void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found);
 void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing);
 /// As add_evaluation and add_errors, with axes [case x pose] for [pose x sample], and the sums over the poses.

@@ -1,3 +1,4 @@
+#include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
 
 namespace poesy {
@@ -78,6 +79,7 @@ void add_sensitivity(ResultBuilder& result, const Study& study, const Sensitivit
   add_tolerances(result, study, found);
   if (found.separation) add_separation(result, study, *found.separation);
   if (found.fidelity) add_fidelity(result, study, *found.fidelity);
+  if (found.convergence) add_convergence(result, result_format::kSensitivity, *found.convergence);
   add_solver(result, {"factor", "pose"}, found.solves);
   std::vector<std::string> names;
   for (const FactorIndex factor : study.analysis.factors) names.push_back(study.model().factors[factor.value].name);
@@ -91,6 +93,7 @@ void read_sensitivity(const h5::File& file, StoredResult& result) {
   if (file.exists("/tolerances")) read_tolerances(file, result);
   if (file.exists("/separation")) read_separation(file, result);
   if (file.exists("/fidelity")) read_fidelity(file, result);
+  if (file.exists("/convergence")) result.sensitivity.convergence = read_convergence(file, result.kind);
 }
 
 }  // namespace poesy

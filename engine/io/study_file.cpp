@@ -153,7 +153,7 @@ void check_size(const StudySection& root, const Study& study) {
   }
 }
 
-/// "both" is for sensitivity studies, and `linearity` for those with "both".
+/// "both" is for sensitivity studies with a fixed number of samples, and `linearity` for those with "both".
 void check_fidelities(const StudySection& root, const Study& study) {
   if (!study.mechanism.compared) {
     root.section("analysis").refuse("linearity", "a study without fidelity = \"both\"");
@@ -162,6 +162,11 @@ void check_fidelities(const StudySection& root, const Study& study) {
     const StudyValue fidelity = root.section("mechanism").require("fidelity", "");
     fidelity.fail("is \"both\", but kind = \"" + std::string(name(study.analysis.kind)) + "\" solves at one fidelity",
                   "write \"" + fidelities[0] + "\" or \"" + fidelities[1] + "\", or take kind = \"sensitivity\"");
+  } else if (study.analysis.adaptive) {
+    const StudyValue samples = root.section("analysis").require("samples", "");
+    samples.fail(
+        "ends at a relative error, but fidelity = \"both\" compares two fidelities on the same samples",
+        "write a fixed number, e.g. samples = " + std::to_string(Analysis().samples) + ", or choose one fidelity");
   }
 }
 

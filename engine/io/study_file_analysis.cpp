@@ -43,15 +43,6 @@ std::optional<Background> read_background(const StudySection& analysis, const Mo
   return background;
 }
 
-/// A share between 0 and 1, both excluded.
-double read_share(const StudyValue& value, std::string_view example) {
-  const double share = value.number();
-  if (!(share > 0.0 && share < 1.0)) {
-    value.fail("is " + shortest(share), "it must lie between 0 and 1, e.g. " + std::string(example));
-  }
-  return share;
-}
-
 std::vector<double> read_quantiles(const StudyValue& value) {
   std::vector<double> quantiles;
   for (const StudyValue& one : value.list()) {
@@ -151,10 +142,7 @@ Analysis read_analysis(const StudySection& root, const ModelDescription& model, 
   const auto factors = section.find("factors");
   analysis.factors = factors ? read_factors(*factors, model) : usual_factors(analysis.kind, model);
   if (analysis.kind == Kind::evaluate) analysis.factors.clear();
-  if (const auto value = section.find("samples")) {
-    analysis.samples = static_cast<std::size_t>(value->whole_number(2, kMostSolves));
-  }
-  if (const auto value = section.find("conf_level")) analysis.conf_level = read_share(*value, "0.95");
+  read_samples(section, analysis);
   analysis.background = read_background(section, model);
   if (const auto value = section.find("reference")) analysis.reference = read_reference(*value, analysis, model);
   if (const auto value = section.find("linearity")) analysis.linearity = read_share(*value, "0.01");

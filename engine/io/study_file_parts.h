@@ -34,6 +34,10 @@ std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescr
 std::vector<ErrorSize> read_groups(const StudySection& analysis);
 /// A factor set, "all", or a list of names without repetition.
 std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
+/// A share between 0 and 1, both excluded.
+double read_share(const StudyValue& value, std::string_view example);
+/// `samples`, a number or the table of adaptive samples, and `conf_level`.
+void read_samples(const StudySection& analysis_section, Analysis& analysis);
 /// The text of `name`, which must not be among those that are taken; `usual` where there is none.
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The keys of kind = "coupling". For StudyUse::evaluate sizes and sources may be missing.

@@ -184,11 +184,15 @@ std::string factors_text(const ModelDescription& model, std::string_view what, s
   return text + ". Factor sets:\n" + sets_comment(model) + fmt::format("factors = \"{}\"  # the default\n", usual);
 }
 
-std::string samples_text(std::string_view of_what) {
+/// quantity: what is sampled until its interval is narrow.
+std::string samples_text(std::string_view of_what, std::string_view quantity) {
   return fmt::format(
       "samples = 1000  # {}, at least 2; the default\n"
+      "# or as many as it takes: until half the width of every {}'s interval is at most relative_error of its value\n"
+      "# samples = {{ min = 1000, max = 1000000, relative_error = 0.01 }}  # min: the default; the other two are "
+      "required\n"
       "conf_level = 0.95  # of the intervals, between 0 and 1; the default\n",
-      of_what);
+      of_what, quantity);
 }
 
 std::string background_text(const ModelDescription& model) {
@@ -200,7 +204,7 @@ std::string background_text(const ModelDescription& model) {
 std::string sensitivity_keys(const ModelDescription& model) {
   const std::string_view usual = model.find_set("deforming") != nullptr ? "deforming" : "all";
   std::string text = factors_text(model, "The errors that vary, one at a time", usual);
-  text += samples_text("for each varied error at each pose");
+  text += samples_text("for each varied error at each pose", "global index");
   text += "# Optional: errors held constant while others vary; what varies is not held. Default: none.\n";
   text += background_text(model);
   if (model.fidelities.size() == 2) {
@@ -215,7 +219,8 @@ std::string sensitivity_keys(const ModelDescription& model) {
 }
 
 std::string monte_carlo_keys(const ModelDescription& model) {
-  return factors_text(model, "The errors that vary, all together", "all") + samples_text("at each pose") +
+  return factors_text(model, "The errors that vary, all together", "all") +
+         samples_text("at each pose", "overall mean") +
          "quantiles = [0.05, 0.5, 0.95]  # shares of the samples that lie below; the default\n"
          "# Optional: errors held constant while the others vary. Default: none.\n"
          "# background = { factors = \"all\", linear = \"1 mm\", angular = \"1 deg\" }\n";

@@ -193,6 +193,13 @@ std::string coupling_text(const CouplingStudy& coupling, const ModelDescription&
   return text;
 }
 
+/// A line for each key of adaptive samples, so that a comparison of two studies line by line names the key.
+std::string samples_text(const Analysis& analysis) {
+  if (!analysis.adaptive) return fmt::format("samples = {}\n", analysis.samples);
+  return fmt::format("samples.min = {}\nsamples.max = {}\nsamples.relative_error = {}\n", analysis.adaptive->min,
+                     analysis.samples, shortest(analysis.adaptive->relative_error));
+}
+
 std::string analysis_text(const Study& study) {
   using Kind = Analysis::Kind;
   const Analysis& analysis = study.analysis;
@@ -200,7 +207,7 @@ std::string analysis_text(const Study& study) {
   if (analysis.kind == Kind::coupling) return text + coupling_text(analysis.coupling, study.model());
   if (analysis.kind != Kind::evaluate) text += "factors = " + factors_text(analysis.factors, study.model()) + "\n";
   if (analysis.kind == Kind::sensitivity || analysis.kind == Kind::monte_carlo) {
-    text += fmt::format("samples = {}\nconf_level = {}\n", analysis.samples, shortest(analysis.conf_level));
+    text += fmt::format("{}conf_level = {}\n", samples_text(analysis), shortest(analysis.conf_level));
   }
   if (study.mechanism.compared) text += "linearity = " + shortest(analysis.linearity) + "\n";
   if (analysis.reference) text += reference_text(*analysis.reference, study.model());

@@ -177,10 +177,11 @@ std::string evaluation_table(const StoredResult& result) {
 
 std::string result_tables(const StoredResult& result, std::string_view ranked_by) {
   if (result.kind == "sensitivity") {
-    return ranked_table(result, ranked_by) + separation_table(result, ranked_by) + fidelity_table(result, ranked_by);
+    return ranked_table(result, ranked_by) + separation_table(result, ranked_by) + fidelity_table(result, ranked_by) +
+           convergence_table(result);
   }
   if (result.kind == "identification") return identification_table(result);
-  if (result.kind == "monte-carlo") return monte_carlo_table(result);
+  if (result.kind == "monte-carlo") return monte_carlo_table(result) + convergence_table(result);
   if (result.kind == "coupling") return coupling_table(result);
   return result.cases.empty() ? evaluation_table(result) : cases_table(result);
 }

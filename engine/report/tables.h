@@ -29,6 +29,10 @@ std::string separation_table(const StoredResult& result, std::string_view ranked
 /// study compares none.
 std::string fidelity_table(const StoredResult& result, std::string_view ranked_by);
 
+/// How many quantities reached the interval that the study asks for, with how many samples, and which did not; empty
+/// for a fixed number of samples.
+std::string convergence_table(const StoredResult& result);
+
 /// The response a result is ranked by unless asked otherwise: the first length of the headline, else its first.
 std::string default_ranking(const StoredResult& result);
 

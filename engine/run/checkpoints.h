@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <vector>
@@ -38,28 +39,37 @@ class Checkpoints {
     save();
   }
 
-  /// The stage ended with this state, complete or stopped, after these solves in all parts of the run.
+  /// The stage, or a round of it, ended with this state, complete or stopped, after these solves in all parts of the
+  /// run.
   void end(bool complete, const SolveCounts& solves, Bytes state) {
     stages_[begun_ - 1] = std::move(state);
-    solves_.merge(solves);
-    complete_ = complete_ && complete;
+    ends_.resize(begun_);
+    ends_.back() = {complete, solves};
   }
 
   /// Whether all stages that began have ended complete.
-  bool complete() const { return complete_; }
+  bool complete() const { return ends_.size() == begun_ && std::ranges::all_of(ends_, &End::complete); }
   /// Of the stages that have ended.
-  const SolveCounts& solves() const { return solves_; }
+  SolveCounts solves() const {
+    SolveCounts sum;
+    for (const End& end : ends_) sum.merge(end.solves);
+    return sum;
+  }
   std::span<const Bytes> stages() const { return stages_; }
 
   void save() const { save_(stages_); }
 
  private:
+  struct End {
+    bool complete = false;
+    SolveCounts solves;
+  };
+
   Due due_;
   Save save_;
   std::vector<Bytes> stages_;  ///< those begun, then what is left of the earlier run's
   std::size_t begun_ = 0;
-  SolveCounts solves_;
-  bool complete_ = true;
+  std::vector<End> ends_;  ///< of the stages that have ended
 };
 
 /// One stage's dealings with checkpoints, if there are any.

@@ -47,6 +47,8 @@ class MonteCarloCollector {
   std::size_t units_done(PoseIndex pose) const;
   /// Over all that was added.
   SolveCounts total() const;
+  /// Of the finished poses; without the overall numbers.
+  const MonteCarloResult& finished() const { return result_; }
   /// Precondition: every unit was added.
   MonteCarloResult result() &&;
 

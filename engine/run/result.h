@@ -55,6 +55,24 @@ struct FidelityResult {
   std::vector<std::uint64_t> not_converged;  ///< [P x M] samples that the second did not solve
 };
 
+/// How a study with adaptive samples came to its end (engine/run/rounds.h): R responses, P slots (the factors of a
+/// sensitivity study; one in a Monte Carlo study), K milestones. A quantity is a global index in a sensitivity study
+/// and a mean over the samples of all poses in a Monte Carlo study. Its half-width is the larger distance from it to an
+/// end of its interval.
+struct ConvergenceResult {
+  std::size_t min = 0;  ///< samples at each pose, as the study sets them
+  std::size_t max = 0;
+  double relative_error = 0.0;
+  double conf_level = 0.95;
+
+  std::vector<std::uint64_t> milestones;    ///< [K] samples at each pose; the last may be max, where nothing is decided
+  std::vector<double> quantity;             ///< [R x P x K] SI; NaN after the slot came to its end
+  std::vector<double> half_width;           ///< [R x P x K] likewise
+  std::vector<std::uint8_t> reached;        ///< [R x P] whether the half-width at the end is small enough, 0 or 1
+  std::vector<double> relative_half_width;  ///< [R x P] half-width over |quantity| at the end; NaN for 0 / 0
+  std::vector<std::uint64_t> samples;       ///< [P] at each pose
+};
+
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined.
 struct SensitivityResult {
   std::size_t responses = 0;
@@ -76,6 +94,8 @@ struct SensitivityResult {
   std::vector<Failure> failures;               ///< the first, in the order of factors, poses, samples
   std::optional<SeparationResult> separation;  ///< where the model separates its errors
   std::optional<FidelityResult> fidelity;      ///< where the study compares two fidelities
+  /// Where the study has adaptive samples.
+  std::optional<ConvergenceResult> convergence;
 
   SolveCounts total() const;
 };
@@ -106,6 +126,8 @@ struct MonteCarloResult {
   std::vector<double> overall_quantiles;     ///< [R x Q]
   std::vector<SolveCounts> solves;           ///< [M]
   std::vector<Failure> failures;             ///< the first, in the order of poses and samples
+  /// Where the study has adaptive samples.
+  std::optional<ConvergenceResult> convergence;
 
   SolveCounts total() const;
 };

@@ -46,6 +46,9 @@ class ProgressCounter {
     progress_ = {before.total(), total, before.not_converged(), before.total()};
   }
 
+  /// So many solves are still to come, as far as is known now.
+  void expect_left(std::uint64_t solves) { progress_.total = progress_.solves + solves; }
+
   void add(const SolveCounts& solves) {
     progress_.solves += solves.total();
     progress_.not_converged += solves.not_converged();

@@ -1,64 +1,142 @@
 #include "engine/run/runner.h"
 
 #include <algorithm>
+#include <numeric>
 #include <thread>
+#include <utility>
 
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/identification.h"
 #include "engine/run/monte_carlo.h"
 #include "engine/run/monte_carlo_collector.h"
 #include "engine/run/pending_units.h"
+#include "engine/run/rounds.h"
 #include "engine/run/run_in_order.h"
 #include "engine/run/sensitivity.h"
 #include "engine/run/sensitivity_collector.h"
+#include "engine/stats/mean_interval.h"
 
 namespace poesy {
+namespace {
+
+std::vector<std::size_t> all_positions(std::size_t count) {
+  std::vector<std::size_t> positions(count);
+  std::iota(positions.begin(), positions.end(), std::size_t{0});
+  return positions;
+}
+
+void restore(std::span<const std::byte> state, const Plan& plan, Rounds& rounds, SensitivityCollector& collect) {
+  ByteReader from(state);
+  rounds.restore(from);
+  collect.restore(state.last(from.left()));
+  for (std::size_t cell = 0; cell < plan.cells(); ++cell) {
+    if (!rounds.may_hold(cell / plan.poses().size(), collect.units_done(cell))) {
+      throw BytesError("has a cell of another round");
+    }
+  }
+}
+
+/// Of each response over the samples of all poses, [R].
+std::vector<Estimate> overall_means(const MonteCarloResult& found) {
+  std::vector<Estimate> means;
+  for (std::size_t first = 0; first < found.mean.size(); first += found.poses) {
+    means.push_back(stratified_mean(
+        {std::span(found.count).subspan(first, found.poses), std::span(found.mean).subspan(first, found.poses),
+         std::span(found.std).subspan(first, found.poses)},
+        found.conf_level));
+  }
+  return means;
+}
+
+/// Solves after those that were done, as far as that is known.
+std::uint64_t expected_left(const Plan& plan, const Rounds& rounds, const SolveCounts& done,
+                            const PendingUnits& pending) {
+  return plan.adaptive() ? rounds.expected_solves() - done.total() : pending.samples();
+}
+
+}  // namespace
+
 std::size_t resolved_threads(std::size_t threads) {
   return threads != 0 ? threads : std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options) {
-  SensitivityCollector collect(plan, model.description().responses.size());
+  const std::size_t responses = model.description().responses.size();
+  const std::size_t poses = plan.poses().size();
+  SensitivityCollector collect(plan, responses);
+  Rounds rounds(plan, {responses, all_positions(responses), conf_level, kIndexRounding});
   Stage stage(options.checkpoints);
-  stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
-  const PendingUnits pending(plan, options.shard.value_or(Shard()),
-                             [&](std::size_t cell) { return collect.units_done(cell); });
-  ProgressCounter counter(collect.total().total() + pending.samples(), collect.total(), options);
-  const auto state = [&] { return collect.state(); };
-  const bool complete = run_in_order(
-      pending.size(), options, [&] { return UnitEvaluator(plan, model); },
-      [&](UnitEvaluator& evaluate, std::size_t n) { return evaluate(pending[n]); },
-      [&](std::size_t n, const UnitStats& stats) {
-        collect.add(pending[n], stats);
-        counter.add(stats.solves);
-        stage.merged(state);
-      });
-  stage.end(complete, collect.total(), state);
-  if (!complete || options.shard) return std::nullopt;
-  return sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
+  stage.begin([&](std::span<const std::byte> state) { restore(state, plan, rounds, collect); });
+  const NumberRange cells = options.shard.value_or(Shard()).of(plan.cells());
+  ProgressCounter counter(plan.solves(), collect.total(), options);
+  const auto state = [&] { return rounds.state_before(collect.state()); };
+  const auto indices = [&](std::size_t slot) {
+    return global_indices(collect.cells_of(slot), plan.distributions()[slot].standard_deviation(), conf_level);
+  };
+  do {
+    const PendingUnits pending(
+        plan, [&](std::size_t cell) { return collect.units_done(cell); },
+        [&](std::size_t cell) { return cells.holds(cell) ? rounds.units(cell / poses) : 0; });
+    counter.expect_left(expected_left(plan, rounds, collect.total(), pending));
+    const bool complete = run_in_order(
+        pending.size(), options, [&] { return UnitEvaluator(plan, model); },
+        [&](UnitEvaluator& evaluate, std::size_t n) { return evaluate(pending[n]); },
+        [&](std::size_t n, const UnitStats& stats) {
+          collect.add(pending[n], stats);
+          counter.add(stats.solves);
+          stage.merged(state);
+        });
+    stage.end(complete, collect.total(), state);
+    if (!complete) return std::nullopt;
+  } while (rounds.go_on(indices));
+  if (options.shard) return std::nullopt;
+  auto result = sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
+  result.convergence = rounds.result();
+  return result;
 }
 
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options) {
-  MonteCarloCollector collect(plan, model.description().responses.size(), analysis);
+  const ModelDescription& description = model.description();
+  const std::size_t responses = description.responses.size();
+  Rounds rounds(plan, {responses, description.headline.empty() ? all_positions(responses) : description.headline,
+                       analysis.conf_level, 0.0});
+  Bytes before;  // the collector's state at the end of the round before this one, or of an earlier run
   Stage stage(options.checkpoints);
-  stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
-  const PendingUnits pending(plan, options.shard.value_or(Shard()),
-                             [&](std::size_t pose) { return collect.units_done(PoseIndex(pose)); });
-  ProgressCounter counter(collect.total().total() + pending.samples(), collect.total(), options);
-  const auto state = [&] { return collect.state(); };
-  const bool complete = run_in_order(
-      pending.size(), options, [&] { return PoseUnitEvaluator(plan, model); },
-      [&](PoseUnitEvaluator& evaluate, std::size_t n) { return evaluate(pending[n]); },
-      [&](std::size_t n, const PoseUnit& found) {
-        collect.add(pending[n].pose, found);
-        counter.add(found.solves);
-        stage.merged(state);
-      });
-  stage.end(complete, collect.total(), state);
-  if (!complete || options.shard) return std::nullopt;
-  return std::move(collect).result();
+  stage.begin([&](std::span<const std::byte> state) {
+    ByteReader from(state);
+    rounds.restore(from);
+    const auto rest = state.last(from.left());
+    before.assign(rest.begin(), rest.end());
+  });
+  std::optional<ProgressCounter> counter;
+  for (;;) {
+    const Plan part = plan.with_samples(rounds.samples(0));
+    MonteCarloCollector collect(part, responses, analysis);
+    if (!before.empty()) collect.restore(std::exchange(before, {}));
+    if (!counter) counter.emplace(plan.solves(), collect.total(), options);
+    const PendingUnits pending(part, options.shard.value_or(Shard()),
+                               [&](std::size_t pose) { return collect.units_done(PoseIndex(pose)); });
+    counter->expect_left(expected_left(plan, rounds, collect.total(), pending));
+    const auto state = [&] { return rounds.state_before(collect.state()); };
+    const bool complete = run_in_order(
+        pending.size(), options, [&] { return PoseUnitEvaluator(part, model); },
+        [&](PoseUnitEvaluator& evaluate, std::size_t n) { return evaluate(pending[n]); },
+        [&](std::size_t n, const PoseUnit& found) {
+          collect.add(pending[n].pose, found);
+          counter->add(found.solves);
+          stage.merged(state);
+        });
+    stage.end(complete, collect.total(), state);
+    if (!complete || options.shard) return std::nullopt;
+    if (!rounds.go_on([&](std::size_t) { return overall_means(collect.finished()); })) {
+      MonteCarloResult result = std::move(collect).result();
+      result.convergence = rounds.result();
+      return result;
+    }
+    before = collect.state();
+  }
 }
 
 std::optional<IdentificationResult> run_identification(const Study& study, const Model& model, const PoseSet& poses,

@@ -17,19 +17,24 @@ void append(const Estimate& estimate, std::vector<double>& value, std::vector<do
   high.push_back(estimate.interval.high);
 }
 
+Estimate global_index_of(std::span<const UnitStats> at_poses, std::size_t response, double sigma, double conf_level) {
+  std::vector<LocalIndex> indices;
+  indices.reserve(at_poses.size());
+  for (const UnitStats& cell : at_poses) indices.push_back(local_index_with_error(cell.responses[response], sigma));
+  return global_index(indices, conf_level);
+}
+
 /// One response of one factor: its indices at all poses and over them.
 void append_row(std::span<const UnitStats> cells, std::size_t response, double sigma, SensitivityResult& result) {
-  std::vector<LocalIndex> at_poses;
-  at_poses.reserve(cells.size());
   for (const UnitStats& cell : cells) {
     const Moments& moments = cell.responses[response];
     append(local_index(moments, sigma, result.conf_level), result.local, result.local_ci_low, result.local_ci_high);
     result.count.push_back(static_cast<double>(moments.count()));
     result.mean.push_back(moments.mean());
     result.std.push_back(moments.standard_deviation());
-    at_poses.push_back(local_index_with_error(moments, sigma));
   }
-  append(global_index(at_poses, result.conf_level), result.global, result.global_ci_low, result.global_ci_high);
+  append(global_index_of(cells, response, sigma, result.conf_level), result.global, result.global_ci_low,
+         result.global_ci_high);
 }
 
 }  // namespace
@@ -52,6 +57,15 @@ std::vector<double> background_responses(const Plan& plan, const Model& model) {
     }
   }
   return background;
+}
+
+std::vector<Estimate> global_indices(std::span<const UnitStats> at_poses, double sigma, double conf_level) {
+  POESY_EXPECTS(!at_poses.empty());
+  std::vector<Estimate> indices;
+  for (std::size_t r = 0; r < at_poses.front().responses.size(); ++r) {
+    indices.push_back(global_index_of(at_poses, r, sigma, conf_level));
+  }
+  return indices;
 }
 
 SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, std::vector<double> background,

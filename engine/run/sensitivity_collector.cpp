@@ -37,8 +37,20 @@ SolveCounts SensitivityCollector::total() const {
   return sum;
 }
 
+std::vector<UnitStats> SensitivityCollector::cells_of(std::size_t slot) const {
+  const std::size_t poses = plan_->poses().size();
+  std::vector<UnitStats> cells;
+  for (std::size_t cell = slot * poses; cell < (slot + 1) * poses; ++cell) {
+    cells.push_back(whole_[cell]);
+    if (has_part(cell)) cells.back().merge(parts_[cell]);
+  }
+  return cells;
+}
+
 std::vector<UnitStats> SensitivityCollector::cells() && {
-  for (std::size_t cell = 0; cell < parts_.size(); ++cell) whole_[cell].merge(parts_[cell]);
+  for (std::size_t cell = 0; cell < whole_.size(); ++cell) {
+    if (has_part(cell)) whole_[cell].merge(parts_[cell]);
+  }
   return std::move(whole_);
 }
 

@@ -25,7 +25,9 @@ class SensitivityCollector {
   std::size_t units_done(std::size_t cell) const;
   /// Over all that was added.
   SolveCounts total() const;
-  /// Precondition: every unit was added.
+  /// One slot at all poses, [M], from what was added.
+  std::vector<UnitStats> cells_of(std::size_t slot) const;
+  /// From what was added.
   std::vector<UnitStats> cells() &&;
 
   /// Everything added so far.

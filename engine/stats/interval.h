@@ -8,4 +8,10 @@ struct Interval {
   double high;
 };
 
+/// An estimate with its interval.
+struct Estimate {
+  double value;
+  Interval interval;
+};
+
 }  // namespace poesy

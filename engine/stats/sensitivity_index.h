@@ -7,12 +7,6 @@
 
 namespace poesy {
 
-/// An estimate with its interval.
-struct Estimate {
-  double value;
-  Interval interval;
-};
-
 /// Sensitivity index at one pose: sigma(response) / sigma(error) (Du et al. 2022, Eqs. 51-52), the
 /// response's sample standard deviation over the error's standard deviation as set.
 /// Interval: Bonett 2006, Comput. Stat. Data Anal. 50, 775-782, on the logarithm of the variance, with the

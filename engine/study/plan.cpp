@@ -6,6 +6,11 @@
 #include "engine/base/contract.h"
 
 namespace poesy {
+namespace {
+
+std::size_t units_for(std::size_t samples) { return (samples + Plan::kUnitSamples - 1) / Plan::kUnitSamples; }
+
+}  // namespace
 
 Plan::Plan(const Study& study, PoseSet poses)
     : poses_(std::move(poses)),
@@ -13,13 +18,21 @@ Plan::Plan(const Study& study, PoseSet poses)
       background_(background_errors(study.analysis.background, study.model())),
       slots_(study.analysis.kind == Analysis::Kind::monte_carlo ? 1 : factors_.size()),
       samples_(study.analysis.samples),
-      units_per_cell_((samples_ + kUnitSamples - 1) / kUnitSamples),
+      adaptive_(study.analysis.adaptive),
+      units_per_cell_(units_for(samples_)),
       seed_(study.seed),
       solver_(study.solver),
       not_converged_(study.not_converged) {
   for (const FactorIndex factor : factors_) background_[factor.value] = 0.0;
   distributions_.reserve(factors_.size());
   for (const FactorIndex factor : factors_) distributions_.push_back(study.errors.by_factor[factor.value]);
+}
+
+Plan Plan::with_samples(std::size_t samples) const {
+  Plan plan = *this;
+  plan.samples_ = samples;
+  plan.units_per_cell_ = units_for(samples);
+  return plan;
 }
 
 WorkUnit Plan::unit(std::size_t u) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,10 @@ class Plan {
   std::size_t first_sample(std::size_t unit) const { return std::min(unit * kUnitSamples, samples_); }
 
   std::size_t samples() const { return samples_; }
+  /// How a study may come to an end before each cell has samples().
+  const std::optional<AdaptiveSamples>& adaptive() const { return adaptive_; }
+  /// The same with another number of samples.
+  Plan with_samples(std::size_t samples) const;
   std::uint64_t seed() const { return seed_; }
   const PoseSet& poses() const { return poses_; }
   std::span<const FactorIndex> factors() const { return factors_; }
@@ -61,6 +66,7 @@ class Plan {
   std::vector<double> background_;
   std::size_t slots_;
   std::size_t samples_;
+  std::optional<AdaptiveSamples> adaptive_;
   std::size_t units_per_cell_;
   std::uint64_t seed_;
   SolverOptions solver_;

@@ -87,6 +87,13 @@ struct CouplingStudy {
   std::size_t sizes() const { return linear.empty() ? angular.size() : linear.size(); }
 };
 
+/// Samples until the intervals are narrow enough, at the least `min` and at the most Analysis::samples at each pose;
+/// see engine/run/rounds.h.
+struct AdaptiveSamples {
+  std::size_t min = 1000;       ///< before the first decision; rounded up to whole units (engine/study/milestones.h)
+  double relative_error = 0.0;  ///< half-width of an interval at conf_level over what it is the interval of
+};
+
 struct Analysis {
   enum class Kind {
     sensitivity,     ///< the effect of each error on its own
@@ -99,6 +106,7 @@ struct Analysis {
   Kind kind = Kind::sensitivity;
   std::vector<FactorIndex> factors;                ///< that vary, or that are tried; empty for evaluate
   std::size_t samples = 1000;                      ///< sensitivity, Monte Carlo: at each pose
+  std::optional<AdaptiveSamples> adaptive;         ///< sensitivity, Monte Carlo; then `samples` is their maximum
   double conf_level = 0.95;                        ///< sensitivity, Monte Carlo
   std::optional<Background> background;            ///< not for identification
   std::optional<ToleranceReference> reference;     ///< sensitivity

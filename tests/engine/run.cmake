@@ -12,3 +12,6 @@ poesy_test(fidelity_statistical_test LABELS statistical SOURCES engine/run/fidel
 poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_io poesy_models)
 poesy_test(failures_test LABELS determinism SOURCES engine/run/failures_test.cpp LINKS poesy_run)
 poesy_test(continuation_test LABELS robustness SOURCES engine/run/continuation_test.cpp LINKS poesy_run)
+poesy_test(adaptive_test LABELS determinism SOURCES engine/run/adaptive_test.cpp LINKS poesy_run)
+poesy_test(adaptive_statistical_test LABELS statistical SOURCES engine/run/adaptive_statistical_test.cpp
+           LINKS poesy_run Boost::headers)

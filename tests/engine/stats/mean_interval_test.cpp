@@ -33,5 +33,40 @@ TEST(MeanInterval, IsUnknownBelowTwoSamples) {
   }
 }
 
+/// Three groups with numbers that are easy to check by hand.
+struct ThreeGroups {
+  std::vector<std::uint64_t> count{4, 9, 25};
+  std::vector<double> mean{1.0, 2.0, 4.0};
+  std::vector<double> std{2.0, 3.0, 5.0};
+  operator Groups() const { return {count, mean, std}; }
+};
+
+TEST(StratifiedMean, AddsTheVarianceWithinGroups) {
+  const Estimate found = stratified_mean(ThreeGroups(), 0.95);
+  EXPECT_DOUBLE_EQ(found.value, (4.0 + 18.0 + 100.0) / 38.0);
+  // Satterthwaite: 722^2 / (16^2/3 + 81^2/8 + 625^2/24) = 30.34; Student's t there is 2.0413.
+  const double half = 2.0413 * std::sqrt(16.0 + 81.0 + 625.0) / 38.0;
+  EXPECT_NEAR(found.interval.high - found.value, half, 1e-4 * half);
+  EXPECT_NEAR(found.value - found.interval.low, half, 1e-4 * half);
+}
+
+TEST(StratifiedMean, OfOneGroupIsStudents) {
+  const Moments five = of({1.0, 2.0, 3.0, 4.0, 5.0});
+  ThreeGroups groups{{5, 0}, {five.mean(), std::nan("")}, {five.standard_deviation(), std::nan("")}};
+  const Estimate found = stratified_mean(groups, 0.99);
+  EXPECT_DOUBLE_EQ(found.value, 3.0);
+  EXPECT_DOUBLE_EQ(found.interval.low, mean_interval(five, 0.99).low);
+}
+
+TEST(StratifiedMean, IsUnknownWhereASpreadIs) {
+  ThreeGroups groups;
+  groups.count[1] = 1;
+  groups.std[1] = std::nan("");
+  EXPECT_TRUE(std::isnan(stratified_mean(groups, 0.95).interval.low));
+  groups.count = {0, 0, 0};
+  EXPECT_TRUE(std::isnan(stratified_mean(groups, 0.95).value));
+  EXPECT_EQ(stratified_mean(ThreeGroups{{3, 3}, {2.0, 2.0}, {0.0, 0.0}}, 0.95).interval.high, 2.0);
+}
+
 }  // namespace
 }  // namespace poesy

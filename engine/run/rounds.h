@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "engine/base/bytes.h"
+#include "engine/run/result.h"
+#include "engine/stats/interval.h"
+#include "engine/study/plan.h"
+
+namespace poesy {
+
+/// Samples that each pose of every slot gets in any case.
+std::size_t least_samples(const Plan& plan);
+
+/// The rounds of a sampled study. One with a fixed number of samples has a single round. One with adaptive samples has
+/// a round for each milestone (engine/study/milestones.h), in which every slot that goes on gets the milestone's
+/// samples at all poses, and then perhaps a last one up to Plan::samples(). A slot ends at the first milestone at which
+/// each response that decides is reached: half-width <= relative_error x |quantity|, see ConvergenceResult. What is
+/// decided follows from the samples up to the milestone alone, so it is the same on any machine.
+class Rounds {
+ public:
+  struct Rule {
+    std::size_t responses;              ///< R
+    std::vector<std::size_t> deciding;  ///< positions among the responses
+    double conf_level;                  ///< of the intervals
+    double rounding;                    ///< a quantity whose magnitude is below this counts as reached
+  };
+
+  Rounds(const Plan& plan, Rule rule);
+
+  /// That each pose of the slot has at the end of this round.
+  std::size_t samples(std::size_t slot) const { return samples_[slot]; }
+  std::size_t units(std::size_t slot) const;
+  /// Whether a cell of this slot may hold so many units in this round.
+  bool may_hold(std::size_t slot, std::size_t units) const;
+  /// Of the whole study, as far as the half-widths so far let expect: they fall with the root of the samples. At least
+  /// those of this round; before the first decision all that there may be.
+  std::uint64_t expected_solves() const;
+
+  /// Ends the round; whether another one follows, which begins. estimates(slot): its quantities, [R].
+  bool go_on(const std::function<std::vector<Estimate>(std::size_t slot)>& estimates);
+  /// Empty for a study with a fixed number of samples. Precondition: no round follows.
+  std::optional<ConvergenceResult> result() const;
+
+  /// What was decided so far, which is nothing for a fixed number of samples, then the bytes of `rest`.
+  Bytes state_before(Bytes rest) const;
+  /// Takes up what an earlier run decided, of this plan or of one that differs by fewer samples; the rest is left.
+  /// Throws BytesError for anything else. Precondition: this is the first round.
+  void restore(ByteReader& from);
+
+ private:
+  /// Quantities and half-widths at a milestone, [R x P].
+  struct Row {
+    std::vector<double> quantity;
+    std::vector<double> half_width;
+  };
+
+  bool last_round() const { return rows_.size() == milestones_.size(); }
+  std::size_t cell(std::size_t response, std::size_t slot) const { return response * samples_.size() + slot; }
+  /// Half-width over what it may be.
+  double excess(const Row& row, std::size_t cell) const;
+  double largest_excess(const Row& row, std::size_t slot) const;
+  /// Ends the slots whose every deciding response is reached, and begins the next round; whether a slot goes on.
+  bool decide(Row row);
+  std::size_t expected_samples(std::size_t slot) const;
+  const Row& row_at_end(std::size_t slot) const;
+
+  std::optional<AdaptiveSamples> adaptive_;
+  Rule rule_;
+  std::size_t poses_;
+  std::size_t max_;
+  std::vector<std::size_t> milestones_;  ///< those at which something is decided
+  std::vector<Row> rows_;                ///< of the rounds that are over
+  std::vector<std::size_t> samples_;     ///< [P] of each slot in this round
+  std::vector<bool> ended_;              ///< [P]
+};
+
+}  // namespace poesy

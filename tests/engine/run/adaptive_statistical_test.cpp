@@ -1,0 +1,121 @@
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "engine/stats/moments.h"
+#include "tests/engine/run/adaptive_study.h"
+
+/// Stopping at a time that the samples choose could favour samples that make an interval narrow by chance. So the
+/// intervals at the end are held against the truth, over many seeds.
+namespace poesy {
+namespace {
+
+constexpr std::size_t kRepetitions = 1000;
+constexpr double kLevel = 0.95;
+/// Of each test: the probability of failing although the intervals cover at their level.
+constexpr double kAlpha = 0.001;
+
+/// The response |w e| of the fake mechanism to one normal error of standard deviation 1, over w.
+const double kFoldedStd = std::sqrt(1.0 - 2.0 / std::numbers::pi);
+const double kFoldedMean = std::sqrt(2.0 / std::numbers::pi);
+
+Study study_of(Analysis::Kind kind, std::size_t poses, double relative_error) {
+  Study study = test::adaptive_study(kind, relative_error, 1'000'000);
+  study.errors.by_factor.assign(3, Distribution::normal(1e-3));
+  study.analysis.factors = {FactorIndex(0)};
+  study.analysis.conf_level = kLevel;
+  study.poses.count = poses;
+  study.poses.workspace = {{-0.3, -0.2}, {-0.4, 0.4}, {-0.2, 0.2}};
+  return study;
+}
+
+/// weight(response 0, factor 0) at each pose.
+std::vector<double> weights(const Plan& plan) {
+  std::vector<double> weights;
+  for (std::size_t m = 0; m < plan.poses().size(); ++m) {
+    weights.push_back(test::FakeModel::weight(test::FakeModel::kArm, 0, 0, plan.poses()[PoseIndex(m)]));
+  }
+  return weights;
+}
+
+/// Fewest of the repetitions that a coverage at the level gives but with probability kAlpha.
+std::size_t fewest_covered() {
+  const boost::math::binomial binomial(static_cast<double>(kRepetitions), kLevel);
+  return static_cast<std::size_t>(boost::math::quantile(binomial, kAlpha));
+}
+
+struct Tally {
+  std::size_t covered = 0;
+  std::size_t local_covered = 0;
+  double samples = 0.0;
+
+  void report(const char* what) const {
+    std::printf("%s: coverage %.1f %%, at the first pose %.1f %%, %.0f samples on average\n", what,
+                100.0 * static_cast<double>(covered) / kRepetitions,
+                100.0 * static_cast<double>(local_covered) / kRepetitions, samples / kRepetitions);
+    EXPECT_GE(covered, fewest_covered()) << what;
+    EXPECT_GE(local_covered, fewest_covered()) << what;
+  }
+};
+
+bool inside(double value, double low, double high) { return low <= value && value <= high; }
+
+Tally sensitivity_tally(std::size_t poses, double relative_error) {
+  Tally tally;
+  Study study = study_of(Analysis::Kind::sensitivity, poses, relative_error);
+  for (std::size_t n = 0; n < kRepetitions; ++n) {
+    study.seed = 1000 + n;
+    const test::AdaptiveRun run(study);
+    Moments over_poses;
+    for (const double weight : weights(run.plan)) over_poses.add(std::abs(weight) * kFoldedStd);
+    const double truth = over_poses.mean() + (poses > 1 ? over_poses.standard_deviation() : 0.0);
+    const SensitivityResult found = run.sensitivity({1, {}, nullptr}).value();
+    const ConvergenceResult& end = found.convergence.value();
+    EXPECT_EQ(end.reached[0], 1);
+    EXPECT_LE(found.global_ci_high[0] - found.global[0], relative_error * found.global[0]);
+    EXPECT_LE(found.global[0] - found.global_ci_low[0], relative_error * found.global[0]);
+    tally.covered += inside(truth, found.global_ci_low[0], found.global_ci_high[0]) ? 1 : 0;
+    const double local = std::abs(weights(run.plan)[0]) * kFoldedStd;
+    tally.local_covered += inside(local, found.local_ci_low[0], found.local_ci_high[0]) ? 1 : 0;
+    tally.samples += static_cast<double>(end.samples[0]);
+  }
+  return tally;
+}
+
+Tally monte_carlo_tally(std::size_t poses, double relative_error) {
+  Tally tally;
+  Study study = study_of(Analysis::Kind::monte_carlo, poses, relative_error);
+  for (std::size_t n = 0; n < kRepetitions; ++n) {
+    study.seed = 1000 + n;
+    const test::AdaptiveRun run(study);
+    const MonteCarloResult found = run.monte_carlo({1, {}, nullptr}).value();
+    const ConvergenceResult& end = found.convergence.value();
+    const std::vector<double> all = weights(run.plan);
+    double truth = 0.0;
+    for (const double weight : all) truth += std::abs(weight) * 1e-3 * kFoldedMean / static_cast<double>(poses);
+    const std::size_t last = end.milestones.size() - 1;
+    EXPECT_EQ(end.reached[0], 1);
+    EXPECT_LE(end.half_width[last], relative_error * end.quantity[last]);
+    tally.covered += std::abs(end.quantity[last] - truth) <= end.half_width[last] ? 1 : 0;
+    const double local = std::abs(all[0]) * 1e-3 * kFoldedMean;
+    tally.local_covered += inside(local, found.mean_ci_low[0], found.mean_ci_high[0]) ? 1 : 0;
+    tally.samples += static_cast<double>(end.samples[0]);
+  }
+  return tally;
+}
+
+TEST(AdaptiveCoverage, IndexAtOnePose) { sensitivity_tally(1, 0.05).report("index, one pose"); }
+
+TEST(AdaptiveCoverage, IndexOverPoses) { sensitivity_tally(6, 0.02).report("index, six poses"); }
+
+TEST(AdaptiveCoverage, IndexNearTheFirstMilestone) { sensitivity_tally(1, 0.06).report("index, 6 %, one pose"); }
+
+TEST(AdaptiveCoverage, MeanAtOnePose) { monte_carlo_tally(1, 0.03).report("mean, one pose"); }
+
+TEST(AdaptiveCoverage, MeanOverPoses) { monte_carlo_tally(6, 0.01).report("mean, six poses"); }
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "engine/run/runner.h"
+#include "tests/support/fake_model.h"
+
+namespace poesy::test {
+
+/// An adaptive study of the fake mechanism with all three errors, of which the last has no effect. The two with an
+/// effect come to their end at different milestones, for a uniform error has less kurtosis than a normal one.
+inline Study adaptive_study(Analysis::Kind kind, double relative_error, std::size_t max) {
+  static const Catalog catalog = fake_catalog();
+  Study study;
+  study.mechanism = {&catalog.front(), {FakeModel::kArm}, 0, {}};
+  study.errors.by_factor = {Distribution::normal(1e-3), Distribution::uniform(1e-3), Distribution::normal(1e-3)};
+  study.poses.count = 3;
+  study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
+  study.analysis.kind = kind;
+  study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
+  study.analysis.samples = max;
+  study.analysis.adaptive = AdaptiveSamples{1000, relative_error};
+  study.analysis.quantiles = {0.1, 0.9};
+  study.seed = 3;
+  return study;
+}
+
+struct AdaptiveRun {
+  explicit AdaptiveRun(const Study& of)
+      : study(of), model(build_model(of.mechanism)), plan(of, select_poses(of.poses, *model).poses) {}
+
+  std::optional<SensitivityResult> sensitivity(const RunOptions& options) const {
+    return run_sensitivity(plan, *model, study.analysis.conf_level, options);
+  }
+  std::optional<MonteCarloResult> monte_carlo(const RunOptions& options) const {
+    return run_monte_carlo(plan, *model, study.analysis, options);
+  }
+
+  Study study;
+  std::unique_ptr<Model> model;
+  Plan plan;
+};
+
+}  // namespace poesy::test

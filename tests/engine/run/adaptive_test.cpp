@@ -1,0 +1,304 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "engine/run/rounds.h"
+#include "engine/stats/tolerance.h"
+#include "engine/study/milestones.h"
+#include "tests/engine/run/adaptive_study.h"
+
+namespace poesy {
+namespace {
+
+using Kind = Analysis::Kind;
+using test::adaptive_study;
+using test::AdaptiveRun;
+using Bits = std::vector<std::uint64_t>;
+using States = std::vector<Bytes>;
+
+void append(Bits& bits, const std::vector<double>& values) {
+  for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
+}
+
+Bits bits_of(const ConvergenceResult& found) {
+  Bits bits(found.milestones);
+  append(bits, found.quantity);
+  append(bits, found.half_width);
+  append(bits, found.relative_half_width);
+  bits.insert(bits.end(), found.reached.begin(), found.reached.end());
+  bits.insert(bits.end(), found.samples.begin(), found.samples.end());
+  return bits;
+}
+
+Bits bits_of(const SensitivityResult& found) {
+  Bits bits = bits_of(found.convergence.value());
+  for (const auto* values : {&found.local, &found.local_ci_high, &found.global, &found.global_ci_low, &found.count,
+                             &found.mean, &found.std}) {
+    append(bits, *values);
+  }
+  return bits;
+}
+
+Bits bits_of(const MonteCarloResult& found) {
+  Bits bits = bits_of(found.convergence.value());
+  for (const auto* values : {&found.mean, &found.mean_ci_low, &found.std, &found.min, &found.max, &found.quantiles,
+                             &found.overall_mean, &found.overall_std, &found.overall_quantiles}) {
+    append(bits, *values);
+  }
+  bits.insert(bits.end(), found.count.begin(), found.count.end());
+  return bits;
+}
+
+/// The bits of a study's result; nothing when it was stopped.
+std::optional<Bits> run(const AdaptiveRun& run, const RunOptions& options) {
+  const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
+  return run.study.analysis.kind == Kind::sensitivity ? bits(run.sensitivity(options)) : bits(run.monte_carlo(options));
+}
+
+RunOptions on_threads(std::size_t threads) {
+  RunOptions options;
+  options.threads = threads;
+  return options;
+}
+
+TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
+  const AdaptiveRun study(adaptive_study(Kind::sensitivity, 0.015, 100'000));
+  const SensitivityResult found = study.sensitivity({}).value();
+  const ConvergenceResult& end = found.convergence.value();
+  const std::size_t milestones = end.milestones.size();
+  EXPECT_EQ(end.samples[2], 1000u) << "an error without effect has nothing to wait for";
+  EXPECT_LT(end.samples[1], end.samples[0]);
+  EXPECT_LT(end.samples[0], 100'000u);
+  EXPECT_EQ(end.milestones.back(), end.samples[0]);
+  for (std::size_t cell = 0; cell < end.reached.size(); ++cell) {
+    const std::size_t factor = cell % 3;
+    EXPECT_EQ(end.reached[cell], 1);
+    EXPECT_EQ(found.count[cell * found.poses], static_cast<double>(end.samples[factor]));
+    const double half =
+        std::max(found.global[cell] - found.global_ci_low[cell], found.global_ci_high[cell] - found.global[cell]);
+    for (std::size_t k = 0; k < milestones; ++k) {
+      const double seen = end.half_width[cell * milestones + k];
+      EXPECT_EQ(std::isnan(seen), end.milestones[k] > end.samples[factor]);
+      if (end.milestones[k] != end.samples[factor]) continue;
+      EXPECT_EQ(seen, half);
+      EXPECT_EQ(end.quantity[cell * milestones + k], found.global[cell]);
+    }
+    if (factor == 2) continue;
+    EXPECT_EQ(end.relative_half_width[cell], half / found.global[cell]);
+    EXPECT_LE(end.relative_half_width[cell], 0.015);
+  }
+  // At the milestone before, a response of the first error was not reached.
+  const auto before = [&](std::size_t response) {
+    const std::size_t at = response * 3 * milestones + milestones - 2;
+    return end.half_width[at] / end.quantity[at];
+  };
+  EXPECT_GT(std::max(before(0), before(1)), 0.015);
+}
+
+TEST(AdaptiveSensitivity, GivesTheBitsOfAsManyFixedSamples) {
+  Study study = adaptive_study(Kind::sensitivity, 0.015, 100'000);
+  const SensitivityResult found = AdaptiveRun(study).sensitivity({}).value();
+  study.analysis.samples = found.convergence->samples[0];
+  study.analysis.adaptive.reset();
+  const SensitivityResult fixed = AdaptiveRun(study).sensitivity({}).value();
+  EXPECT_FALSE(fixed.convergence);
+  EXPECT_EQ(fixed.global[0], found.global[0]);
+  EXPECT_EQ(fixed.local[0], found.local[0]);
+  EXPECT_EQ(fixed.global_ci_low[3], found.global_ci_low[3]);
+}
+
+TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
+  const AdaptiveRun study(adaptive_study(Kind::sensitivity, 0.001, 4300));
+  const SensitivityResult found = study.sensitivity({}).value();
+  const ConvergenceResult& end = found.convergence.value();
+  EXPECT_EQ(end.milestones, (std::vector<std::uint64_t>{1000, 2000, 3000, 4300}));
+  EXPECT_EQ(end.samples, (std::vector<std::uint64_t>{4300, 4300, 1000}));
+  EXPECT_EQ(end.reached, (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(end.quantity[3], found.global[0]) << "the last milestone is max, with its unit that is not whole";
+  EXPECT_GT(end.relative_half_width[0], 0.001);
+}
+
+TEST(AdaptiveSensitivity, FewerThanTheFirstMilestoneAreOneRound) {
+  Study study = adaptive_study(Kind::sensitivity, 0.5, 700);
+  study.analysis.adaptive->min = 2;
+  const ConvergenceResult end = AdaptiveRun(study).sensitivity({})->convergence.value();
+  EXPECT_EQ(end.milestones, (std::vector<std::uint64_t>{700}));
+  EXPECT_EQ(end.reached, (std::vector<std::uint8_t>(6, 1)));
+}
+
+TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
+  const AdaptiveRun study(adaptive_study(Kind::monte_carlo, 0.01, 100'000));
+  const MonteCarloResult found = study.monte_carlo({}).value();
+  const ConvergenceResult& end = found.convergence.value();
+  ASSERT_EQ(end.samples.size(), 1u);
+  EXPECT_LT(end.samples[0], 100'000u);
+  EXPECT_GT(end.samples[0], 1000u);
+  EXPECT_EQ(end.milestones.back(), end.samples[0]);
+  const std::size_t last = end.milestones.size() - 1;
+  for (std::size_t r = 0; r < 2; ++r) {
+    EXPECT_EQ(end.reached[r], 1);
+    const double mean = end.quantity[r * end.milestones.size() + last];
+    EXPECT_NEAR(mean, found.overall_mean[r], 1e-12 * mean);
+    // Equal numbers of samples: the variance is the mean of those at the poses, over all samples.
+    double variance = 0.0;
+    for (std::size_t m = 0; m < 3; ++m) variance += std::pow(found.std[r * 3 + m], 2) / 3.0;
+    const double half = 1.96 * std::sqrt(variance / (3.0 * static_cast<double>(end.samples[0])));
+    EXPECT_NEAR(end.half_width[r * end.milestones.size() + last], half, 1e-3 * half);
+  }
+}
+
+TEST(AdaptiveMonteCarlo, TheHeadlineDecides) {
+  Study study = adaptive_study(Kind::monte_carlo, 0.01, 100'000);
+  const std::uint64_t both = AdaptiveRun(study).monte_carlo({})->convergence->samples[0];
+  Rounds::Rule rule{2, {0}, 0.95, 0.0};
+  study.analysis.samples = 4000;
+  Rounds rounds(AdaptiveRun(study).plan, rule);
+  const auto estimates = [](std::size_t) { return std::vector<Estimate>{{1.0, {0.995, 1.005}}, {1.0, {0.0, 2.0}}}; };
+  EXPECT_FALSE(rounds.go_on(estimates));
+  EXPECT_EQ(rounds.result()->reached, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_GT(both, 0u);
+}
+
+TEST(Rounds, ExpectTheSolvesThatTheHalfWidthsAskFor) {
+  Study study = adaptive_study(Kind::monte_carlo, 0.01, 100'000);
+  const AdaptiveRun run(study);
+  Rounds rounds(run.plan, {1, {0}, 0.95, 0.0});
+  EXPECT_EQ(rounds.samples(0), 1000u);
+  EXPECT_EQ(rounds.expected_solves(), 300'000u);
+  // Three times too wide: nine times the samples, and the milestone above that.
+  EXPECT_TRUE(rounds.go_on([](std::size_t) { return std::vector<Estimate>{{1.0, {0.97, 1.03}}}; }));
+  EXPECT_EQ(rounds.samples(0), 2000u);
+  EXPECT_EQ(rounds.expected_solves(), 3u * 12'000u);
+}
+
+TEST(Rounds, WhatIsUnknownIsNotReached) {
+  const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 3000));
+  const double nan = std::nan("");
+  for (const Estimate& unknown : {Estimate{nan, {nan, nan}}, Estimate{1.0, {nan, nan}}, Estimate{1.0, {1.0, nan}}}) {
+    Rounds rounds(run.plan, {1, {0}, 0.95, kIndexRounding});
+    while (rounds.go_on([&](std::size_t) { return std::vector{unknown}; })) {
+    }
+    EXPECT_EQ(rounds.samples(0), 3000u);
+    EXPECT_EQ(rounds.result()->reached, (std::vector<std::uint8_t>{0}));
+  }
+}
+
+TEST(Rounds, BothEndsOfAnIntervalCount) {
+  const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 3000));
+  for (const Estimate& wide :
+       {Estimate{1.0, {0.98, 1.001}}, Estimate{1.0, {0.999, 1.02}}, Estimate{-1.0, {-1.02, -1.0}}}) {
+    Rounds rounds(run.plan, {1, {0}, 0.95, 0.0});
+    EXPECT_TRUE(rounds.go_on([&](std::size_t) { return std::vector{wide}; }));
+  }
+  Rounds rounds(run.plan, {1, {0}, 0.95, 0.0});
+  EXPECT_FALSE(rounds.go_on([&](std::size_t) { return std::vector{Estimate{-1.0, {-1.009, -0.991}}}; }));
+}
+
+struct Case {
+  const char* name;
+  Kind kind;
+  double relative_error;
+  std::size_t max;
+};
+
+class Adaptive : public testing::TestWithParam<Case> {
+ protected:
+  AdaptiveRun study_{adaptive_study(GetParam().kind, GetParam().relative_error, GetParam().max)};
+};
+
+TEST_P(Adaptive, SameStopAndSameBitsOnAnyNumberOfThreads) {
+  const Bits expected = run(study_, on_threads(1)).value();
+  for (const std::size_t threads : {2, 3, 7}) EXPECT_EQ(run(study_, on_threads(threads)), expected) << threads;
+}
+
+TEST_P(Adaptive, StoppedAtAnyMomentItGoesOnToTheSameBits) {
+  const Bits expected = run(study_, on_threads(2)).value();
+  States kept;
+  std::size_t stops = 0;
+  for (;;) {
+    std::atomic<bool> stop{false};
+    Checkpoints checkpoints([] { return false; },
+                            [&](std::span<const Bytes> stages) { kept.assign(stages.begin(), stages.end()); }, kept);
+    RunOptions options = on_threads(1 + stops % 2);
+    options.stop = &stop;
+    options.progress = [&](const Progress& progress) {
+      EXPECT_LE(progress.solves, progress.total);
+      stop = true;
+    };
+    options.checkpoints = &checkpoints;
+    if (const auto result = run(study_, options)) {
+      EXPECT_EQ(*result, expected);
+      break;
+    }
+    ASSERT_LT(++stops, 1000u);
+  }
+  EXPECT_GT(stops, 5u);
+}
+
+/// Every state that a run may be taken up from, the last one at its end.
+std::vector<States> states_of(const AdaptiveRun& study) {
+  std::vector<States> states;
+  Checkpoints checkpoints([] { return true; },
+                          [&](std::span<const Bytes> stages) { states.emplace_back(stages.begin(), stages.end()); });
+  RunOptions options = on_threads(2);
+  options.checkpoints = &checkpoints;
+  EXPECT_TRUE(run(study, options));
+  checkpoints.save();
+  return states;
+}
+
+std::optional<Bits> run_from(const AdaptiveRun& study, const States& state) {
+  Checkpoints checkpoints([] { return false; }, [](std::span<const Bytes>) {}, state);
+  RunOptions options = on_threads(2);
+  options.checkpoints = &checkpoints;
+  return run(study, options);
+}
+
+TEST_P(Adaptive, ALargerMaxGivesTheBitsOfAFreshRun) {
+  for (const std::size_t max : {GetParam().max + 1, GetParam().max + 700, 2 * GetParam().max, 5 * GetParam().max}) {
+    const AdaptiveRun longer(adaptive_study(GetParam().kind, GetParam().relative_error, max));
+    const Bits expected = run(longer, on_threads(2)).value();
+    const std::vector<States> states = states_of(study_);
+    for (std::size_t n = 0; n < states.size(); n += 1 + states.size() / 6) {
+      EXPECT_EQ(run_from(longer, states[n]), expected) << max << " from " << n;
+    }
+    EXPECT_EQ(run_from(longer, states.back()), expected) << max;
+  }
+}
+
+TEST_P(Adaptive, ASmallerMaxIsRefused) {
+  const AdaptiveRun shorter(adaptive_study(GetParam().kind, GetParam().relative_error, 1500));
+  EXPECT_THROW(run_from(shorter, states_of(study_).back()), BytesError);
+}
+
+TEST_P(Adaptive, TakesOrRefusesAnyOtherBytes) {
+  // Nothing to compare with: neither the program nor a sanitizer may find fault with it.
+  const std::vector<States> states = states_of(study_);
+  States changed = states[states.size() / 2];
+  Bytes& state = changed.front();
+  const Bytes sound = state;
+  for (std::size_t at = 0; at < sound.size(); at += 1 + at / 4) {
+    state[at] ^= std::byte{0xff};
+    try {
+      run_from(study_, changed);
+    } catch (const BytesError&) {
+    }
+    state = sound;
+  }
+  for (std::size_t length = 1; length < sound.size(); length += 1 + sound.size() / 50) {
+    state.assign(sound.begin(), sound.begin() + static_cast<std::ptrdiff_t>(length));
+    EXPECT_THROW(run_from(study_, changed), BytesError);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Adaptive,
+                         testing::Values(Case{"SensitivityReached", Kind::sensitivity, 0.02, 20'000},
+                                         Case{"SensitivityMax", Kind::sensitivity, 0.012, 4300},
+                                         Case{"MonteCarloReached", Kind::monte_carlo, 0.015, 20'000},
+                                         Case{"MonteCarloMax", Kind::monte_carlo, 0.006, 4300}),
+                         [](const auto& one) { return one.param.name; });
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,89 @@
+"""Studies that take samples until their intervals are narrow: the same stop and the same bits however they are run."""
+
+import h5py
+import numpy
+
+from poesy_program import main
+from resumption import MONTE_CARLO, SENSITIVITY, ResumptionTest
+
+TABLE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
+MILESTONES = [1000, 2000, 3000, 5000, 8000, 12000, 18000, 27000, 40000]
+STUDIES = {"sensitivity": SENSITIVITY.replace("samples = 12300", TABLE),
+           "monte-carlo": MONTE_CARLO.replace("samples = 12300", TABLE.replace("0.01", "0.003"))}
+
+
+class Adaptive(ResumptionTest):
+    def test_threads(self):
+        for kind, study in STUDIES.items():
+            with self.subTest(kind):
+                self.write("study.toml", study)
+                hashes = set()
+                for threads in (1, 2, 3):
+                    self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet", "--threads", threads)
+                    self.succeeds("verify", "out.h5")
+                    hashes.add(self.content_hash())
+                self.assertEqual(len(hashes), 1)
+                with h5py.File(self.folder / "out.h5") as result:
+                    group = result["convergence"]
+                    milestones = list(result["milestone"][:])
+                    self.assertEqual(milestones, MILESTONES[:len(milestones)])
+                    samples = group["samples"][()]
+                    self.assertLess(samples.max(), 40000)
+                    self.assertGreater(samples.max(), 1000)
+                    self.assertTrue(group["reached"][:].all())
+                    self.assertTrue((group["relative_half_width"][:] <= group.attrs["relative_error"]).all())
+                    self.assertEqual(group.attrs["max"], 40000)
+                    self.assertEqual(group["half_width"].dims[group["half_width"].ndim - 1].keys(), ["milestone"])
+                    if kind == "sensitivity":
+                        self.assertEqual(result["run/solves"][()], 16 * samples.sum())
+                        numpy.testing.assert_array_equal(result["sensitivity/count"][0, :, 0], samples)
+                self.assertIn(" within +-", self.succeeds("show", "out.h5"))
+                self.succeeds("export", "out.h5", "-d", "tables")
+                self.assertTrue((self.folder / "tables" / "convergence.csv").exists())
+
+    def test_killed_and_resumed(self):
+        for kind, study in STUDIES.items():
+            with self.subTest(kind):
+                expected = self.undisturbed(study)
+                seconds, code, options = 0.1, None, []
+                while code != 0:
+                    code, messages = self.run_for(seconds, "--threads", 1, *options)
+                    self.assertIn(code, (0, -9), messages)
+                    if code != 0 and self.newer.exists():
+                        options = ["--resume"]
+                    seconds *= 1.5
+                self.assertEqual(self.content_hash(), expected)
+
+    def test_a_larger_max_goes_on(self):
+        for kind, study in STUDIES.items():
+            with self.subTest(kind):
+                expected = self.undisturbed(study)
+                for shorter in ("1000", "2300", "3000"):
+                    self.write("study.toml", study.replace("40000", shorter))
+                    self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")
+                    self.assertIn("Raise max", self.succeeds("show", "out.h5"))
+                    self.write("study.toml", study)
+                    self.assertEqual(self.resume_to_end(), expected)
+
+    def test_other_changes_are_refused(self):
+        study = STUDIES["sensitivity"]
+        self.write("study.toml", study.replace("40000", "3000"))
+        self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")
+        for old, new, word in (("0.01 }", "0.02 }", "samples.relative_error = 0.01"),
+                               ("min = 1000", "min = 500", "samples.min = 1000"),
+                               (TABLE, "samples = 40000", "samples.min = 1000"), ("40000", "2000", "3000 samples")):
+            self.write("study.toml", study.replace(old, new))
+            done = self.resume()
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(word, done.stderr.decode())
+
+    def test_check_says_what_it_means(self):
+        self.write("study.toml", STUDIES["sensitivity"])
+        text = self.succeeds("check", "study.toml")
+        self.assertIn("3 errors x 16 poses x 1000 to 40000 samples = at least 48000 and at most 1920000 solves", text)
+        self.assertIn("at most about", text)
+        self.assertIn("samples.relative_error = 0.01", text)
+
+
+if __name__ == "__main__":
+    main()
