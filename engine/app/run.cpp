@@ -84,6 +84,10 @@ void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
     throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
                      "run it whole, it is small, or over MPI ranks");
   }
+  if (study.analysis.adaptive) {
+    throw InputError({}, "--shard divides no study with adaptive samples, which ends errors by what all poses say",
+                     "write samples = N, or run it over MPI ranks");
+  }
   if (const std::size_t most = divisible(study, poses); shard.count > most) {
     throw InputError(
         {}, fmt::format("--shard asks for {} shards, but this study divides into {} at most", shard.count, most),
