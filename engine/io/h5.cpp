@@ -441,6 +441,8 @@ POESY_H5_ELEMENT(std::uint8_t)
 POESY_H5_ELEMENT(std::string)
 #undef POESY_H5_ELEMENT
 
+void close_library() { checked(H5close(), "close", "HDF5"); }
+
 std::string library_version() {
   unsigned major = 0;
   unsigned minor = 0;

@@ -7,10 +7,11 @@
 
 #include "engine/base/error.h"
 #include "engine/io/content_hash.h"
-#include "engine/io/h5_heap.h"
 #include "engine/io/result_file.h"
 #include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
+#include "engine/io/trial_read.h"
+#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {
@@ -18,27 +19,18 @@ namespace {
 constexpr const char* kOther = "give a result file written by poesy";
 constexpr const char* kDamaged = "take another copy, or run the study again";
 
-[[noreturn]] void fail_to_read(const std::string& path) {
-  throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
-}
-
-std::vector<std::byte> read_bytes(const std::string& path) {
+void check_readable(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw FileError(path, "is a folder", kOther);
   errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail_to_read(path);
-  std::vector<std::byte> bytes(std::filesystem::file_size(path, ignored));
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) fail_to_read(path);
-  return bytes;
+  if (!std::ifstream(path)) {
+    throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
+  }
 }
 
 h5::File open_hdf5(const std::string& path) {
-  const auto heap_problem = h5::damaged_heap(read_bytes(path));
   try {
-    h5::File file = h5::File::open(path);
-    if (heap_problem) throw FileError(path, "is damaged: " + *heap_problem, kDamaged);
-    return file;
+    return h5::File::open(path);
   } catch (const h5::Error& error) {
     throw FileError(path, std::string("is not an intact HDF5 file: ") + error.what(), kOther);
   }
@@ -63,17 +55,18 @@ void check_version(const std::string& path, const h5::File& file) {
   const auto version = file.attribute<std::int64_t>("/", "version");
   if (version.size() != 2) throw h5::Error("attribute 'version' is not two numbers");
   if (version[0] > result_format::kMajor) {
-    throw FileError(path,
-                    "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
-                        ", newer than this program's " + std::to_string(result_format::kMajor) + "." +
-                        std::to_string(result_format::kMinor),
-                    "use the poesy that wrote it (" + text_attribute(file, "poesy_version") + ") or a newer one");
+    throw FileError(
+        path,
+        "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
+            ", newer than this program's " + std::to_string(result_format::kMajor) + "." +
+            std::to_string(result_format::kMinor),
+        "use the poesy that wrote it (" + printable(text_attribute(file, "poesy_version")) + ") or a newer one");
   }
 }
 
-/// Opens a result file and gives what `use(file)` gives. Anything HDF5 stumbles over means a damaged file.
+/// Opens a result file and gives what `use(file)` gives. Anything that HDF5 reports means a damaged file.
 template <class Use>
-auto with_result(const std::string& path, const Use& use) {
+auto use_result(const std::string& path, const Use& use) {
   const h5::File file = open_hdf5(path);
   if (!is_result(file)) throw FileError(path, "is an HDF5 file, but not a result of poesy", kOther);
   try {
@@ -83,7 +76,27 @@ auto with_result(const std::string& path, const Use& use) {
     throw;
   } catch (const std::exception& error) {
     // Besides h5::Error: an empty list where a value should be, a shape too large for memory.
-    throw FileError(path, std::string("is damaged: ") + error.what(), kDamaged);
+    // It may quote the file.
+    throw FileError(path, "is damaged: " + printable(error.what(), 300), kDamaged);
+  }
+}
+
+/// The same, but of a file over which HDF5 fails in any other way too: it is used in another process first.
+template <class Use>
+auto with_result(const std::string& path, const Use& use) {
+  check_readable(path);
+  trial_read(path, [&] {
+    static_cast<void>(use_result(path, use));
+    h5::close_library();
+  });
+  return use_result(path, use);
+}
+
+/// Names become names of files and cells of tables. Throws Error for one that cannot.
+void check_names(const std::vector<std::string>& names, const std::string& path) {
+  for (const std::string& name : names) {
+    const bool fits = std::ranges::none_of(name, [](char c) { return c == '/' || c == ',' || (c >= 0 && c < ' '); });
+    if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is no name");
   }
 }
 
@@ -91,6 +104,7 @@ std::vector<NamedUnit> read_named(const h5::File& file, const std::string& group
   const std::size_t count = axis_length(file, axis);
   const auto names = read_exactly<std::string>(file, group + "/name", count);
   const auto units = read_exactly<std::string>(file, group + "/unit", count);
+  check_names(names, group + "/name");
   std::vector<NamedUnit> list;
   for (std::size_t k = 0; k < count; ++k) list.push_back({names[k], units[k]});
   return list;

@@ -200,6 +200,31 @@ TEST(NewerMinorVersion, IsRead) {
   EXPECT_EQ(read_result(folder / "r.h5").kind, "sensitivity");
 }
 
+// Whatever byte is damaged, the reader refuses the file, or sees the difference, or the byte meant nothing: it never
+// crashes.
+TEST(DamagedResult, NeverCrashesTheReader) {
+  const TempFolder folder;
+  const std::string path = folder / "r.h5";
+  Example().write_sensitivity(path);
+  const std::string intact = read_bytes(path);
+  std::size_t refused = 0;
+  std::size_t different = 0;
+  for (std::size_t place = 0; place < intact.size(); place += 61) {
+    std::string damaged = intact;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0xff);
+    write_bytes(path, damaged);
+    try {
+      const Verification verification = verify_result(path);
+      if (!verification.matches()) ++different;
+      read_result(path);
+    } catch (const FileError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 100U);
+  EXPECT_GT(different, 20U);
+}
+
 TEST(DamagedResult, WithADatasetMissingIsRefused) {
   const TempFolder folder;
   const std::string path = folder / "r.h5";
