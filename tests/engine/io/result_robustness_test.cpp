@@ -3,6 +3,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 
@@ -223,6 +224,20 @@ TEST(DamagedResult, NeverCrashesTheReader) {
   }
   EXPECT_GT(refused, 100U);
   EXPECT_GT(different, 20U);
+}
+
+TEST(DamagedResult, WithNamesThatLeadElsewhereIsRefused) {
+  const TempFolder folder;
+  for (const char* name : {"../../x", "a,b", "", "line\nbreak", "clear \x1b[2J"}) {
+    Catalog catalog = fake_catalog();
+    catalog[0].description.responses[0].name = name;
+    Example example;
+    example.study.mechanism.entry = &catalog[0];
+    example.write_sensitivity(folder / "r.h5");
+    const std::string message = file_error([&] { export_tables(folder / "r.h5", folder / "tables"); });
+    expect_contains(message, "in /responses/name is no name");
+    EXPECT_TRUE(std::ranges::none_of(message, [](char c) { return c >= 0 && c < ' '; })) << message;
+  }
 }
 
 TEST(DamagedResult, WithADatasetMissingIsRefused) {
