@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "engine/base/error.h"
+#include "engine/io/h5.h"
 #include "engine/io/result_file.h"
 #include "tests/engine/io/example_result.h"
 #include "tests/support/temp_folder.h"
@@ -224,6 +225,31 @@ TEST(DamagedResult, NeverCrashesTheReader) {
   }
   EXPECT_GT(refused, 100U);
   EXPECT_GT(different, 20U);
+}
+
+/// A dataset that claims to have this shape, and has nothing.
+void write_claim(const std::string& path, const std::vector<hsize_t>& shape) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  const std::vector<hsize_t> chunk(shape.size(), 1);
+  H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data());
+  H5Dclose(H5Dcreate2(file, "/claim", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+  H5Pclose(properties);
+  H5Sclose(space);
+  H5Fclose(file);
+}
+
+TEST(DamagedResult, WithMoreElementsThanCanBeIsRefused) {
+  const TempFolder folder;
+  constexpr hsize_t kLong = hsize_t{1} << 32U;
+  for (const auto& shape : {std::vector<hsize_t>{kLong << 9U}, {kLong, kLong}, {kLong, kLong, 3}}) {
+    write_claim(folder / "claim.h5", shape);
+    const h5::File file = h5::File::open(folder / "claim.h5");
+    EXPECT_THROW(file.shape("/claim"), h5::Error);
+    EXPECT_THROW(file.read<double>("/claim"), h5::Error);
+    EXPECT_THROW(file.value("/claim"), h5::Error);
+  }
 }
 
 TEST(DamagedResult, WithNamesThatLeadElsewhereIsRefused) {
