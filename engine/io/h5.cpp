@@ -211,8 +211,9 @@ Value read_value(const Source& source, const Read& read) {
                : H5Tget_sign(source.type.get()) == H5T_SGN_NONE ? Value::Type::unsigned_integer
                                                                 : Value::Type::signed_integer;
   value.width = H5Tget_size(source.type.get());
-  if (value.width > kWidestNumber)
+  if (value.width > kWidestNumber) {
     throw Error(source.object + " has numbers of " + std::to_string(value.width) + " bytes");
+  }
   const Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.object);
   checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.object);
   value.numbers.resize(size(value.shape) * value.width);
