@@ -61,11 +61,12 @@ struct Pipe {
   }
 };
 
-/// Lowers a limit of this process.
+/// Lowers a limit of this process. Who passes it by one more is killed, whatever signals are blocked.
 void limit(int resource, rlim_t most) {
   rlimit limits{};
   ::getrlimit(resource, &limits);
   limits.rlim_cur = std::min(most, limits.rlim_cur);
+  limits.rlim_max = std::min(most + 1, limits.rlim_max);
   ::setrlimit(resource, &limits);
 }
 
