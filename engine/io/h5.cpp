@@ -98,10 +98,19 @@ Handle space_of(const Shape& shape) {
   return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose, "make", "a space"};
 }
 
+// Sixteen GiB of doubles. Two such numbers can be multiplied without overflow.
+constexpr hsize_t kMostElements = hsize_t{1} << 31U;
+constexpr std::size_t kWidestNumber = 16;
+
 Shape shape_of(hid_t space, const std::string& object) {
   const int rank = checked(H5Sget_simple_extent_ndims(space), "read the shape of", object);
   std::vector<hsize_t> lengths(static_cast<std::size_t>(rank));
   checked(H5Sget_simple_extent_dims(space, lengths.data(), nullptr), "read the shape of", object);
+  hsize_t count = 1;
+  for (const hsize_t length : lengths) {
+    if (length > 0 && count > kMostElements / length) throw Error(object + " has more elements than any result");
+    count *= length;
+  }
   return {lengths.begin(), lengths.end()};
 }
 
@@ -202,6 +211,9 @@ Value read_value(const Source& source, const Read& read) {
                : H5Tget_sign(source.type.get()) == H5T_SGN_NONE ? Value::Type::unsigned_integer
                                                                 : Value::Type::signed_integer;
   value.width = H5Tget_size(source.type.get());
+  if (value.width > kWidestNumber) {
+    throw Error(source.object + " has numbers of " + std::to_string(value.width) + " bytes");
+  }
   const Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.object);
   checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.object);
   value.numbers.resize(size(value.shape) * value.width);
@@ -440,6 +452,8 @@ POESY_H5_ELEMENT(std::uint32_t)
 POESY_H5_ELEMENT(std::uint8_t)
 POESY_H5_ELEMENT(std::string)
 #undef POESY_H5_ELEMENT
+
+void close_library() { checked(H5close(), "close", "HDF5"); }
 
 std::string library_version() {
   unsigned major = 0;

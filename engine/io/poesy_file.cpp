@@ -6,7 +6,6 @@
 #include <system_error>
 #include <vector>
 
-#include "engine/io/h5_heap.h"
 #include "engine/io/result_format.h"
 
 namespace poesy {
@@ -14,27 +13,9 @@ namespace {
 
 constexpr const char* kOther = "give a result file written by poesy";
 
-[[noreturn]] void fail_to_read(const std::string& path) {
-  throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
-}
-
-std::vector<std::byte> read_bytes(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw FileError(path, "is a folder", kOther);
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail_to_read(path);
-  std::vector<std::byte> bytes(std::filesystem::file_size(path, ignored));
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) fail_to_read(path);
-  return bytes;
-}
-
 h5::File open_hdf5(const std::string& path) {
-  const auto heap_problem = h5::damaged_heap(read_bytes(path));
   try {
-    h5::File file = h5::File::open(path);
-    if (heap_problem) throw FileError(path, "is damaged: " + *heap_problem, kDamagedRemedy);
-    return file;
+    return h5::File::open(path);
   } catch (const h5::Error& error) {
     throw FileError(path, std::string("is not an intact HDF5 file: ") + error.what(), kOther);
   }
@@ -53,11 +34,12 @@ void check_version(const std::string& path, const h5::File& file) {
   const auto version = file.attribute<std::int64_t>("/", "version");
   if (version.size() != 2) throw h5::Error("attribute 'version' is not two numbers");
   if (version[0] > result_format::kMajor) {
-    throw FileError(path,
-                    "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
-                        ", newer than this program's " + std::to_string(result_format::kMajor) + "." +
-                        std::to_string(result_format::kMinor),
-                    "use the poesy that wrote it (" + text_attribute(file, "poesy_version") + ") or a newer one");
+    throw FileError(
+        path,
+        "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
+            ", newer than this program's " + std::to_string(result_format::kMajor) + "." +
+            std::to_string(result_format::kMinor),
+        "use the poesy that wrote it (" + printable(text_attribute(file, "poesy_version")) + ") or a newer one");
   }
 }
 
@@ -67,6 +49,15 @@ std::string text_attribute(const h5::File& file, const std::string& name) {
   const auto values = file.attribute<std::string>("/", name);
   if (values.size() != 1) throw h5::Error("attribute '" + name + "' is not one text");
   return values.front();
+}
+
+void check_readable(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw FileError(path, "is a folder", kOther);
+  errno = 0;
+  if (!std::ifstream(path)) {
+    throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
+  }
 }
 
 h5::File open_poesy_file(const std::string& path) {

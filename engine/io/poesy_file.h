@@ -5,6 +5,8 @@
 
 #include "engine/base/error.h"
 #include "engine/io/h5.h"
+#include "engine/io/trial_read.h"
+#include "engine/io/wording.h"
 
 namespace poesy {
 
@@ -12,7 +14,7 @@ namespace poesy {
 inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
 
 /// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, or of a newer major
-/// version; h5::Error when it is damaged.
+/// version; h5::Error when it is damaged in a way that HDF5 reports.
 h5::File open_poesy_file(const std::string& path);
 
 /// The root's attribute of this name, which holds one text.
@@ -21,18 +23,33 @@ std::string text_attribute(const h5::File& file, const std::string& name);
 /// Throws FileError, which says what it is instead, when the file's type is not this one.
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype);
 
-/// Opens a file that poesy wrote and gives what `use(file)` gives. Anything HDF5 stumbles over means a damaged file.
+/// Opens such a file and gives what `use(file)` gives. Anything that HDF5 reports means a damaged file.
 template <class Use>
-auto with_poesy_file(const std::string& path, const Use& use) {
+auto use_poesy_file(const std::string& path, const Use& use) {
   try {
     const h5::File file = open_poesy_file(path);
     return use(file);
   } catch (const FileError&) {
     throw;
   } catch (const std::exception& error) {
-    // Besides h5::Error: an empty list where a value should be, a shape too large for memory.
-    throw FileError(path, std::string("is damaged: ") + error.what(), kDamagedRemedy);
+    // Besides h5::Error: an empty list where a value should be, a shape too large for memory. It may quote the file.
+    throw FileError(path, "is damaged: " + printable(error.what(), 300), kDamagedRemedy);
   }
+}
+
+/// Throws FileError when there is no such file to read.
+void check_readable(const std::string& path);
+
+/// The same as use_poesy_file, but of a file over which HDF5 fails in any other way too: it is used in another process
+/// first.
+template <class Use>
+auto with_poesy_file(const std::string& path, const Use& use) {
+  check_readable(path);
+  trial_read(path, [&] {
+    static_cast<void>(use_poesy_file(path, use));
+    h5::close_library();
+  });
+  return use_poesy_file(path, use);
 }
 
 }  // namespace poesy

@@ -10,10 +10,19 @@
 namespace poesy {
 namespace {
 
+/// Names become names of files and cells of tables. Throws Error for one that cannot.
+void check_names(const std::vector<std::string>& names, const std::string& path) {
+  for (const std::string& name : names) {
+    const bool fits = std::ranges::none_of(name, [](char c) { return c == '/' || c == ',' || (c >= 0 && c < ' '); });
+    if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is no name");
+  }
+}
+
 std::vector<NamedUnit> read_named(const h5::File& file, const std::string& group, const std::string& axis) {
   const std::size_t count = axis_length(file, axis);
   const auto names = read_exactly<std::string>(file, group + "/name", count);
   const auto units = read_exactly<std::string>(file, group + "/unit", count);
+  check_names(names, group + "/name");
   std::vector<NamedUnit> list;
   for (std::size_t k = 0; k < count; ++k) list.push_back({names[k], units[k]});
   return list;

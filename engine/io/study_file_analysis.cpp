@@ -2,6 +2,7 @@
 #include <array>
 #include <numeric>
 #include <optional>
+#include <vector>
 
 #include "engine/io/study_file_parts.h"
 #include "engine/io/wording.h"
@@ -88,7 +89,7 @@ void refuse_keys_of_other_kinds(const StudySection& section, Analysis::Kind kind
   using Kind = Analysis::Kind;
   struct Key {
     std::string_view name;
-    std::initializer_list<Kind> kinds;
+    std::vector<Kind> kinds;
   };
   static const std::array kKeys{Key{"background", {Kind::sensitivity, Kind::monte_carlo, Kind::evaluate}},
                                 Key{"reference", {Kind::sensitivity}},

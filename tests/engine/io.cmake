@@ -5,7 +5,7 @@ poesy_test(result_file_test LABELS unit
                    engine/io/result_fidelity_test.cpp engine/io/result_separation_test.cpp
            LINKS poesy_io)
 poesy_test(content_hash_test LABELS unit SOURCES engine/io/content_hash_test.cpp LINKS poesy_io hdf5::hdf5)
-poesy_test(result_robustness_test LABELS robustness SOURCES engine/io/h5_heap_test.cpp engine/io/result_robustness_test.cpp
+poesy_test(result_robustness_test LABELS robustness SOURCES engine/io/result_robustness_test.cpp engine/io/trial_read_test.cpp
            LINKS poesy_io hdf5::hdf5)
 poesy_test(checkpoint_test LABELS robustness SOURCES engine/io/checkpoint_test.cpp LINKS poesy_io)
 poesy_test(convergence_test LABELS unit

@@ -3,10 +3,12 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 
 #include "engine/base/error.h"
+#include "engine/io/h5.h"
 #include "engine/io/result_file.h"
 #include "tests/engine/io/example_result.h"
 #include "tests/support/temp_folder.h"
@@ -198,6 +200,70 @@ TEST(NewerMinorVersion, IsRead) {
   Example().write_sensitivity(folder / "r.h5");
   set_version(folder / "r.h5", 1, 7);
   EXPECT_EQ(read_result(folder / "r.h5").kind, "sensitivity");
+}
+
+// Whatever byte is damaged, the reader refuses the file, or sees the difference, or the byte meant nothing: it never
+// crashes.
+TEST(DamagedResult, NeverCrashesTheReader) {
+  const TempFolder folder;
+  const std::string path = folder / "r.h5";
+  Example().write_sensitivity(path);
+  const std::string intact = read_bytes(path);
+  std::size_t refused = 0;
+  std::size_t different = 0;
+  for (std::size_t place = 0; place < intact.size(); place += 61) {
+    std::string damaged = intact;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0xff);
+    write_bytes(path, damaged);
+    try {
+      const Verification verification = verify_result(path);
+      if (!verification.matches()) ++different;
+      read_result(path);
+    } catch (const FileError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 100U);
+  EXPECT_GT(different, 20U);
+}
+
+/// A dataset that claims to have this shape, and has nothing.
+void write_claim(const std::string& path, const std::vector<hsize_t>& shape) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  const std::vector<hsize_t> chunk(shape.size(), 1);
+  H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data());
+  H5Dclose(H5Dcreate2(file, "/claim", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+  H5Pclose(properties);
+  H5Sclose(space);
+  H5Fclose(file);
+}
+
+TEST(DamagedResult, WithMoreElementsThanCanBeIsRefused) {
+  const TempFolder folder;
+  constexpr hsize_t kLong = hsize_t{1} << 32U;
+  for (const auto& shape : {std::vector<hsize_t>{kLong << 9U}, {kLong, kLong}, {kLong, kLong, 3}}) {
+    write_claim(folder / "claim.h5", shape);
+    const h5::File file = h5::File::open(folder / "claim.h5");
+    EXPECT_THROW(file.shape("/claim"), h5::Error);
+    EXPECT_THROW(file.read<double>("/claim"), h5::Error);
+    EXPECT_THROW(file.value("/claim"), h5::Error);
+  }
+}
+
+TEST(DamagedResult, WithNamesThatLeadElsewhereIsRefused) {
+  const TempFolder folder;
+  for (const char* name : {"../../x", "a,b", "", "line\nbreak", "clear \x1b[2J"}) {
+    Catalog catalog = fake_catalog();
+    catalog[0].description.responses[0].name = name;
+    Example example;
+    example.study.mechanism.entry = &catalog[0];
+    example.write_sensitivity(folder / "r.h5");
+    const std::string message = file_error([&] { export_tables(folder / "r.h5", folder / "tables"); });
+    expect_contains(message, "in /responses/name is no name");
+    EXPECT_TRUE(std::ranges::none_of(message, [](char c) { return c >= 0 && c < ' '; })) << message;
+  }
 }
 
 TEST(DamagedResult, WithADatasetMissingIsRefused) {

@@ -1,0 +1,44 @@
+// A table of errors, for every mechanism.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/io/table_file.h"
+#include "models/registry.h"
+#include "tests/fuzz/target.h"
+
+namespace {
+
+using namespace poesy;
+
+/// All mechanisms, with the geometry they have unless a study says otherwise.
+const std::vector<std::unique_ptr<Model>>& models() {
+  static const auto all = [] {
+    std::vector<std::unique_ptr<Model>> list;
+    for (const CatalogEntry& entry : registry()) {
+      std::vector<double> geometry;
+      for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+      list.push_back(entry.build(geometry, 0));
+    }
+    return list;
+  }();
+  return all;
+}
+
+void check(const ErrorTable& table) {
+  fuzz::expect(table.rows > 0 && !table.factors.empty(), "a table has a row and a column");
+  fuzz::expect(table.values.size() == table.rows * table.factors.size(), "every row is complete");
+  fuzz::expect(std::ranges::all_of(table.values, [](double x) { return std::isfinite(x); }), "errors are finite");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const fuzz::MemoryFile file({data, size});
+  for (const auto& model : models()) {
+    fuzz::accepted<InputError>([&] { check(read_errors(file.path(), *model)); });
+  }
+  return 0;
+}

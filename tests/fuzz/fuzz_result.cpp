@@ -1,0 +1,59 @@
+// A result file. What reads is printed and exported. A crash or a hang of HDF5 in the child that reads first
+// (engine/io/trial_read.h) is no finding; one in this process is.
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/io/result_file.h"
+#include "engine/report/tables.h"
+#include "tests/fuzz/h5_checksums.h"
+#include "tests/fuzz/shared_coverage.h"
+#include "tests/fuzz/target.h"
+
+namespace {
+
+using namespace poesy;
+
+/// Where tables are written: one folder in memory for all inputs.
+const std::string& folder() {
+  static const std::string path = [] {
+    std::string pattern = "/dev/shm/poesy-fuzz-XXXXXX";
+    fuzz::expect(mkdtemp(pattern.data()) != nullptr, "there is a folder in memory");
+    return pattern;
+  }();
+  return path;
+}
+
+/// No child may take longer than the fuzzer lets an input take.
+void limit_children() {
+  pthread_atfork(nullptr, nullptr, [] {
+    constexpr rlim_t kSeconds = 2;
+    const rlimit limits{.rlim_cur = kSeconds, .rlim_max = kSeconds};
+    ::setrlimit(RLIMIT_CPU, &limits);
+  });
+}
+
+void use(const std::string& path) {
+  const StoredResult result = read_result(path);
+  static_cast<void>(summary_text(result));
+  static_cast<void>(result_tables(result, default_ranking(result)));
+  for (const std::string& table : export_tables(path, folder())) {
+    fuzz::expect(std::filesystem::path(table).parent_path() == folder(), "a table lies in the folder that was named");
+    ::unlink(table.c_str());
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const bool once = (fuzz::share_coverage(), limit_children(), true);
+  static_cast<void>(once);
+  std::vector<std::uint8_t> bytes(data, data + size);
+  fuzz::repair_checksums(bytes);
+  const fuzz::MemoryFile file(bytes);
+  fuzz::accepted<FileError>([&] { static_cast<void>(verify_result(file.path())); });
+  fuzz::accepted<FileError>([&] { use(file.path()); });
+  return 0;
+}

@@ -1,0 +1,175 @@
+// Writes a result file of each kind, and checkpoints without their digests, into FOLDER/result and FOLDER/checkpoint:
+// where the fuzzers of binary formats begin.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "engine/io/checkpoint.h"
+#include "engine/run/cases.h"
+#include "engine/run/evaluation_state.h"
+#include "tests/engine/io/example_result.h"
+#include "tests/fuzz/small_plans.h"
+
+namespace {
+
+using namespace poesy;
+
+// A mechanism that has all that a result can speak of.
+const Catalog& catalog() {
+  static const Catalog all = [] {
+    Catalog list = test::fake_catalog();
+    list[0].description.fidelities = {"exact", "first-order"};
+    list[0].description.separation = {"how far the platform moves", {"compensable", "", "non-compensable"}};
+    return list;
+  }();
+  return all;
+}
+
+void write_sensitivity_seed(const std::string& path) {
+  test::Example example;
+  example.study.mechanism.entry = &catalog()[0];
+  example.study.mechanism.compared = 1;
+  SensitivityResult result = example.sensitivity();
+  const std::vector<double> cells(2 * test::Example::kPoses, 0.25);
+  result.separation = {.drive = cells,
+                       .constraint = cells,
+                       .effect = cells,
+                       .residual = cells,
+                       .removable_local = cells,
+                       .drive_share = {0.25, 0.75},
+                       .removable = {0.125, 0.5},
+                       .removable_together = 0.375};
+  FidelityResult& fidelity = result.fidelity.emplace();
+  fidelity.linearity = 0.02;
+  fidelity.global = {1.0, 2.0, 3.0, 4.0};
+  fidelity.discrepancy = {0.5, 0.25, -0.125, 0.0};
+  fidelity.relative_discrepancy = {0.25, 0.125, -0.0625, std::numeric_limits<double>::infinity()};
+  fidelity.nonlinearity = {0.5, 0.0625, 0.03125, 0.75};
+  fidelity.linear = {1, 0};
+  fidelity.not_converged = {0, 1, 2, 3, 4, 5, 6, 7};
+  write_sensitivity(path, example.study, example.poses, result, example.facts);
+}
+
+void write_cases_seed(const std::string& path) {
+  test::Example example;
+  example.study.analysis.kind = Analysis::Kind::evaluate;
+  example.study.analysis.cases = {
+      {"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}, {"none", {0.0, 0.0, 0.0}}};
+  const CaseResult result = case_result(example.evaluation(Pairing::every_pose_with_every_row), NotConverged::include);
+  write_cases(path, example.study, example.poses, result, example.facts);
+}
+
+void write_identification_seed(const std::string& path) {
+  test::Example example;
+  example.study.analysis.kind = Analysis::Kind::identification;
+  example.study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+  IdentificationResult result;
+  result.factors = 2;
+  result.groups = 2;
+  result.poses = test::Example::kPoses;
+  result.rounding = 1.5e-14;
+  result.required_poses = 3;
+  result.single_below = {0, 4, 1, 4};
+  result.single_max = {1e-3, 0.0, 2e-3, 1.0};
+  result.not_solved = {0, 0, 1, 0};
+  result.coupled_below = {0, 2, 0, 3};
+  result.coupled_reduced = {0, 4, 0, 1};
+  result.single_by_group = {1, 0, 1, 0};
+  result.coupled_by_group = {1, 1, 1, 0};
+  result.single = {1, 0};
+  result.coupled = {1, 1};
+  result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
+  result.solves.by_status = {5, 4, 3, 2, 1};
+  write_identification(path, example.study, example.poses, result, example.facts);
+}
+
+void write_results(const std::string& folder) {
+  write_sensitivity_seed(folder + "/sensitivity");
+  write_cases_seed(folder + "/cases");
+  write_identification_seed(folder + "/identification");
+  test::Example().write_evaluation(folder + "/paired", Pairing::row_by_row);
+  test::Example().write_monte_carlo(folder + "/monte_carlo");
+  test::Example().write_coupling(folder + "/coupling");
+}
+
+/// The states of a run at every moment at which it may stop.
+template <class Run>
+std::vector<Bytes> states_of(const Run& run) {
+  std::vector<Bytes> states;
+  Checkpoints checkpoints([] { return true; }, [&](std::span<const Bytes> stages) { states.push_back(stages.back()); });
+  RunOptions options;
+  options.threads = 1;
+  options.checkpoints = &checkpoints;
+  run(options);
+  checkpoints.save();
+  return states;
+}
+
+std::vector<Bytes> evaluation_states() {
+  std::vector<Bytes> states;
+  EvaluationResult result = fuzz::empty_evaluation();
+  EvaluationProgress progress(result, fuzz::kBlockRows);
+  for (std::size_t block = 0; block < 6; ++block) {
+    states.push_back(progress.state());
+    progress.add_block();
+  }
+  states.push_back(progress.state());
+  return states;
+}
+
+/// Without the digest, which the fuzzer adds.
+void write_checkpoint(const std::string& path, std::span<const Bytes> stages) {
+  const CheckpointIdentity identity{.poesy_version = "0.1.0",
+                                    .git_commit = "abc",
+                                    .model = "fake",
+                                    .seed = 5,
+                                    .samples = 2300,
+                                    .study = "[poses]\ncount = 2\n",
+                                    .poses = "0123"};
+  Bytes file;
+  const CheckpointPieces pieces(identity, {2.5, 0.5}, stages);
+  pieces.for_each([&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
+  file.resize(file.size() - 32);
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+}
+
+/// One in the middle and one at the end of the run.
+void write_checkpoints(const std::string& path, const std::vector<Bytes>& states) {
+  write_checkpoint(path + "_begun", std::span(states).subspan(states.size() / 2, 1));
+  write_checkpoint(path + "_done", std::span(states).last(1));
+}
+
+void write_checkpoints(const std::string& folder) {
+  const fuzz::SmallPlan one_by_one(Analysis::Kind::sensitivity);
+  const fuzz::SmallPlan together(Analysis::Kind::monte_carlo);
+  write_checkpoints(folder + "/sensitivity", states_of([&](const RunOptions& options) {
+                      run_sensitivity(one_by_one.plan, *one_by_one.model, 0.95, options);
+                    }));
+  write_checkpoints(folder + "/monte_carlo", states_of([&](const RunOptions& options) {
+                      run_monte_carlo(together.plan, *together.model, together.study.analysis, options);
+                    }));
+  write_checkpoints(folder + "/evaluation", evaluation_states());
+  write_checkpoint(folder + "/all_stages", evaluation_states());
+  write_checkpoint(folder + "/empty", {});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+    return 2;
+  }
+  const std::string folder = argv[1];
+  for (const char* name : {"/result", "/checkpoint"}) std::filesystem::create_directories(folder + name);
+  write_results(folder + "/result");
+  write_checkpoints(folder + "/checkpoint");
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
