@@ -33,16 +33,26 @@ class Checkpoints {
   template <class State>
   void merged(const State& state) {
     if (!due_()) return;
-    stages_[begun_ - 1] = state();
+    take(state);
     save();
   }
 
-  /// The stage ended with this state.
-  void end(Bytes state) { stages_[begun_ - 1] = std::move(state); }
+  /// The stage ended.
+  template <class State>
+  void end(const State& state) {
+    take(state);
+  }
 
   void save() const { save_(stages_); }
 
  private:
+  template <class State>
+  void take(const State& state) {
+    Bytes& stage = stages_[begun_ - 1];
+    stage = Bytes();  // the older state goes first: there need not be room for two
+    stage = state();
+  }
+
   Due due_;
   Save save_;
   std::vector<Bytes> stages_;  ///< those begun, then what is left of the earlier run's
@@ -71,7 +81,7 @@ class Stage {
   template <class State>
   void end(bool complete, const State& state) {
     if (checkpoints_ == nullptr) return;
-    checkpoints_->end(state());
+    checkpoints_->end(state);
     if (!complete) checkpoints_->save();
   }
 

@@ -192,6 +192,7 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose) {
 
 Bytes MonteCarloCollector::state() const {
   ByteWriter to;
+  to.reserve(kept_bytes_ + kept_bytes_ / 4);  // what is kept, and some more
   for (const std::uint64_t number : std::array<std::uint64_t, 6>{
            kKind, responses_, result_.poses, result_.levels.size(), plan_->samples(), pose_.value}) {
     to.number(number);

@@ -1,7 +1,7 @@
 """A disk that is full, for a checkpoint or for the result: exit code 3, what is missing, and nothing of before is lost.
 
-The disks are small tmpfs in a mount namespace of the test's own, so they are gone with it; without root, a user namespace
-gives the right to mount. Where neither is allowed, the test is skipped (exit code 77).
+The disks are small tmpfs in a mount namespace of the test's own, so they are gone with it; without root, a user
+namespace gives the right to mount. Where neither is allowed, the test is skipped (exit code 77).
 """
 
 import os
@@ -30,7 +30,8 @@ AN_OLDER_RESULT = "an older result"
 def enter_namespace():
     """Starts this test again where it may mount. Returns only where that is not possible."""
     with tempfile.TemporaryDirectory() as folder:
-        mounted = subprocess.run([*NAMESPACE, "mount", "-t", "tmpfs", "tmpfs", folder], capture_output=True, check=False)
+        mounted = subprocess.run([*NAMESPACE, "mount", "-t", "tmpfs", "tmpfs", folder], capture_output=True,
+                                 check=False)
     if mounted.returncode == 0:
         os.environ[IN_NAMESPACE] = "1"
         os.execvp(NAMESPACE[0], [*NAMESPACE, sys.executable, "-B", *sys.argv])
@@ -139,7 +140,7 @@ class FullDisk(ResumptionTest):
     def test_disk_fills_up_under_way(self):
         """Another program takes the room between two checkpoints of a run."""
         expected = self.prepare(LONG_CASES, "100m")
-        command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "0.01 s", "--threads", "1"]
+        command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "0.01 s"]
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE) as run:
             while run.poll() is None and not self.newer.exists():
                 time.sleep(0.001)
