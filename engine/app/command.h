@@ -14,6 +14,7 @@ void add_check(CLI::App& program, Action& action);
 void add_evaluate(CLI::App& program, Action& action);
 void add_show(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
+void add_merge(CLI::App& program, Action& action);
 void add_verify(CLI::App& program, Action& action);
 void add_models(CLI::App& program, Action& action);
 void add_template(CLI::App& program, Action& action);

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <charconv>
 #include <filesystem>
 #include <optional>
 
@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
+#include "engine/io/wording.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -23,6 +24,7 @@ struct Options {
   std::string result;
   std::size_t threads = 0;
   std::optional<std::uint64_t> seed;
+  std::optional<Shard> shard;
   bool quiet = false;
   ResumeOptions resume;
   std::string program;  ///< as it was called
@@ -33,6 +35,7 @@ std::string resume_command(const Options& options) {
   std::vector<std::string> words{options.program, "run", options.study};
   const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
   if (!options.result.empty()) add("-o", options.result);
+  if (options.shard) add("--shard", to_string(*options.shard));
   if (options.threads != 0) add("--threads", std::to_string(options.threads));
   if (options.seed) add("--seed", std::to_string(*options.seed));
   if (options.resume.every != ResumeOptions().every) add("--checkpoint-every", options.resume.every);
@@ -43,24 +46,49 @@ std::string resume_command(const Options& options) {
   return shell_command(words);
 }
 
-/// study.toml gives study.h5 in the current folder.
-std::string default_result(const std::string& study) {
-  return std::filesystem::path(study).filename().replace_extension(".h5").string();
+/// study.toml gives study.h5 in the current folder, its second shard of five study.2-of-5.h5.
+std::string default_result(const Options& options) {
+  const std::filesystem::path stem = std::filesystem::path(options.study).filename().stem();
+  if (!options.shard) return stem.string() + ".h5";
+  return fmt::format("{}.{}-of-{}.h5", stem.string(), options.shard->index + 1, options.shard->count);
 }
 
-/// Says what came out; the exit code.
-int finish(const Job& job, const std::string& study_path, const Ended& ended) {
-  const std::uint64_t failed = ended.solves.not_converged();
-  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, ended.facts.solves,
-                         ended.facts.wall_seconds, ended.facts.threads, failed)
-                 .c_str(),
-             stdout);
-  if (job.study.not_converged != NotConverged::fail || failed == 0) return kDone;
-  std::fputs(fmt::format("poesy: {}: {} samples did not converge and the study allows none; the result is kept in {}\n",
-                         study_path, failed, job.path)
-                 .c_str(),
-             stderr);
-  return kTooManyNotConverged;
+/// "2/5"
+Shard parse_shard(const std::string& text) {
+  const auto fail = [&]() {
+    throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
+  };
+  const auto number = [&](std::string_view digits) {
+    std::size_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size()) fail();
+    return value;
+  };
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) fail();
+  const std::size_t shard = number(std::string_view(text).substr(0, slash));
+  const Shard parsed{shard - 1, number(std::string_view(text).substr(slash + 1))};
+  if (shard == 0 || shard > parsed.count) fail();
+  return parsed;
+}
+
+/// Cells or blocks that shards of the study can divide between them.
+std::size_t divisible(const Study& study, std::size_t poses) {
+  const bool by_factor = study.analysis.kind == Analysis::Kind::sensitivity;
+  return by_factor ? study.analysis.factors.size() * poses : poses;
+}
+
+/// Throws unless this study can be divided so.
+void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
+  if (study.analysis.kind == Analysis::Kind::identification) {
+    throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
+                     "run it whole, it is small, or over MPI ranks");
+  }
+  if (const std::size_t most = divisible(study, poses); shard.count > most) {
+    throw InputError(
+        {}, fmt::format("--shard asks for {} shards, but this study divides into {} at most", shard.count, most),
+        "take fewer shards");
+  }
 }
 
 /// run_study, and what is left to say about its checkpoints when it fails.
@@ -83,12 +111,13 @@ int run(const Options& options) {
   const std::atomic<bool>& stop = catch_interrupts();
   Study study = read_study(options.study, registry(), StudyUse::run);
   if (options.seed) study.seed = *options.seed;
-  const std::string path = options.result.empty() ? default_result(options.study) : options.result;
+  const std::string path = options.result.empty() ? default_result(options) : options.result;
   check_result_path(path);
   ResumableRun resumable(options.resume, path, resume_command(options));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);
-  resumable.start(identity_of(study, poses.poses), options.quiet);
+  if (options.shard) check_shard(*options.shard, study, poses.poses.size());
+  resumable.start(identity_of(study, poses.poses, options.shard), options.quiet);
   ProgressPrinter printer(options.quiet);
   const auto on_progress = [&](const Progress& progress) {
     printer(progress);
@@ -98,15 +127,15 @@ int run(const Options& options) {
                 *model,
                 std::move(poses),
                 path,
-                {resolved_threads(options.threads), on_progress, &stop, &resumable.checkpoints()},
-                resumable};
+                {resolved_threads(options.threads), on_progress, &stop, &resumable.checkpoints(), options.shard},
+                [&] { return resumable.time(); }};
   const std::optional<Ended> ended = run_to_end(job, resumable, printer);
   if (!ended) {
     resumable.explain_interruption();
     return kInterrupted;
   }
   resumable.finish();
-  return finish(job, options.study, *ended);
+  return report_end(job, options.study, *ended);
 }
 
 }  // namespace
@@ -123,6 +152,11 @@ void add_run(CLI::App& program, Action& action) {
   command->add_option("--seed", options->seed, "seed, instead of the study's")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7fffffffffffffff}))
       ->type_name("S");
+  command
+      ->add_option_function<std::string>(
+          "--shard", [options](const std::string& text) { options->shard = parse_shard(text); },
+          "run this one of N shards only, to be put together by poesy merge")
+      ->type_name("K/N");
   command->add_flag("--quiet", options->quiet, "no progress");
   options->resume.add_to(*command);
   command->footer(

@@ -1,7 +1,13 @@
 #include "engine/app/run_study.h"
 
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "engine/app/exit_code.h"
 #include "engine/app/facts.h"
 #include "engine/io/result_file.h"
+#include "engine/io/shard_file.h"
 #include "engine/run/cases.h"
 #include "engine/run/coupling.h"
 #include "engine/run/fidelity.h"
@@ -10,8 +16,10 @@
 namespace poesy::app {
 namespace {
 
-Ended ended_with(const Job& job, const SolveCounts& solves) {
-  const RunTime time = job.kept.time();
+/// Once all solves are done.
+Ended ended(const Job& job) {
+  const RunTime time = job.time();
+  const SolveCounts& solves = job.checkpoints().solves();
   Ended ended{solves, run_facts(time.wall, job.options.threads, solves.total())};
   ended.facts.checkpoint_seconds = time.checkpoints;
   return ended;
@@ -23,92 +31,76 @@ std::vector<Dimension> response_dimensions(const ModelDescription& model) {
   return dimensions;
 }
 
-// Each runs a study of its kind and writes the result; nothing when it was interrupted.
+// Each runs a study of its kind and writes the result. Nothing when it was interrupted, and for a shard, which has no
+// result of its own.
 
 /// The study at both of its fidelities, on the same draws.
-std::optional<SensitivityResult> run_both_fidelities(const Job& job, const Plan& plan, SolveCounts& solves) {
+std::optional<SensitivityResult> run_both_fidelities(const Job& job, const Plan& plan) {
   const Analysis& analysis = job.study.analysis;
   // Progress is that of both as one run. A first half that reports none was done by the run that is continued.
-  std::uint64_t before = plan.solves();
+  std::optional<std::uint64_t> before;
   RunOptions options = job.options;
   options.progress = [&](const Progress& half) {
     before = half.before;
-    job.options.progress({half.solves, 2 * half.total, half.not_converged, before});
+    job.options.progress({half.solves, 2 * half.total, half.not_converged, half.before});
   };
   auto first = run_sensitivity(plan, job.model, analysis.conf_level, options);
-  if (!first) return std::nullopt;
-  solves = first->total();
+  if (!job.checkpoints().complete()) return std::nullopt;
+  const SolveCounts solves = job.checkpoints().solves();
   options.progress = [&](const Progress& half) {
-    job.options.progress({solves.total() + half.solves, 2 * half.total, solves.not_converged() + half.not_converged,
-                          before + half.before});
+    job.options.progress({solves.total() + half.solves, solves.total() + half.total,
+                          solves.not_converged() + half.not_converged, before.value_or(solves.total()) + half.before});
   };
   const std::unique_ptr<Model> other = build_model(at_compared_fidelity(job.study.mechanism));
   const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
-  if (!second) return std::nullopt;
-  solves.merge(second->total());
+  if (!first || !second) return std::nullopt;
   first->fidelity = compare_fidelities(*first, *second, response_dimensions(job.study.model()),
                                        standard_deviations(job.study), analysis.linearity);
   return first;
 }
 
-std::optional<Ended> run_sensitivity_study(const Job& job) {
+void run_sensitivity_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
-  SolveCounts solves;
   auto result = job.study.mechanism.compared
-                    ? run_both_fidelities(job, plan, solves)
+                    ? run_both_fidelities(job, plan)
                     : run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
-  if (!result) return std::nullopt;
-  if (!result->fidelity) solves = result->total();
+  if (!result) return;
   if (job.model.description().separation) {
     result->separation = separate_errors(job.model, plan.poses(), plan.factors(), standard_deviations(job.study));
   }
-  const Ended ended = ended_with(job, solves);
-  write_sensitivity(job.path, job.study, job.poses, *result, ended.facts);
-  return ended;
+  write_sensitivity(job.path, job.study, job.poses, *result, ended(job).facts);
 }
 
-std::optional<Ended> run_identification_study(const Job& job) {
+void run_identification_study(const Job& job) {
   const auto result = run_identification(job.study, job.model, job.poses.poses, job.options);
-  if (!result) return std::nullopt;
-  const Ended ended = ended_with(job, result->solves);
-  write_identification(job.path, job.study, job.poses, *result, ended.facts);
-  return ended;
+  if (result) write_identification(job.path, job.study, job.poses, *result, ended(job).facts);
 }
 
-std::optional<Ended> run_cases_study(const Job& job) {
+void run_cases_study(const Job& job) {
   auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, case_table(job.study.analysis.cases),
                                    Pairing::every_pose_with_every_row, job.options);
-  if (!evaluation) return std::nullopt;
-  const Ended ended = ended_with(job, evaluation->total());
-  write_cases(job.path, job.study, job.poses, case_result(std::move(*evaluation), job.study.not_converged),
-              ended.facts);
-  return ended;
+  if (!evaluation) return;
+  const CaseResult result = case_result(std::move(*evaluation), job.study.not_converged);
+  write_cases(job.path, job.study, job.poses, result, ended(job).facts);
 }
 
-std::optional<Ended> run_monte_carlo_study(const Job& job) {
+void run_monte_carlo_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
   const auto result = run_monte_carlo(plan, job.model, job.study.analysis, job.options);
-  if (!result) return std::nullopt;
-  const Ended ended = ended_with(job, result->total());
-  write_monte_carlo(job.path, job.study, job.poses, *result, ended.facts);
-  return ended;
+  if (result) write_monte_carlo(job.path, job.study, job.poses, *result, ended(job).facts);
 }
 
-std::optional<Ended> run_coupling_study(const Job& job) {
+void run_coupling_study(const Job& job) {
   const CouplingStudy& coupling = job.study.analysis.coupling;
   const ModelDescription& model = job.model.description();
   const auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, coupling_table(coupling, model),
                                          Pairing::every_pose_with_every_row, job.options, Outcomes::responses);
-  if (!evaluation) return std::nullopt;
+  if (!evaluation) return;
   const CouplingResult result = coupling_result(*evaluation, coupling, model, job.study.not_converged);
-  const Ended ended = ended_with(job, result.total());
-  write_coupling(job.path, job.study, job.poses, result, ended.facts);
-  return ended;
+  write_coupling(job.path, job.study, job.poses, result, ended(job).facts);
 }
 
-}  // namespace
-
-std::optional<Ended> run_study(const Job& job) {
+void run_any(const Job& job) {
   switch (job.study.analysis.kind) {
     case Analysis::Kind::sensitivity:
       return run_sensitivity_study(job);
@@ -119,9 +111,34 @@ std::optional<Ended> run_study(const Job& job) {
     case Analysis::Kind::monte_carlo:
       return run_monte_carlo_study(job);
     case Analysis::Kind::coupling:
-      break;
+      return run_coupling_study(job);
   }
-  return run_coupling_study(job);
+}
+
+}  // namespace
+
+std::optional<Ended> run_study(const Job& job) {
+  run_any(job);
+  if (!job.checkpoints().complete()) return std::nullopt;
+  const Ended end = ended(job);
+  if (const auto& shard = job.options.shard) {
+    write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), end.facts);
+  }
+  return end;
+}
+
+int report_end(const Job& job, const std::string& study_path, const Ended& ended) {
+  const std::uint64_t failed = ended.solves.not_converged();
+  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, ended.facts.solves,
+                         ended.facts.wall_seconds, ended.facts.threads, failed)
+                 .c_str(),
+             stdout);
+  if (job.study.not_converged != NotConverged::fail || failed == 0) return kDone;
+  std::fputs(fmt::format("poesy: {}: {} samples did not converge and the study allows none; the result is kept in {}\n",
+                         study_path, failed, job.path)
+                 .c_str(),
+             stderr);
+  return kTooManyNotConverged;
 }
 
 }  // namespace poesy::app

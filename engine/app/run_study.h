@@ -1,9 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
-#include "engine/app/resumable.h"
+#include "engine/io/checkpoint.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
 #include "engine/study/study.h"
@@ -15,9 +16,11 @@ struct Job {
   const Study& study;
   const Model& model;
   SelectedPoses poses;
-  std::string path;  ///< of the result
-  RunOptions options;
-  const ResumableRun& kept;
+  std::string path;               ///< of the result
+  RunOptions options;             ///< with checkpoints
+  std::function<RunTime()> time;  ///< that the run took so far, in all its parts
+
+  Checkpoints& checkpoints() const { return *options.checkpoints; }
 };
 
 /// How a study's solves ended, and what they took, in all parts of the run.
@@ -26,7 +29,10 @@ struct Ended {
   RunFacts facts;
 };
 
-/// Runs a study of any kind and writes its result. Empty when it was interrupted. Throws FileError.
+/// Runs a study of any kind, or a shard of it, and writes its result. Empty when it was interrupted. Throws FileError.
 std::optional<Ended> run_study(const Job& job);
+
+/// Says what came out; the exit code.
+int report_end(const Job& job, const std::string& study_path, const Ended& ended);
 
 }  // namespace poesy::app

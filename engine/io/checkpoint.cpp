@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "engine/base/error.h"
 #include "engine/io/sha256.h"
@@ -38,6 +37,7 @@ void write_identity(ByteWriter& to, const CheckpointIdentity& identity) {
   to.number(identity.samples);
   to.text(identity.study);
   to.text(identity.poses);
+  to.text(identity.shard);
 }
 
 CheckpointIdentity read_identity(ByteReader& from) {
@@ -49,20 +49,8 @@ CheckpointIdentity read_identity(ByteReader& from) {
   identity.samples = from.number();
   identity.study = from.text();
   identity.poses = from.text();
+  identity.shard = from.text();
   return identity;
-}
-
-/// "'LINE' where this study has 'LINE'" for the first line in which they differ.
-std::string first_difference(const std::string& there, const std::string& here) {
-  std::istringstream there_lines(there);
-  std::istringstream here_lines(here);
-  std::string a;
-  std::string b;
-  do {
-    if (!std::getline(there_lines, a)) a = "nothing more";
-    if (!std::getline(here_lines, b)) b = "nothing more";
-  } while (a == b && (there_lines || here_lines));
-  return "'" + printable(a, 120) + "' where this study has '" + printable(b, 120) + "'";
 }
 
 double seconds(ByteReader& from) {
@@ -83,7 +71,7 @@ std::string program(const CheckpointIdentity& identity) {
 
 }  // namespace
 
-CheckpointIdentity identity_of(const Study& study, const PoseSet& poses) {
+CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard) {
   Study rest = study;
   rest.seed = 0;
   if (draws_samples(study)) rest.analysis.samples = 0;
@@ -93,7 +81,8 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses) {
           .seed = study.seed,
           .samples = draws_samples(study) ? study.analysis.samples : 0,
           .study = resolved_text(rest),
-          .poses = hash_of(poses)};
+          .poses = hash_of(poses),
+          .shard = shard ? to_string(*shard) : ""};
 }
 
 void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path) {
@@ -110,11 +99,18 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
            "give the same seed");
   }
   if (checkpoint.study != run.study) {
-    refuse(path, "is of another study: it has " + first_difference(checkpoint.study, run.study),
-           "give the study as it was");
+    const auto [there, here] = first_difference(checkpoint.study, run.study);
+    refuse(path, "is of another study: it has " + there + " where this study has " + here, "give the study as it was");
   }
   if (checkpoint.poses != run.poses) {
     refuse(path, "is of other poses under the same name", "give the poses as they were");
+  }
+  if (checkpoint.shard != run.shard) {
+    const auto part = [](const std::string& shard) {
+      return shard.empty() ? "the whole study" : "shard " + printable(shard);
+    };
+    refuse(path, "is of " + part(checkpoint.shard) + ", and this run is of " + part(run.shard),
+           "give the same --shard");
   }
   if (checkpoint.samples > run.samples) {
     refuse(path,

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/base/bytes.h"
 #include "engine/model/pose_set.h"
+#include "engine/run/shard.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -20,12 +22,13 @@ struct CheckpointIdentity {
   std::uint64_t samples = 0;  ///< 0 where the kind of study draws none; a run may have more than its checkpoint
   std::string study;          ///< the resolved study, without seed and samples
   std::string poses;          ///< SHA-256 of the poses, hexadecimal
+  std::string shard;          ///< "2/5"; empty for the whole study
 
   bool operator==(const CheckpointIdentity&) const = default;
 };
 
 /// That of a run of this program.
-CheckpointIdentity identity_of(const Study& study, const PoseSet& poses);
+CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard);
 
 /// Seconds that a run took.
 struct RunTime {
@@ -50,7 +53,7 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 ///     number   version of the format, 1
 ///     text     poesy_version, git_commit, model
 ///     number   seed, samples
-///     text     study, poses
+///     text     study, poses, shard
 ///     real     seconds that the run took, and of these for checkpoints
 ///     number   stages, and each as a block
 ///     32 bytes SHA-256 of everything before

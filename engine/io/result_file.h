@@ -127,8 +127,7 @@ Verification verify_result(const std::string& path);
 ///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
 ///                               share, equal-effect tolerance in SI and in the units people read ("inf": no effect)
 ///
-///     separation.csv            factor | drive_share, removable (see /separation), and for each published class 1
-///     where
+///     separation.csv            factor | drive_share, removable (see /separation), and for each published class 1 if
 ///                               the error belongs to it; where the model separates its errors, as the next four:
 ///     separation_drive.csv      factor | one column a pose, SI; like it _constraint, _effect, _residual, _removable
 ///     separation_together.csv   errors | removable, of all errors together
@@ -160,8 +159,7 @@ Verification verify_result(const std::string& path);
 /// Tables of a coupling result: poses.csv and
 ///
 ///     coupling.csv          subset | sizes of the errors, pose, time (s) on a trajectory, and of each response effect,
-///                           interaction, worst_case,
-///                           root_sum_square and cancellation, SI
+///                           interaction, worst_case, root_sum_square and cancellation, SI
 ///     coupling_summary.csv  subset | sizes, and of each response the poses behind it, effect_max and its pose,
 ///                           interaction_max, worst_case_max, root_sum_square_max, opposed_share, cancellation_max and
 ///                           its pose

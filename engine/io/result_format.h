@@ -7,6 +7,7 @@
 namespace poesy::result_format {
 
 inline constexpr std::string_view kFileType = "poesy-result";
+inline constexpr std::string_view kShardFileType = "poesy-shard";
 /// A reader refuses a newer major version; a minor version only adds.
 inline constexpr std::int64_t kMajor = 1;
 inline constexpr std::int64_t kMinor = 0;

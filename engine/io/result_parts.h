@@ -44,6 +44,15 @@ inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
+/// The poses with all that was found when they were chosen: /poses.
+void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected);
+std::vector<NamedUnit> read_pose_coordinates(const h5::File& file);
+SelectedPoses read_poses(const h5::File& file);
+/// What composing a file wrote to /run.
+RunFacts read_facts(const h5::File& file);
+/// The hash that the file carries; empty where it has none.
+std::string stored_hash(const h5::File& file);
+
 /// The standard deviations of the errors that the study varies, as /factors/sigma.
 void add_sigma(ResultBuilder& result, const Study& study);
 /// How the solves ended, with the counts of each cell along these axes: /solver.

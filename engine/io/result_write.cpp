@@ -11,6 +11,7 @@
 #include "engine/io/result_file.h"
 #include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
+#include "engine/io/shard_file.h"
 #include "engine/io/study_file.h"
 #include "engine/io/version.h"
 #include "engine/run/cases.h"
@@ -24,9 +25,9 @@ std::vector<Factor> chosen(const ModelDescription& model, std::span<const Factor
   return factors;
 }
 
-void add_root(h5::File& file, std::string_view kind, const Study& study) {
+void add_root(h5::File& file, std::string_view filetype, std::string_view kind, const Study& study) {
   const std::vector<std::int64_t> version{result_format::kMajor, result_format::kMinor};
-  file.set_attribute("/", "filetype", std::string(result_format::kFileType));
+  file.set_attribute("/", "filetype", std::string(filetype));
   file.set_attribute("/", "version", std::span(version));
   file.set_attribute("/", "kind", std::string(kind));
   file.set_attribute("/", "title", study.title);
@@ -38,36 +39,6 @@ void add_root(h5::File& file, std::string_view kind, const Study& study) {
 void add_study(ResultBuilder& result, const Study& study) {
   result.file().make_group("/study");
   result.add_scalar("/study/text", resolved_text(study), {"1", "The study, every default filled in (TOML)"});
-}
-
-void add_rejected_poses(ResultBuilder& result, const std::vector<RejectedPoses>& rejected) {
-  if (rejected.empty()) return;
-  const auto reasons = texts(rejected, &RejectedPoses::reason);
-  std::vector<std::uint64_t> counts;
-  for (const RejectedPoses& each : rejected) counts.push_back(each.count);
-  result.add_axis("rejection", reasons, {"1", "Why poses were rejected"});
-  result.file().make_group("/poses/rejected");
-  result.show_axes("/poses/rejected", {"rejection"});
-  result.add("/poses/rejected/reason", {"rejection"}, reasons, {"1", "Why poses were rejected"});
-  result.add("/poses/rejected/count", {"rejection"}, counts, {"1", "Candidate poses rejected for this reason"});
-}
-
-void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected) {
-  const PoseSet& poses = selected.poses;
-  result.add_axis("pose", positions(poses.size()), {"1", "Number of the pose, from 0"});
-  result.file().make_group("/poses");
-  const auto names = texts(model.pose_coordinates, &PoseCoordinate::name);
-  result.file().set_attribute("/poses", "coordinates", std::span(names));
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    result.add("/poses/" + names[c], {"pose"}, poses.column(c), {unit_of(coordinate), coordinate.description});
-  }
-  if (!selected.time.empty()) {
-    result.add("/poses/time", {"pose"}, selected.time, {"s", "When the trajectory reaches the pose"});
-  }
-  result.add("/poses/condition", {"pose"}, selected.condition,
-             {"1", "Condition number of the passive joints' Jacobian; infinity at a singular pose"});
-  add_rejected_poses(result, selected.rejected);
 }
 
 void add_factors(ResultBuilder& result, const std::vector<Factor>& factors) {
@@ -123,17 +94,15 @@ void write_file(const std::string& path, h5::File& file) {
   writer.commit();
 }
 
-/// Composes what every result has, with compose(result) for what its kind has, and writes it.
+/// Composes what every file has, with compose(file) for the rest, and writes it.
 template <class Compose>
-void compose_and_write(const std::string& path, std::string_view kind, const Study& study, const SelectedPoses& poses,
-                       std::span<const FactorIndex> factors, const RunFacts& facts, const Compose& compose) {
+void compose_and_write(const std::string& path, std::string_view filetype, std::string_view kind, const Study& study,
+                       const SelectedPoses& poses, const RunFacts& facts, const Compose& compose) {
   try {
     ResultBuilder result;
-    add_root(result.file(), kind, study);
+    add_root(result.file(), filetype, kind, study);
     add_study(result, study);
     add_poses(result, study.model(), poses);
-    add_factors(result, chosen(study.model(), factors));
-    add_responses(result, study.model());
     compose(result);
     add_run(result, facts);
     write_file(path, result.file());
@@ -142,19 +111,30 @@ void compose_and_write(const std::string& path, std::string_view kind, const Stu
   }
 }
 
+/// The same for a result, which has factors and responses.
+template <class Compose>
+void compose_result(const std::string& path, std::string_view kind, const Study& study, const SelectedPoses& poses,
+                    std::span<const FactorIndex> factors, const RunFacts& facts, const Compose& compose) {
+  compose_and_write(path, result_format::kFileType, kind, study, poses, facts, [&](ResultBuilder& result) {
+    add_factors(result, chosen(study.model(), factors));
+    add_responses(result, study.model());
+    compose(result);
+  });
+}
+
 }  // namespace
 
 void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
-  compose_and_write(path, result_format::kSensitivity, study, poses, study.analysis.factors, facts,
-                    [&](ResultBuilder& file) { add_sensitivity(file, study, result); });
+  compose_result(path, result_format::kSensitivity, study, poses, study.analysis.factors, facts,
+                 [&](ResultBuilder& file) { add_sensitivity(file, study, result); });
 }
 
 void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_and_write(path, result_format::kEvaluate, study, poses, errors.factors, facts, [&](ResultBuilder& file) {
+  compose_result(path, result_format::kEvaluate, study, poses, errors.factors, facts, [&](ResultBuilder& file) {
     add_evaluation(file, study.model(), result);
     add_errors(file, errors, pairing);
   });
@@ -164,29 +144,35 @@ void write_cases(const std::string& path, const Study& study, const SelectedPose
                  const RunFacts& facts) {
   POESY_EXPECTS(result.evaluation.poses == poses.poses.size());
   const ErrorTable errors = case_table(study.analysis.cases);
-  compose_and_write(path, result_format::kEvaluate, study, poses, errors.factors, facts,
-                    [&](ResultBuilder& file) { add_cases(file, study, result); });
+  compose_result(path, result_format::kEvaluate, study, poses, errors.factors, facts,
+                 [&](ResultBuilder& file) { add_cases(file, study, result); });
 }
 
 void write_identification(const std::string& path, const Study& study, const SelectedPoses& poses,
                           const IdentificationResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
-  compose_and_write(path, result_format::kIdentification, study, poses, study.analysis.factors, facts,
-                    [&](ResultBuilder& file) { add_identification(file, study, result); });
+  compose_result(path, result_format::kIdentification, study, poses, study.analysis.factors, facts,
+                 [&](ResultBuilder& file) { add_identification(file, study, result); });
 }
 
 void write_monte_carlo(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const MonteCarloResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_and_write(path, result_format::kMonteCarlo, study, poses, study.analysis.factors, facts,
-                    [&](ResultBuilder& file) { add_monte_carlo(file, study, result); });
+  compose_result(path, result_format::kMonteCarlo, study, poses, study.analysis.factors, facts,
+                 [&](ResultBuilder& file) { add_monte_carlo(file, study, result); });
 }
 
 void write_coupling(const std::string& path, const Study& study, const SelectedPoses& poses,
                     const CouplingResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_and_write(path, result_format::kCoupling, study, poses, study.analysis.factors, facts,
-                    [&](ResultBuilder& file) { add_coupling(file, study, result); });
+  compose_result(path, result_format::kCoupling, study, poses, study.analysis.factors, facts,
+                 [&](ResultBuilder& file) { add_coupling(file, study, result); });
+}
+
+void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
+                 std::span<const Bytes> stages, const RunFacts& facts) {
+  compose_and_write(path, result_format::kShardFileType, name(study.analysis.kind), study, poses, facts,
+                    [&](ResultBuilder& file) { add_shard(file, shard, stages); });
 }
 
 void check_result_path(const std::string& path) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 
 namespace poesy {
 namespace {
@@ -78,6 +79,19 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
     list += (k > 0 ? ", " : "") + std::string(known[k]);
   }
   return known.size() > kMostWords ? list + ", ... (" + std::to_string(known.size()) + " in all)" : list;
+}
+
+std::pair<std::string, std::string> first_difference(const std::string& one, const std::string& other) {
+  std::istringstream lines(one);
+  std::istringstream other_lines(other);
+  std::string a;
+  std::string b;
+  do {
+    if (!std::getline(lines, a)) a = "nothing more";
+    if (!std::getline(other_lines, b)) b = "nothing more";
+  } while (a == b && (lines || other_lines));
+  const auto quote = [](const std::string& line) { return "'" + printable(line, 120) + "'"; };
+  return {quote(a), quote(b)};
 }
 
 }  // namespace poesy

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace poesy {
@@ -22,5 +23,8 @@ std::vector<std::string_view> names(const std::vector<Named>& things) {
   for (const Named& thing : things) list.push_back(thing.name);
   return list;
 }
+
+/// The first line in which two texts differ, of each as 'LINE'; "nothing more" where one has ended.
+std::pair<std::string, std::string> first_difference(const std::string& one, const std::string& other);
 
 }  // namespace poesy

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
+#include "engine/run/result.h"
 
 namespace poesy {
 
@@ -37,11 +38,19 @@ class Checkpoints {
     save();
   }
 
-  /// The stage ended.
+  /// The stage ended, complete or stopped, after these solves in all parts of the run.
   template <class State>
-  void end(const State& state) {
+  void end(bool complete, const SolveCounts& solves, const State& state) {
     take(state);
+    solves_.merge(solves);
+    complete_ = complete_ && complete;
   }
+
+  /// Whether all stages that began have ended complete.
+  bool complete() const { return complete_; }
+  /// Of the stages that have ended.
+  const SolveCounts& solves() const { return solves_; }
+  std::span<const Bytes> stages() const { return stages_; }
 
   void save() const { save_(stages_); }
 
@@ -57,6 +66,8 @@ class Checkpoints {
   Save save_;
   std::vector<Bytes> stages_;  ///< those begun, then what is left of the earlier run's
   std::size_t begun_ = 0;
+  SolveCounts solves_;
+  bool complete_ = true;
 };
 
 /// One stage's dealings with checkpoints, if there are any.
@@ -79,9 +90,9 @@ class Stage {
 
   /// The stage is complete, or was stopped; then a checkpoint is kept.
   template <class State>
-  void end(bool complete, const State& state) {
+  void end(bool complete, const SolveCounts& solves, const State& state) {
     if (checkpoints_ == nullptr) return;
-    checkpoints_->end(state);
+    checkpoints_->end(complete, solves, state);
     if (!complete) checkpoints_->save();
   }
 

@@ -17,11 +17,6 @@ double mean_of(const Moments& moments) {
   return moments.count() == 0 ? std::numeric_limits<double>::quiet_NaN() : moments.mean();
 }
 
-/// The members of a result with a number for each response and pose.
-std::array<std::vector<double>*, 6> numbers_of(MonteCarloResult& result) {
-  return {&result.mean, &result.mean_ci_low, &result.mean_ci_high, &result.std, &result.min, &result.max};
-}
-
 /// Throws unless these are the solves of whole units, of so many samples at most.
 void check_whole(const SolveCounts& solves, std::size_t most_samples) {
   const std::uint64_t total = solves.total();
@@ -31,11 +26,6 @@ void check_whole(const SolveCounts& solves, std::size_t most_samples) {
 }
 
 }  // namespace
-
-void ResponseSamples::merge(const ResponseSamples& other) {
-  moments.merge(other.moments);
-  sketch.merge(other.sketch);
-}
 
 void ResponseSamples::write(ByteWriter& to) const {
   moments.write(to);
@@ -71,25 +61,35 @@ PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
 }
 
 MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis)
-    : plan_(&plan), responses_(responses), overall_(responses), kept_(plan.poses().size()) {
+    : plan_(&plan),
+      responses_(responses),
+      sketches_(responses),
+      moments_(plan.poses().size() * responses),
+      kept_(plan.poses().size()) {
   result_.responses = responses;
   result_.poses = plan.poses().size();
   result_.conf_level = analysis.conf_level;
   result_.quantile_relative_error = QuantileSketch::kRelativeError;
   result_.levels = analysis.quantiles;
   const std::size_t cells = responses * result_.poses;
-  for (std::vector<double>* values : numbers_of(result_)) values->resize(cells);
+  for (std::vector<double>* values :
+       {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std, &result_.min, &result_.max}) {
+    values->resize(cells);
+  }
   result_.count.resize(cells);
   result_.quantiles.resize(cells * result_.levels.size());
   result_.solves.resize(result_.poses);
 }
 
 void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
-  POESY_EXPECTS(pose == pose_);
-  if (at_pose_.solves.total() == 0 && !kept_[pose.value].bytes.empty()) {
-    ByteReader from(kept_[pose.value].bytes);
-    at_pose_ = PoseSamples::read(from, responses_);
+  if (at_pose_.solves.total() == 0) {
+    open_ = pose;
+    if (const Bytes& begun = kept_[pose.value].bytes; !begun.empty()) {
+      ByteReader from(begun);
+      at_pose_ = PoseSamples::read(from, responses_);
+    }
   }
+  POESY_EXPECTS(pose == open_ && !is_finished(pose.value));
   const bool whole = unit.solves.total() == Plan::kUnitSamples;
   if (!whole) keep();
   at_pose_.add(unit);
@@ -104,7 +104,7 @@ void MonteCarloCollector::keep() {
   at_pose_.write(to);
   Kept kept{at_pose_.solves, to.take()};
   kept.bytes.shrink_to_fit();
-  set_kept(pose_.value, std::move(kept));
+  set_kept(open_.value, std::move(kept));
 }
 
 void MonteCarloCollector::set_kept(std::size_t pose, Kept kept) {
@@ -115,52 +115,64 @@ void MonteCarloCollector::set_kept(std::size_t pose, Kept kept) {
   kept_[pose] = std::move(kept);
 }
 
+void MonteCarloCollector::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
+  const std::size_t cell = response * result_.poses + pose;
+  const Interval interval = mean_interval(moments, result_.conf_level);
+  result_.mean[cell] = mean_of(moments);
+  result_.mean_ci_low[cell] = interval.low;
+  result_.mean_ci_high[cell] = interval.high;
+  result_.std[cell] = moments.standard_deviation();
+  result_.count[cell] = moments.count();
+  moments_[pose * responses_ + response] = moments;
+}
+
 void MonteCarloCollector::finish_pose() {
   for (std::size_t r = 0; r < responses_; ++r) {
     const auto& [moments, sketch] = at_pose_.responses[r];
-    const std::size_t cell = r * result_.poses + pose_.value;
-    const Interval interval = mean_interval(moments, result_.conf_level);
-    result_.mean[cell] = mean_of(moments);
-    result_.mean_ci_low[cell] = interval.low;
-    result_.mean_ci_high[cell] = interval.high;
-    result_.std[cell] = moments.standard_deviation();
+    const std::size_t cell = r * result_.poses + open_.value;
+    set_moments(r, open_.value, moments);
     result_.min[cell] = sketch.min();
     result_.max[cell] = sketch.max();
-    result_.count[cell] = moments.count();
     for (std::size_t q = 0; q < result_.levels.size(); ++q) {
       result_.quantiles[cell * result_.levels.size() + q] = sketch.quantile(result_.levels[q]);
     }
-    overall_[r].merge(at_pose_.responses[r]);
+    sketches_[r].merge(sketch);
   }
-  result_.solves[pose_.value] = at_pose_.solves;
+  result_.solves[open_.value] = at_pose_.solves;
   at_pose_ = {};
-  ++pose_.value;
 }
 
 std::size_t MonteCarloCollector::units_done(PoseIndex pose) const {
-  if (pose < pose_) return plan_->units_per_cell();
-  const bool open = pose == pose_ && at_pose_.solves.total() > 0;
-  return static_cast<std::size_t>((open ? at_pose_.solves : kept_[pose.value].solves).total() / Plan::kUnitSamples);
+  if (is_finished(pose.value)) return plan_->units_per_cell();
+  const SolveCounts& solves = is_open(pose.value) ? at_pose_.solves : kept_[pose.value].solves;
+  return static_cast<std::size_t>(solves.total() / Plan::kUnitSamples);
 }
 
 SolveCounts MonteCarloCollector::total() const {
   SolveCounts sum = at_pose_.solves;
   for (std::size_t m = 0; m < kept_.size(); ++m) {
-    if (m < pose_.value) sum.merge(result_.solves[m]);
-    if (m > pose_.value || (m == pose_.value && at_pose_.solves.total() == 0)) sum.merge(kept_[m].solves);
+    if (is_finished(m)) {
+      sum.merge(result_.solves[m]);
+    } else if (!is_open(m)) {
+      sum.merge(kept_[m].solves);
+    }
   }
   return sum;
 }
 
 MonteCarloResult MonteCarloCollector::result() && {
-  POESY_EXPECTS(pose_.value == result_.poses);
-  for (const auto& [moments, sketch] : overall_) {
-    result_.overall_mean.push_back(mean_of(moments));
-    result_.overall_std.push_back(moments.standard_deviation());
-    result_.overall_min.push_back(sketch.min());
-    result_.overall_max.push_back(sketch.max());
-    result_.overall_count.push_back(moments.count());
-    for (const double level : result_.levels) result_.overall_quantiles.push_back(sketch.quantile(level));
+  for (std::size_t r = 0; r < responses_; ++r) {
+    Moments overall;
+    for (std::size_t m = 0; m < result_.poses; ++m) {
+      POESY_EXPECTS(is_finished(m));
+      overall.merge(moments_[m * responses_ + r]);
+    }
+    result_.overall_mean.push_back(mean_of(overall));
+    result_.overall_std.push_back(overall.standard_deviation());
+    result_.overall_min.push_back(sketches_[r].min());
+    result_.overall_max.push_back(sketches_[r].max());
+    result_.overall_count.push_back(overall.count());
+    for (const double level : result_.levels) result_.overall_quantiles.push_back(sketches_[r].quantile(level));
   }
   return std::move(result_);
 }
@@ -169,65 +181,83 @@ void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const
   const std::size_t levels = result_.levels.size();
   for (std::size_t r = 0; r < responses_; ++r) {
     const std::size_t cell = r * result_.poses + pose;
-    for (const std::vector<double>* values :
-         {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std, &result_.min, &result_.max}) {
-      to.real((*values)[cell]);
-    }
-    to.number(result_.count[cell]);
+    moments_[pose * responses_ + r].write(to);
+    to.real(result_.min[cell]);
+    to.real(result_.max[cell]);
     to.reals(std::span(result_.quantiles).subspan(cell * levels, levels));
   }
   result_.solves[pose].write(to);
 }
 
-void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose) {
+void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std::size_t samples) {
+  if (is_finished(pose) || is_open(pose)) throw BytesError("has a pose twice");
   const std::size_t levels = result_.levels.size();
   for (std::size_t r = 0; r < responses_; ++r) {
     const std::size_t cell = r * result_.poses + pose;
-    for (std::vector<double>* values : numbers_of(result_)) (*values)[cell] = from.real();
-    result_.count[cell] = from.number();
+    set_moments(r, pose, Moments::read(from));
+    result_.min[cell] = from.real();
+    result_.max[cell] = from.real();
     from.reals(std::span(result_.quantiles).subspan(cell * levels, levels));
   }
   result_.solves[pose] = SolveCounts::read(from);
+  if (result_.solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
 }
 
 Bytes MonteCarloCollector::state() const {
   ByteWriter to;
   to.reserve(kept_bytes_ + kept_bytes_ / 4);  // what is kept, and some more
-  for (const std::uint64_t number : std::array<std::uint64_t, 6>{
-           kKind, responses_, result_.poses, result_.levels.size(), plan_->samples(), pose_.value}) {
+  for (const std::uint64_t number :
+       std::array<std::uint64_t, 5>{kKind, responses_, result_.poses, result_.levels.size(), plan_->samples()}) {
     to.number(number);
   }
-  for (std::size_t m = 0; m < pose_.value; ++m) write_finished(to, m);
-  for (const ResponseSamples& response : overall_) response.write(to);
-  const bool open = at_pose_.solves.total() > 0;
-  to.number(open ? 1 : 0);
-  if (open) at_pose_.write(to);
-  for (const Kept& kept : kept_) to.block(kept.bytes);
+  for (std::size_t m = 0; m < result_.poses; ++m) {
+    to.number(is_finished(m) ? 1 : 0);
+    if (is_finished(m)) write_finished(to, m);
+    to.block(kept_[m].bytes);
+  }
+  for (const QuantileSketch& sketch : sketches_) sketch.write(to);
+  to.number(at_pose_.solves.total() > 0 ? 1 : 0);
+  if (at_pose_.solves.total() == 0) return to.take();
+  to.number(open_.value);
+  at_pose_.write(to);
   return to.take();
 }
 
 void MonteCarloCollector::restore(std::span<const std::byte> state) {
   ByteReader from(state);
+  while (from.left() > 0) restore_one(from);
+}
+
+void MonteCarloCollector::restore_one(ByteReader& from) {
   for (const std::uint64_t expected :
        std::array<std::uint64_t, 4>{kKind, responses_, result_.poses, result_.levels.size()}) {
     if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
   }
   const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
   if (samples == 0) throw BytesError("has no samples");
-  pose_.value = static_cast<std::size_t>(from.number_up_to(result_.poses));
-  for (std::size_t m = 0; m < pose_.value; ++m) read_finished(from, m);
-  for (ResponseSamples& response : overall_) response = ResponseSamples::read(from);
-  if (from.number_up_to(pose_.value < result_.poses ? 1 : 0) == 1) {
-    at_pose_ = PoseSamples::read(from, responses_);
-    check_whole(at_pose_.solves, samples - 1);
+  const bool shorter = samples < plan_->samples();
+  for (std::size_t m = 0; m < result_.poses; ++m) {
+    const bool finished = from.number_up_to(1) == 1;
+    if (finished) read_finished(from, m, samples);
+    read_kept(from, m, finished ? samples : samples - 1);
+    if (shorter) result_.solves[m] = {};
   }
-  for (std::size_t m = 0; m < kept_.size(); ++m) read_kept(from, m, m < pose_.value ? samples : samples - 1);
-  from.expect_end();
+  for (QuantileSketch& sketch : sketches_) {
+    const QuantileSketch read = QuantileSketch::read(from);
+    if (!shorter) sketch.merge(read);
+  }
+  if (from.number_up_to(1) == 1) read_open(from, samples);
+}
+
+void MonteCarloCollector::read_open(ByteReader& from, std::size_t samples) {
+  if (at_pose_.solves.total() > 0) throw BytesError("has two unfinished poses");
+  open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(result_.poses - 1)));
+  if (is_finished(open_.value)) throw BytesError("has a pose twice");
+  at_pose_ = PoseSamples::read(from, responses_);
+  check_whole(at_pose_.solves, samples - 1);
   if (samples == plan_->samples()) return;
-  if (at_pose_.solves.total() > 0) keep();
+  keep();
   at_pose_ = {};
-  overall_.assign(responses_, {});
-  pose_ = {};
 }
 
 void MonteCarloCollector::read_kept(ByteReader& from, std::size_t pose, std::size_t most_samples) {

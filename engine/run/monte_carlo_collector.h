@@ -16,7 +16,6 @@ struct ResponseSamples {
   Moments moments;
   QuantileSketch sketch;
 
-  void merge(const ResponseSamples& other);
   void write(ByteWriter& to) const;
   static ResponseSamples read(ByteReader& from);
 };
@@ -31,16 +30,17 @@ struct PoseSamples {
   static PoseSamples read(ByteReader& from, std::size_t responses);
 };
 
-/// Puts units together, in the order of the plan. Holds the samples of one pose, as sketches, and those of all poses
-/// together: memory grows neither with the samples nor, but for the result, with the poses. So that a study with more
-/// samples can go on from it, it also keeps the sketches of finished poses, packed, as many as kMostKeptBytes hold.
+/// Puts units together, pose by pose. Holds the samples of one pose, as sketches, and of all finished poses together
+/// their sketches: memory grows neither with the samples nor, but for the result, with the poses. So that a study with
+/// more samples can go on from it, it also keeps the sketches of finished poses, packed, as many as kMostKeptBytes
+/// hold. The order in which poses are finished changes nothing.
 class MonteCarloCollector {
  public:
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
 
   MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis);
 
-  /// Units of a pose come one after another, poses in order.
+  /// Units of a pose come one after another.
   void add(PoseIndex pose, const PoseUnit& unit);
   /// Units of this pose that were added.
   std::size_t units_done(PoseIndex pose) const;
@@ -51,8 +51,9 @@ class MonteCarloCollector {
 
   /// Everything added so far.
   Bytes state() const;
-  /// Takes up a state of this plan, or of one that differs by fewer samples: then all poses are open again, and begin
-  /// with what was kept of them. Throws BytesError for anything else. Precondition: nothing was added.
+  /// Takes up a state of this plan, or of one that differs by fewer samples: then all its poses are open again, and
+  /// begin with what was kept of them. States that hold different poses may stand one behind the other. Throws
+  /// BytesError for anything else. Precondition: nothing was added.
   void restore(std::span<const std::byte> state);
 
  private:
@@ -62,21 +63,28 @@ class MonteCarloCollector {
     Bytes bytes;  ///< as PoseSamples::write gives them
   };
 
+  bool is_finished(std::size_t pose) const { return result_.solves[pose].total() > 0; }
+  bool is_open(std::size_t pose) const { return pose == open_.value && at_pose_.solves.total() > 0; }
   void finish_pose();
+  /// What follows from the moments of a response at a pose.
+  void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
   /// Keeps the open pose's samples, which make up whole units so far, if there is room for them.
   void keep();
   void set_kept(std::size_t pose, Kept kept);
   void write_finished(ByteWriter& to, std::size_t pose) const;
-  void read_finished(ByteReader& from, std::size_t pose);
+  void read_finished(ByteReader& from, std::size_t pose, std::size_t samples);
+  void restore_one(ByteReader& from);
+  void read_open(ByteReader& from, std::size_t samples);
   void read_kept(ByteReader& from, std::size_t pose, std::size_t most_samples);
 
   const Plan* plan_;
   std::size_t responses_;
-  PoseIndex pose_;                        ///< the open pose; those before it are finished
+  PoseIndex open_;                        ///< the open pose, if there is one
   PoseSamples at_pose_;                   ///< its samples
-  std::vector<ResponseSamples> overall_;  ///< [R] of the finished poses
+  std::vector<QuantileSketch> sketches_;  ///< [R] of the finished poses together
+  std::vector<Moments> moments_;          ///< [M x R] of the finished poses
   MonteCarloResult result_;               ///< of the finished poses
-  std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; open ones from a shorter study
+  std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; others from a shorter study
   std::size_t kept_bytes_ = 0;
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/base/contract.h"
+#include "engine/run/shard.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -21,17 +23,25 @@ class PendingUnits {
     for (std::size_t cell = 0; cell < plan.cells(); ++cell) {
       const std::size_t last = wanted(cell);
       POESY_EXPECTS(done(cell) <= plan.units_per_cell() && last <= plan.units_per_cell());
-      if (last > done(cell)) end += last - done(cell);
+      if (last > done(cell)) {
+        end += last - done(cell);
+        samples_ += plan.first_sample(last) - plan.first_sample(done(cell));
+      }
       ends_.push_back({end, last});
     }
   }
 
-  /// All units of each cell are wanted.
+  /// All units of the shard's cells are wanted.
   template <class Done>
-  PendingUnits(const Plan& plan, const Done& done)
-      : PendingUnits(plan, done, [&](std::size_t) { return plan.units_per_cell(); }) {}
+  PendingUnits(const Plan& plan, const Shard& shard, const Done& done)
+      : PendingUnits(plan, done, [&plan, cells = shard.of(plan.cells())](std::size_t cell) {
+          return cells.holds(cell) ? plan.units_per_cell() : 0;
+        }) {}
 
   std::size_t size() const { return ends_.empty() ? 0 : ends_.back().pending; }
+
+  /// In all of them.
+  std::uint64_t samples() const { return samples_; }
 
   WorkUnit operator[](std::size_t n) const {
     POESY_EXPECTS(n < size());
@@ -49,6 +59,7 @@ class PendingUnits {
 
   const Plan* plan_;
   std::vector<End> ends_;  ///< [cells]
+  std::uint64_t samples_ = 0;
 };
 
 }  // namespace poesy

@@ -96,17 +96,16 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
   const std::size_t samples = paired ? 1 : errors.rows;
   EvaluationResult result = empty_evaluation(model, poses, samples, outcomes);
   const std::size_t blocks = (samples + kBlockRows - 1) / kBlockRows;
-  EvaluationProgress done(result, kBlockRows);
+  EvaluationProgress done(result, kBlockRows, options.shard.value_or(Shard()));
   Stage stage(options.checkpoints);
   stage.begin([&](std::span<const std::byte> state) { done.restore(state); });
-  ProgressCounter counter(poses.size() * samples, done.total(), options);
-  const std::size_t first_block = done.blocks();
+  ProgressCounter counter(done.samples(), done.total(), options);
+  const NumberRange pending = done.pending();
   const auto state = [&] { return done.state(); };
   const bool complete = run_in_order(
-      poses.size() * blocks - first_block, options,
-      [&] { return TableEvaluator(model, solver, poses, errors, result); },
+      pending.end - pending.first, options, [&] { return TableEvaluator(model, solver, poses, errors, result); },
       [&](TableEvaluator& evaluate, std::size_t n) {
-        const std::size_t block = first_block + n;
+        const std::size_t block = pending.first + n;
         const std::size_t pose = block / blocks;
         const std::size_t first = block % blocks * kBlockRows;
         const std::size_t count = std::min(kBlockRows, samples - first);
@@ -117,8 +116,8 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
         counter.add(solves);
         stage.merged(state);
       });
-  stage.end(complete, state);
-  if (!complete) return std::nullopt;
+  stage.end(complete, done.total(), state);
+  if (!complete || options.shard) return std::nullopt;
   return result;
 }
 

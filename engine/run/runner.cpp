@@ -22,8 +22,9 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
   SensitivityCollector collect(plan, model.description().responses.size());
   Stage stage(options.checkpoints);
   stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
-  const PendingUnits pending(plan, [&](std::size_t cell) { return collect.units_done(cell); });
-  ProgressCounter counter(plan.solves(), collect.total(), options);
+  const PendingUnits pending(plan, options.shard.value_or(Shard()),
+                             [&](std::size_t cell) { return collect.units_done(cell); });
+  ProgressCounter counter(collect.total().total() + pending.samples(), collect.total(), options);
   const auto state = [&] { return collect.state(); };
   const bool complete = run_in_order(
       pending.size(), options, [&] { return UnitEvaluator(plan, model); },
@@ -33,8 +34,8 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
         counter.add(stats.solves);
         stage.merged(state);
       });
-  stage.end(complete, state);
-  if (!complete) return std::nullopt;
+  stage.end(complete, collect.total(), state);
+  if (!complete || options.shard) return std::nullopt;
   return sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
 }
 
@@ -43,8 +44,9 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
   MonteCarloCollector collect(plan, model.description().responses.size(), analysis);
   Stage stage(options.checkpoints);
   stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
-  const PendingUnits pending(plan, [&](std::size_t pose) { return collect.units_done(PoseIndex(pose)); });
-  ProgressCounter counter(plan.solves(), collect.total(), options);
+  const PendingUnits pending(plan, options.shard.value_or(Shard()),
+                             [&](std::size_t pose) { return collect.units_done(PoseIndex(pose)); });
+  ProgressCounter counter(collect.total().total() + pending.samples(), collect.total(), options);
   const auto state = [&] { return collect.state(); };
   const bool complete = run_in_order(
       pending.size(), options, [&] { return PoseUnitEvaluator(plan, model); },
@@ -54,8 +56,8 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
         counter.add(found.solves);
         stage.merged(state);
       });
-  stage.end(complete, state);
-  if (!complete) return std::nullopt;
+  stage.end(complete, collect.total(), state);
+  if (!complete || options.shard) return std::nullopt;
   return std::move(collect).result();
 }
 

@@ -11,6 +11,7 @@
 #include "engine/model/model.h"
 #include "engine/run/checkpoints.h"
 #include "engine/run/result.h"
+#include "engine/run/shard.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -31,6 +32,8 @@ struct RunOptions {
   /// Where the run's state comes from and goes to. May be null. Then a run function throws BytesError for a state that
   /// is not one of its own.
   Checkpoints* checkpoints = nullptr;
+  /// The shard to run, instead of the whole. It gives no result, only its state to the checkpoints.
+  std::optional<Shard> shard = std::nullopt;
 };
 
 /// Number of threads that RunOptions::threads stands for.
@@ -38,7 +41,7 @@ std::size_t resolved_threads(std::size_t threads);
 
 /// Runs a sensitivity study on a pool of threads. Units are merged in plan order, so the result has the same bits
 /// for any number of threads, and whether it was continued from checkpoints or not: also from those of a plan with
-/// fewer samples. Memory does not grow with the number of samples. Empty when stopped.
+/// fewer samples. Memory does not grow with the number of samples. Empty when stopped, and of a shard.
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
 

@@ -59,16 +59,20 @@ Bytes SensitivityCollector::state() const {
 
 void SensitivityCollector::restore(std::span<const std::byte> state) {
   ByteReader from(state);
+  while (from.left() > 0) restore_one(from);
+}
+
+void SensitivityCollector::restore_one(ByteReader& from) {
   if (from.number() != kKind || from.number() != responses_ || from.number() != whole_.size()) {
     throw BytesError("is the state of another kind or size of study");
   }
   const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
   for (std::size_t cell = 0; cell < whole_.size(); ++cell) restore_cell(from, cell, samples);
-  from.expect_end();
 }
 
 void SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std::size_t samples) {
   const std::uint64_t holds = from.number_up_to(kWhole | kPart);
+  if (holds != 0 && units_done(cell) > 0) throw BytesError("has a cell twice");
   if ((holds & kWhole) != 0) {
     whole_[cell] = UnitStats::read(from, responses_);
     const std::uint64_t solves = whole_[cell].solves.total();

@@ -30,13 +30,14 @@ class SensitivityCollector {
 
   /// Everything added so far.
   Bytes state() const;
-  /// Takes up a state of this plan, or of one that differs by fewer samples. Throws BytesError for anything else.
-  /// Precondition: nothing was added.
+  /// Takes up a state of this plan, or of one that differs by fewer samples. States that hold different cells may stand
+  /// one behind the other. Throws BytesError for anything else. Precondition: nothing was added.
   void restore(std::span<const std::byte> state);
 
  private:
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
   bool has_part(std::size_t cell) const { return !parts_.empty() && parts_[cell].solves.total() > 0; }
+  void restore_one(ByteReader& from);
   void restore_cell(ByteReader& from, std::size_t cell, std::size_t samples);
 
   const Plan* plan_;

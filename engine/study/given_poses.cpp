@@ -53,18 +53,6 @@ class FileJudge {
 
   const PoseTable& table() const { return selection_->from_file; }
 
-  /// The condition number. Throws InputError where the mechanism cannot take the pose.
-  double operator()(std::size_t m, const std::optional<std::vector<double>>& pose) const {
-    if (!pose) refuse(m, kNoPose, advice(table(), *model_));
-    if (const auto reason = model_->unreachable(*pose)) {
-      refuse(m, "is out of reach: " + *reason, "correct or remove this pose");
-    }
-    const double condition = model_->condition(*pose);
-    if (condition <= selection_->max_condition) return condition;
-    refuse(m, near_singular(condition, selection_->max_condition), "remove this pose");
-  }
-
- private:
   [[noreturn]] void refuse(std::size_t m, const std::string& why, const std::string& remedy) const {
     Place line = selection_->place;
     line.line += m;
@@ -74,6 +62,10 @@ class FileJudge {
         remedy + kSi);
   }
 
+  static std::string if_unreachable() { return "correct or remove this pose"; }
+  static std::string if_singular() { return "remove this pose"; }
+
+ private:
   const PoseSelection* selection_;
   const Model* model_;
 };
@@ -90,19 +82,6 @@ class TrajectoryJudge {
 
   const PoseTable& table() const { return points_->table; }
 
-  /// The condition number. Throws InputError where the mechanism cannot take the pose.
-  double operator()(std::size_t m, const std::optional<std::vector<double>>& pose) const {
-    if (!pose) refuse(m, kNoPose, advice(table(), *model_));
-    if (const auto reason = model_->unreachable(*pose)) {
-      refuse(m, "is out of reach: " + *reason, elsewhere_ + ", or change the geometry");
-    }
-    const double condition = model_->condition(*pose);
-    if (condition <= selection_->max_condition) return condition;
-    refuse(m, near_singular(condition, selection_->max_condition),
-           elsewhere_ + " away from singular poses, or raise max_condition");
-  }
-
- private:
   [[noreturn]] void refuse(std::size_t m, const std::string& why, const std::string& remedy) const {
     const auto& names = coordinates(model_->description(), table().chart);
     throw InputError(place_of(m),
@@ -112,6 +91,10 @@ class TrajectoryJudge {
                      remedy + (trajectory_->curve ? "" : kSi));
   }
 
+  std::string if_unreachable() const { return elsewhere_ + ", or change the geometry"; }
+  std::string if_singular() const { return elsewhere_ + " away from singular poses, or raise max_condition"; }
+
+ private:
   Place place_of(std::size_t m) const {
     if (trajectory_->points > 0) return selection_->place;
     Place line = trajectory_->first_row;
@@ -132,14 +115,26 @@ std::optional<std::vector<double>> pose_of(const PoseTable& table, std::size_t m
   return std::vector(point.begin(), point.end());
 }
 
+/// The condition number of point m's pose. The judge refuses it where the mechanism cannot take it.
+template <class Judge>
+double condition_of(const Judge& judge, std::size_t m, const std::optional<std::vector<double>>& pose,
+                    const Model& model, double max_condition) {
+  if (!pose) judge.refuse(m, kNoPose, advice(judge.table(), model));
+  if (const auto reason = model.unreachable(*pose))
+    judge.refuse(m, "is out of reach: " + *reason, judge.if_unreachable());
+  const double condition = model.condition(*pose);
+  if (condition <= max_condition) return condition;
+  judge.refuse(m, near_singular(condition, max_condition), judge.if_singular());
+}
+
 /// All poses of the judge's table. Throws what the judge throws.
 template <class Judge>
-SelectedPoses poses_of(const Judge& judge, const Model& model) {
+SelectedPoses poses_of(const Judge& judge, const Model& model, double max_condition) {
   SelectedPoses selected;
   std::vector<double> values;
   for (std::size_t m = 0; m < judge.table().points.size(); ++m) {
     const auto pose = pose_of(judge.table(), m, model);
-    selected.condition.push_back(judge(m, pose));
+    selected.condition.push_back(condition_of(judge, m, pose, model, max_condition));
     values.insert(values.end(), pose->begin(), pose->end());
   }
   selected.poses = PoseSet(model.description().pose_coordinates.size(), std::move(values));
@@ -149,13 +144,13 @@ SelectedPoses poses_of(const Judge& judge, const Model& model) {
 }  // namespace
 
 SelectedPoses file_poses(const PoseSelection& selection, const Model& model) {
-  return poses_of(FileJudge(selection, model), model);
+  return poses_of(FileJudge(selection, model), model, selection.max_condition);
 }
 
 SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& model) {
   POESY_EXPECTS(selection.trajectory.has_value());
   TimedPoints points = sampled(*selection.trajectory, model.description());
-  SelectedPoses selected = poses_of(TrajectoryJudge(selection, points, model), model);
+  SelectedPoses selected = poses_of(TrajectoryJudge(selection, points, model), model, selection.max_condition);
   selected.time = std::move(points.time);
   return selected;
 }

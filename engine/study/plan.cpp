@@ -25,7 +25,7 @@ Plan::Plan(const Study& study, PoseSet poses)
 WorkUnit Plan::unit(std::size_t u) const {
   POESY_EXPECTS(u < units());
   const std::size_t cell = u / units_per_cell_;
-  const std::size_t first = u % units_per_cell_ * kUnitSamples;
+  const std::size_t first = first_sample(u % units_per_cell_);
   return {cell / poses_.size(), PoseIndex(cell % poses_.size()), SampleIndex(first),
           std::min(kUnitSamples, samples_ - first)};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -37,6 +38,9 @@ class Plan {
   std::size_t units() const { return cells() * units_per_cell_; }
   /// Unit u: cell by cell, samples in order.
   WorkUnit unit(std::size_t u) const;
+
+  /// The first sample of a cell's unit; the number of samples for the unit after the last.
+  std::size_t first_sample(std::size_t unit) const { return std::min(unit * kUnitSamples, samples_); }
 
   std::size_t samples() const { return samples_; }
   std::uint64_t seed() const { return seed_; }

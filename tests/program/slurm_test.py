@@ -19,7 +19,7 @@ import slurm
 SKIPPED = 77
 ARRAY = ROOT / "cluster/array.sbatch"
 MPI = ROOT / "cluster/mpi.sbatch"
-PARTS = 3
+SHARDS = 3
 RANKS = 2
 DONE = slurm.Ended("COMPLETED", 0)
 BOTH_KINDS = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO}
@@ -31,7 +31,7 @@ def output_of(*command):
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 
 
-HAS_PARTS = unittest.skipUnless("--shard" in output_of(PROGRAM, "run", "--help"), "this poesy does no parts of a study")
+HAS_SHARDS = unittest.skipUnless("--shard" in output_of(PROGRAM, "run", "--help"), "this poesy has no shards")
 HAS_MPI = unittest.skipUnless("libmpi" in output_of("ldd", PROGRAM), "this poesy is built without MPI")
 
 
@@ -51,12 +51,12 @@ class SlurmTest(ResumptionTest):
         ended = self.slurm.wait(job)
         self.assertEqual(list(ended.values()), [DONE] * count, f"{ended}\n{self.logs()}")
 
-    def submit_parts(self, count, *options):
+    def submit_shards(self, count, *options):
         return self.submit(f"--array=1-{count}", *options, ARRAY, "study.toml", "out.h5", count)
 
-    def submit_merge(self, parts, count):
-        merge = f"{PROGRAM} merge out.*of{count}.h5 -o out.h5"
-        return self.submit(f"--dependency=afterok:{parts}", "--output=merge.log", "--wrap", merge)
+    def submit_merge(self, shards, count):
+        merge = f"{PROGRAM} merge out.*-of-{count}.h5 -o out.h5"
+        return self.submit(f"--dependency=afterok:{shards}", "--output=merge.log", "--wrap", merge)
 
     def test_array_over_seeds(self):
         self.write("study.toml", SENSITIVITY)
@@ -66,53 +66,53 @@ class SlurmTest(ResumptionTest):
             self.succeeds("run", "study.toml", "--seed", seed, "-o", "undisturbed.h5", "--quiet")
             self.assertEqual(self.content_hash(f"out{seed}.h5"), self.content_hash("undisturbed.h5"))
 
-    @HAS_PARTS
-    def test_parts(self):
+    @HAS_SHARDS
+    def test_shards(self):
         for kind, study in BOTH_KINDS.items():
             with self.subTest(kind):
                 expected = self.undisturbed(study)
-                parts = self.submit_parts(PARTS)
-                merge = self.submit_merge(parts, PARTS)
-                self.completes(parts, PARTS)
+                shards = self.submit_shards(SHARDS)
+                merge = self.submit_merge(shards, SHARDS)
+                self.completes(shards, SHARDS)
                 self.completes(merge)
                 self.assertEqual(self.content_hash(), expected)
                 for path in self.folder.glob("out.*"):
                     path.unlink()
 
-    @HAS_PARTS
+    @HAS_SHARDS
     def test_time_limit(self):
-        """A part that takes longer than its job may goes back into the queue, as often as it takes; the merge waits."""
+        """A shard that takes longer than its job may goes back into the queue, until it is done; the merge waits."""
         expected = self.undisturbed(LONG)
-        parts = self.submit_parts(1, "--time=1", "--signal=B:TERM@55")
-        merge = self.submit_merge(parts, 1)
-        self.completes(parts)
+        shards = self.submit_shards(1, "--time=1", "--signal=B:TERM@55")
+        merge = self.submit_merge(shards, 1)
+        self.completes(shards)
         self.completes(merge)
         self.assertEqual(self.content_hash(), expected)
-        restarts = self.slurm.restarts(parts)
+        restarts = self.slurm.restarts(shards)
         self.assertGreaterEqual(restarts, 1)
         self.assertEqual(self.logs().count("interrupted"), restarts)
 
-    @HAS_PARTS
+    @HAS_SHARDS
     def test_cancelled_job_stays_away(self):
         self.write("study.toml", LONG)
-        part = self.submit_parts(1)
-        checkpoint = self.folder / "out.1of1.h5.part"
-        self.slurm.wait_for(lambda: "RUNNING" in str(self.slurm.states(part)), 60, "the job does not start")
+        shard = self.submit_shards(1)
+        checkpoint = self.folder / "out.1-of-1.h5.part"
+        self.slurm.wait_for(lambda: "RUNNING" in str(self.slurm.states(shard)), 60, "the job does not start")
         time.sleep(2)
-        self.slurm.cancel(part)
-        ended = self.slurm.wait(part)
+        self.slurm.cancel(shard)
+        ended = self.slurm.wait(shard)
         time.sleep(5)
-        self.assertEqual([state for state, _ in self.slurm.states(part).values()], ["CANCELLED"], ended)
-        self.assertEqual(self.slurm.restarts(part), 0)
+        self.assertEqual([state for state, _ in self.slurm.states(shard).values()], ["CANCELLED"], ended)
+        self.assertEqual(self.slurm.restarts(shard), 0)
         self.assertTrue(checkpoint.exists(), self.logs())
 
-    @HAS_PARTS
+    @HAS_SHARDS
     def test_wrong_study(self):
         """Its exit code is the job's, and what depends on it never runs."""
         self.write("study.toml", SENSITIVITY.replace("12300", "-1"))
-        parts = self.submit_parts(2)
-        merge = self.submit_merge(parts, 2)
-        ended = self.slurm.wait(parts)
+        shards = self.submit_shards(2)
+        merge = self.submit_merge(shards, 2)
+        ended = self.slurm.wait(shards)
         self.assertEqual(list(ended.values()), [slurm.Ended("FAILED", 2)] * 2, self.logs())
         self.assertEqual([state for state, _ in self.slurm.states(merge).values()], ["PENDING"])
         self.slurm.cancel(merge)

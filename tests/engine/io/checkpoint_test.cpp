@@ -127,6 +127,7 @@ TEST(CheckpointIdentity, MayAskForMoreSamplesAndForNothingElse) {
   expect_names(refusal([](auto& other) { other.git_commit = "abd"; }), {"abc", "abd"});
   expect_names(refusal([](auto& other) { other.model = "real"; }), {"fake", "real"});
   expect_names(refusal([](auto& other) { other.poses = "4567"; }), {"poses"});
+  expect_names(refusal([](auto& other) { other.shard = "2/5"; }), {"the whole study", "shard 2/5"});
   expect_names(refusal([](auto& other) { other.study = "[poses]\ncount = 4\n[errors]\n"; }),
                {"'count = 3'", "'count = 4'"});
   expect_names(refusal([](auto& other) { other.study += "more"; }), {"nothing", "'more'"});

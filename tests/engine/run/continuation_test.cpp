@@ -231,6 +231,66 @@ TEST_P(Extension, NeverGivesFewerSamples) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Extension, testing::Values(Kind::sensitivity, Kind::monte_carlo), kind_name);
 
+/// The states that one shard of a study leaves.
+States run_shard(const Prepared& prepared, const Shard& shard) {
+  Checkpoints checkpoints([] { return false; }, [](std::span<const Bytes>) {});
+  RunOptions options;
+  options.threads = 2;
+  options.checkpoints = &checkpoints;
+  options.shard = shard;
+  EXPECT_FALSE(run(prepared, options).has_value());
+  EXPECT_TRUE(checkpoints.complete());
+  return {checkpoints.stages().begin(), checkpoints.stages().end()};
+}
+
+class Sharding : public testing::TestWithParam<Kind> {};
+
+TEST_P(Sharding, ShardsTogetherHaveTheBitsOfTheWhole) {
+  for (const std::size_t samples : {2 * Plan::kUnitSamples, Plan::kUnitSamples + 300, std::size_t{300}}) {
+    const Prepared prepared(study_of(GetParam(), samples));
+    const Bits expected = run(prepared, {}).value();
+    for (const std::size_t count : {1U, 2U, 3U}) {
+      States merged;
+      for (std::size_t index = 0; index < count; ++index) {
+        const States states = run_shard(prepared, {index, count});
+        merged.resize(states.size());
+        for (std::size_t k = 0; k < states.size(); ++k) {
+          merged[k].insert(merged[k].end(), states[k].begin(), states[k].end());
+        }
+      }
+      const Recorded whole = record(prepared, merged);
+      EXPECT_EQ(whole.result, expected);
+      EXPECT_EQ(whole.states.size(), 1U) << "some work was done twice";
+    }
+  }
+}
+
+TEST_P(Sharding, RefusesAShardTwice) {
+  const Prepared prepared(study_of(GetParam(), Plan::kUnitSamples + 300));
+  States states = run_shard(prepared, {0, 2});
+  const Bytes once = states.front();
+  states.front().insert(states.front().end(), once.begin(), once.end());
+  EXPECT_THROW(record(prepared, states), BytesError);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Sharding, testing::Values(Kind::sensitivity, Kind::monte_carlo, Kind::evaluate),
+                         kind_name);
+
+TEST(Shard, PartsFollowEachOther) {
+  for (const std::size_t all : {0UL, 1UL, 5UL, 3950UL, 1UL << 62U}) {
+    for (const std::size_t count : {1UL, 2UL, 3UL, 7UL}) {
+      std::size_t next = 0;
+      for (std::size_t index = 0; index < count; ++index) {
+        const NumberRange part = Shard{index, count}.of(all);
+        EXPECT_EQ(part.first, next);
+        EXPECT_LE(part.end - part.first, all / count + 1);
+        next = part.end;
+      }
+      EXPECT_EQ(next, all);
+    }
+  }
+}
+
 /// Whether a run function takes these states.
 bool accepted(const Prepared& prepared, const States& states) {
   try {

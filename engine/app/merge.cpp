@@ -1,0 +1,62 @@
+#include "engine/app/command.h"
+#include "engine/app/run_study.h"
+#include "engine/base/error.h"
+#include "engine/io/result_file.h"
+#include "engine/io/shard_file.h"
+#include "engine/io/study_file.h"
+#include "models/registry.h"
+
+namespace poesy::app {
+namespace {
+
+struct Options {
+  std::vector<std::string> shards;
+  std::string result;
+};
+
+/// All shards took together.
+RunTime time_of(const std::vector<StoredShard>& shards) {
+  RunTime sum;
+  for (const StoredShard& shard : shards) {
+    sum.wall += shard.facts.wall_seconds;
+    sum.checkpoints += shard.facts.checkpoint_seconds;
+  }
+  return sum;
+}
+
+int merge(const Options& options) {
+  check_result_path(options.result);
+  std::vector<StoredShard> shards;
+  for (const std::string& path : options.shards) shards.push_back(read_shard(path));
+  std::vector<Bytes> merged = merge_shards(shards);
+  const StoredShard& first = shards.front();
+  // A stored study's poses are stored with it, so a file that they came from is not asked for.
+  const Study study = study_of_text(first.study_text, "the study in " + first.path, registry(), StudyUse::evaluate);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  // The whole run from here on: as one that is resumed when all its solves are done.
+  Checkpoints done([] { return false; }, [](std::span<const Bytes>) {}, std::move(merged));
+  RunOptions run{.threads = first.facts.threads, .progress = [](const Progress&) {}, .checkpoints = &done};
+  const Job job{study, *model, first.poses, options.result, std::move(run), [time = time_of(shards)] { return time; }};
+  try {
+    return report_end(job, options.result, run_study(job).value());
+  } catch (const BytesError& error) {
+    throw FileError(first.path, std::string("or another shard ") + error.what(), "run the shards again");
+  }
+}
+
+}  // namespace
+
+void add_merge(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("merge", "put the shards of a study together (poesy run --shard)");
+  command->add_option("shards", options->shards, "all shards of one study, in any order")
+      ->required()
+      ->type_name("SHARD.h5 ...");
+  command->add_option("-o,--output", options->result, "result file, the same as that of one run")
+      ->required()
+      ->type_name("RESULT.h5");
+  command->footer("Example: poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5");
+  command->callback([options, &action] { action = [options] { return merge(*options); }; });
+}
+
+}  // namespace poesy::app

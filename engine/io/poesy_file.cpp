@@ -1,0 +1,90 @@
+#include "engine/io/poesy_file.h"
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "engine/io/h5_heap.h"
+#include "engine/io/result_format.h"
+
+namespace poesy {
+namespace {
+
+constexpr const char* kOther = "give a result file written by poesy";
+
+[[noreturn]] void fail_to_read(const std::string& path) {
+  throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
+}
+
+std::vector<std::byte> read_bytes(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw FileError(path, "is a folder", kOther);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail_to_read(path);
+  std::vector<std::byte> bytes(std::filesystem::file_size(path, ignored));
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) fail_to_read(path);
+  return bytes;
+}
+
+h5::File open_hdf5(const std::string& path) {
+  const auto heap_problem = h5::damaged_heap(read_bytes(path));
+  try {
+    h5::File file = h5::File::open(path);
+    if (heap_problem) throw FileError(path, "is damaged: " + *heap_problem, kDamagedRemedy);
+    return file;
+  } catch (const h5::Error& error) {
+    throw FileError(path, std::string("is not an intact HDF5 file: ") + error.what(), kOther);
+  }
+}
+
+/// Empty when the file is none of poesy's.
+std::string filetype_of(const h5::File& file) {
+  try {
+    return file.has_attribute("/", "filetype") ? text_attribute(file, "filetype") : "";
+  } catch (const h5::Error&) {
+    return "";  // an attribute of that name, but not text
+  }
+}
+
+void check_version(const std::string& path, const h5::File& file) {
+  const auto version = file.attribute<std::int64_t>("/", "version");
+  if (version.size() != 2) throw h5::Error("attribute 'version' is not two numbers");
+  if (version[0] > result_format::kMajor) {
+    throw FileError(path,
+                    "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
+                        ", newer than this program's " + std::to_string(result_format::kMajor) + "." +
+                        std::to_string(result_format::kMinor),
+                    "use the poesy that wrote it (" + text_attribute(file, "poesy_version") + ") or a newer one");
+  }
+}
+
+}  // namespace
+
+std::string text_attribute(const h5::File& file, const std::string& name) {
+  const auto values = file.attribute<std::string>("/", name);
+  if (values.size() != 1) throw h5::Error("attribute '" + name + "' is not one text");
+  return values.front();
+}
+
+h5::File open_poesy_file(const std::string& path) {
+  h5::File file = open_hdf5(path);
+  const std::string filetype = filetype_of(file);
+  if (filetype != result_format::kFileType && filetype != result_format::kShardFileType) {
+    throw FileError(path, "is an HDF5 file, but not a result of poesy", kOther);
+  }
+  check_version(path, file);
+  return file;
+}
+
+void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype) {
+  if (filetype_of(file) == filetype) return;
+  if (filetype == result_format::kFileType) {
+    throw FileError(path, "is a shard of a study, not a whole result", "put all shards together with poesy merge");
+  }
+  throw FileError(path, "is a whole result, not a shard of one", "give files that poesy run --shard wrote");
+}
+
+}  // namespace poesy

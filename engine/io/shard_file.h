@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/bytes.h"
+#include "engine/io/result_builder.h"
+#include "engine/run/result.h"
+#include "engine/run/shard.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// What a shard file says: an HDF5 file with /study, /poses and /run as in a result, and in /shard what the shard
+/// found, for the program that wrote it alone.
+struct StoredShard {
+  std::string path;
+  std::string poesy_version;
+  std::string git_commit;
+  std::string study_text;
+  SelectedPoses poses;  ///< of the whole study
+  Shard shard;
+  std::vector<Bytes> stages;  ///< states of the study's runs (engine/run/checkpoints.h)
+  RunFacts facts;
+};
+
+/// Writes a shard, in the way of results: whole or not at all. Throws FileError.
+void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
+                 std::span<const Bytes> stages, const RunFacts& facts);
+
+/// Reads one back. Throws FileError when it is not one, or when it was changed since it was written.
+StoredShard read_shard(const std::string& path);
+
+/// The group /shard of such a file.
+void add_shard(ResultBuilder& result, const Shard& shard, std::span<const Bytes> stages);
+
+/// Puts the shards of a study together: the state of each of its runs, whole. Throws InputError that names the files
+/// when they are not the shards of one study, written by this program's version, each once.
+std::vector<Bytes> merge_shards(std::vector<StoredShard>& shards);
+
+}  // namespace poesy
