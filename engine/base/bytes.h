@@ -27,6 +27,8 @@ class BytesError : public std::runtime_error {
 ///     text      as a block, UTF-8
 class ByteWriter {
  public:
+  /// Makes room for so many bytes in all, so that a long state is not copied while it grows.
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   void number(std::uint64_t value);
   void real(double value) { reals(std::span(&value, 1)); }
   /// Without their number.

@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -74,14 +76,27 @@ void FileWriter::commit() {
   if (!sync_folder(path_)) fail("is in place, but its folder cannot be synced", errno);
 }
 
+/// "needs N bytes, M are free", as much as is known; what was written so far counts as free, for it is going to be.
+std::string FileWriter::missing_space() const {
+  std::string text = expected_ == 0 ? "" : "; needs " + std::to_string(expected_) + " bytes";
+  struct statvfs disk {};
+  struct stat file {};
+  constexpr std::uintmax_t kStatBlock = 512;  // the unit of st_blocks
+  if (::fstatvfs(descriptor_, &disk) == 0 && ::fstat(descriptor_, &file) == 0) {
+    const std::uintmax_t free = std::uintmax_t{disk.f_bavail} * disk.f_frsize + file.st_blocks * kStatBlock;
+    text += (text.empty() ? "; " : ", ") + std::to_string(free) + " are free";
+  }
+  return text;
+}
+
 std::string FileWriter::remedy(int error) const {
-  const std::string size = expected_ == 0 ? "some space" : std::to_string(expected_) + " bytes";
   switch (error) {
     case ENOSPC:
     case EDQUOT:
-      return "free " + size + " or choose another folder";
+      return "make room or choose another folder";
     case EFBIG:
-      return "raise the limit on file sizes" + (expected_ == 0 ? "" : " to " + size) + " or choose another folder";
+      return "raise the limit on file sizes" + (expected_ == 0 ? "" : " to " + std::to_string(expected_) + " bytes") +
+             " or choose another folder";
     case ENOENT:
     case ENOTDIR:
       return "make the folder or choose another one";
@@ -95,7 +110,9 @@ std::string FileWriter::remedy(int error) const {
 }
 
 void FileWriter::fail(std::string_view action, int error) const {
-  throw FileError(path_, std::string(action) + " (" + std::generic_category().message(error) + ")", remedy(error));
+  std::string reason = std::generic_category().message(error);
+  if (error == ENOSPC && descriptor_ != kClosed) reason += missing_space();
+  throw FileError(path_, std::string(action) + " (" + reason + ")", remedy(error));
 }
 
 }  // namespace poesy

@@ -31,6 +31,7 @@ class FileWriter {
  private:
   [[noreturn]] void fail(std::string_view action, int error) const;
   std::string remedy(int error) const;
+  std::string missing_space() const;
 
   std::string path_;
   std::string temporary_;

@@ -35,14 +35,15 @@ class Checkpoints {
   template <class State>
   void merged(const State& state) {
     if (!due_()) return;
-    stages_[begun_ - 1] = state();
+    take(state);
     save();
   }
 
   /// The stage, or a round of it, ended with this state, complete or stopped, after these solves in all parts of the
   /// run.
-  void end(bool complete, const SolveCounts& solves, Bytes state) {
-    stages_[begun_ - 1] = std::move(state);
+  template <class State>
+  void end(bool complete, const SolveCounts& solves, const State& state) {
+    take(state);
     ends_.resize(begun_);
     ends_.back() = {complete, solves};
   }
@@ -64,6 +65,13 @@ class Checkpoints {
     bool complete = false;
     SolveCounts solves;
   };
+
+  template <class State>
+  void take(const State& state) {
+    Bytes& stage = stages_[begun_ - 1];
+    stage = Bytes();  // the older state goes first: there need not be room for two
+    stage = state();
+  }
 
   Due due_;
   Save save_;
@@ -94,7 +102,7 @@ class Stage {
   template <class State>
   void end(bool complete, const SolveCounts& solves, const State& state) {
     if (checkpoints_ == nullptr) return;
-    checkpoints_->end(complete, solves, state());
+    checkpoints_->end(complete, solves, state);
     if (!complete) checkpoints_->save();
   }
 

@@ -213,6 +213,7 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
 
 Bytes MonteCarloCollector::state() const {
   ByteWriter to;
+  to.reserve(kept_bytes_ + kept_bytes_ / 4);  // what is kept, and some more
   for (const std::uint64_t number :
        std::array<std::uint64_t, 5>{kKind, responses_, result_.poses, result_.levels.size(), plan_->samples()}) {
     to.number(number);

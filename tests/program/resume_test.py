@@ -212,43 +212,6 @@ class Resume(ResumptionTest):
         self.assertEqual(self.generations(), before)
         self.assertEqual(self.resume_to_end(), expected)
 
-    def mount_disk(self, size):
-        disk = self.folder / "disk"
-        disk.mkdir()
-        if os.geteuid() != 0:
-            self.skipTest("mounting a small file system needs root")
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", disk], check=False).returncode != 0:
-            self.skipTest("a small file system cannot be mounted here")
-        self.addCleanup(subprocess.run, ["umount", disk], check=True)
-        return disk
-
-    def test_full_disk(self):
-        expected = self.undisturbed(SENSITIVITY)
-        disk = self.mount_disk("1m")
-        self.folder = disk
-        self.newer = disk / "out.h5.part"
-        self.older = disk / "out.h5.part.1"
-        self.write("study.toml", SENSITIVITY)
-        self.two_generations()
-        before = self.generations()
-        for every, name in (("0.01 s", b"out.h5.part: "), ("1 h", b"out.h5: ")):
-            with self.subTest(every):
-                with open(disk / "filler", "wb", buffering=0) as filler:
-                    try:
-                        while True:
-                            filler.write(bytes(1024))
-                    except OSError:
-                        pass
-                done = self.resume("--checkpoint-every", every)
-                self.assertEqual(done.returncode, 3, done.stderr)
-                self.assertIn(name + b"cannot be written (No space left on device); free ", done.stderr)
-                self.assertRegex(done.stderr, rb"free \d+ bytes")
-                self.assertIn(b"--resume", done.stderr)
-                self.assertEqual(self.generations(), before)
-                self.assertEqual(set(disk.glob("out.h5*")), {self.newer, self.older})
-                (disk / "filler").unlink()
-        self.assertEqual(self.resume_to_end(), expected)
-
 
 if __name__ == "__main__":
     main()
