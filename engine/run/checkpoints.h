@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
+#include "engine/run/team.h"
 
 namespace poesy {
 
@@ -49,16 +50,17 @@ class Checkpoints {
   std::size_t begun_ = 0;
 };
 
-/// One stage's dealings with checkpoints, if there are any.
+/// One stage's dealings with checkpoints and other ranks, if there are any.
 class Stage {
  public:
-  explicit Stage(Checkpoints* checkpoints) : checkpoints_(checkpoints) {}
+  Stage(Checkpoints* checkpoints, Team* team) : checkpoints_(checkpoints), team_(team) {}
 
-  /// Calls restore(state) if there is a state to take up.
+  /// Calls restore(state) if there is a state to take up: of the checkpoint, that rank 0 has.
   template <class Restore>
   void begin(const Restore& restore) {
-    if (checkpoints_ == nullptr) return;
-    const Bytes& state = checkpoints_->begin();
+    Bytes state;
+    if (checkpoints_ != nullptr) state = checkpoints_->begin();
+    if (team_ != nullptr) state = team_->begin(state);
     if (!state.empty()) restore(std::span<const std::byte>(state));
   }
 
@@ -67,16 +69,28 @@ class Stage {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);
   }
 
-  /// The stage is complete, or was stopped; then a checkpoint is kept.
-  template <class State>
-  void end(bool complete, const State& state) {
-    if (checkpoints_ == nullptr) return;
-    checkpoints_->end(state());
-    if (!complete) checkpoints_->save();
+  /// The stage is complete, or was stopped; then a checkpoint is kept. The ranks after rank 0 take up rank 0's state
+  /// when it is complete: then restore(state) is called a second time.
+  template <class State, class Restore>
+  void end(bool complete, const State& state, const Restore& restore) {
+    if (team_ != nullptr && !team_->leads()) {
+      if (complete) restore(std::span<const std::byte>(team_->end_state()));
+      return;
+    }
+    if (checkpoints_ == nullptr && team_ == nullptr) return;
+    Bytes last = state();
+    // The checkpoint first: who was stopped may have little time left.
+    if (checkpoints_ != nullptr && !complete) {
+      checkpoints_->end(last);
+      checkpoints_->save();
+    }
+    if (team_ != nullptr) team_->end(complete, last);
+    if (checkpoints_ != nullptr && complete) checkpoints_->end(std::move(last));
   }
 
  private:
   Checkpoints* checkpoints_;
+  Team* team_;
 };
 
 }  // namespace poesy

@@ -18,15 +18,15 @@ EvaluationProgress::EvaluationProgress(EvaluationResult& result, std::size_t blo
   POESY_EXPECTS(block_rows > 0);
 }
 
-std::size_t EvaluationProgress::outcomes() const {
+std::size_t EvaluationProgress::outcomes(std::size_t blocks) const {
   if (blocks_per_pose_ == 0) return 0;
-  return blocks_ / blocks_per_pose_ * result_->samples +
-         std::min(blocks_ % blocks_per_pose_ * block_rows_, result_->samples);
+  return blocks / blocks_per_pose_ * result_->samples +
+         std::min(blocks % blocks_per_pose_ * block_rows_, result_->samples);
 }
 
 SolveCounts EvaluationProgress::total() const {
   SolveCounts sum;
-  for (std::size_t n = 0; n < outcomes(); ++n) sum.add(result_->status[n], result_->iterations[n]);
+  for (std::size_t n = 0; n < outcomes(blocks_); ++n) sum.add(result_->status[n], result_->iterations[n]);
   return sum;
 }
 
@@ -36,14 +36,7 @@ Bytes EvaluationProgress::state() const {
            kKind, result_->poses, result_->samples, result_->responses, result_->details, block_rows_, blocks_}) {
     to.number(number);
   }
-  const std::size_t all = result_->poses * result_->samples;
-  const std::size_t done = outcomes();
-  for (std::size_t r = 0; r < result_->responses; ++r) to.reals(std::span(result_->response).subspan(r * all, done));
-  to.reals(std::span(result_->detail).first(done * result_->details));
-  for (std::size_t n = 0; n < done; ++n) {
-    to.number(static_cast<std::uint64_t>(result_->status[n]));
-    to.number(result_->iterations[n]);
-  }
+  write_outcomes(0, outcomes(blocks_), to);
   return to.take();
 }
 
@@ -54,15 +47,45 @@ void EvaluationProgress::restore(std::span<const std::byte> state) {
     if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
   }
   blocks_ = static_cast<std::size_t>(from.number_up_to(blocks_in_all()));
+  read_outcomes(0, outcomes(blocks_), from);
+  from.expect_end();
+}
+
+void EvaluationProgress::write_outcomes(std::size_t place, std::size_t count, ByteWriter& to) const {
   const std::size_t all = result_->poses * result_->samples;
-  const std::size_t done = outcomes();
-  for (std::size_t r = 0; r < result_->responses; ++r) from.reals(std::span(result_->response).subspan(r * all, done));
-  from.reals(std::span(result_->detail).first(done * result_->details));
-  for (std::size_t n = 0; n < done; ++n) {
+  for (std::size_t r = 0; r < result_->responses; ++r) {
+    to.reals(std::span(result_->response).subspan(r * all + place, count));
+  }
+  to.reals(std::span(result_->detail).subspan(place * result_->details, count * result_->details));
+  for (std::size_t n = place; n < place + count; ++n) {
+    to.number(static_cast<std::uint64_t>(result_->status[n]));
+    to.number(result_->iterations[n]);
+  }
+}
+
+void EvaluationProgress::read_outcomes(std::size_t place, std::size_t count, ByteReader& from) {
+  const std::size_t all = result_->poses * result_->samples;
+  for (std::size_t r = 0; r < result_->responses; ++r) {
+    from.reals(std::span(result_->response).subspan(r * all + place, count));
+  }
+  from.reals(std::span(result_->detail).subspan(place * result_->details, count * result_->details));
+  for (std::size_t n = place; n < place + count; ++n) {
     result_->status[n] = static_cast<SolveStatus>(from.number_up_to(kStatusNames.size() - 1));
     result_->iterations[n] = static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
   }
-  from.expect_end();
+}
+
+void EvaluationProgress::write_block(std::size_t block, ByteWriter& to) const {
+  write_outcomes(outcomes(block), outcomes(block + 1) - outcomes(block), to);
+}
+
+SolveCounts EvaluationProgress::read_block(std::size_t block, ByteReader& from) {
+  const std::size_t first = outcomes(block);
+  const std::size_t end = outcomes(block + 1);
+  read_outcomes(first, end - first, from);
+  SolveCounts solves;
+  for (std::size_t n = first; n < end; ++n) solves.add(result_->status[n], result_->iterations[n]);
+  return solves;
 }
 
 }  // namespace poesy

@@ -19,6 +19,10 @@ class EvaluationProgress {
   /// The next block is filled.
   void add_block() { ++blocks_; }
   std::size_t blocks() const { return blocks_; }
+  /// The outcomes of any block that is filled, added or not.
+  void write_block(std::size_t block, ByteWriter& to) const;
+  /// Fills a block that was not added; how its solves ended. Throws BytesError.
+  SolveCounts read_block(std::size_t block, ByteReader& from);
   /// Over the blocks that were added.
   SolveCounts total() const;
 
@@ -28,9 +32,12 @@ class EvaluationProgress {
   void restore(std::span<const std::byte> state);
 
  private:
+  /// Outcomes from place to place + count of [M x S].
+  void write_outcomes(std::size_t place, std::size_t count, ByteWriter& to) const;
+  void read_outcomes(std::size_t place, std::size_t count, ByteReader& from);
   std::size_t blocks_in_all() const { return result_->poses * blocks_per_pose_; }
-  /// Outcomes of the blocks that were added, which are the first of [M x S].
-  std::size_t outcomes() const;
+  /// Outcomes of the first so many blocks, which are the first of [M x S].
+  std::size_t outcomes(std::size_t blocks) const;
 
   EvaluationResult* result_;
   std::size_t block_rows_;

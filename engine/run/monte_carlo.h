@@ -22,6 +22,9 @@ struct ResponseUnit {
 struct PoseUnit {
   std::vector<ResponseUnit> responses;  ///< [R], over the samples that count
   SolveCounts solves;
+
+  void write(ByteWriter& to) const;
+  static PoseUnit read(ByteReader& from, std::size_t responses);
 };
 
 /// Solves work units of a Monte Carlo study serially, all factors varying together. Factor f draws from the address

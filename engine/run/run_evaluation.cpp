@@ -97,8 +97,9 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
   EvaluationResult result = empty_evaluation(model, poses, samples, outcomes);
   const std::size_t blocks = (samples + kBlockRows - 1) / kBlockRows;
   EvaluationProgress done(result, kBlockRows);
-  Stage stage(options.checkpoints);
-  stage.begin([&](std::span<const std::byte> state) { done.restore(state); });
+  const auto restore = [&](std::span<const std::byte> state) { done.restore(state); };
+  Stage stage(options.checkpoints, options.team);
+  stage.begin(restore);
   ProgressCounter counter(poses.size() * samples, done.total(), options);
   const std::size_t first_block = done.blocks();
   const auto state = [&] { return done.state(); };
@@ -116,8 +117,10 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
         done.add_block();
         counter.add(solves);
         stage.merged(state);
-      });
-  stage.end(complete, state);
+      },
+      [&](std::size_t n, const SolveCounts&, ByteWriter& to) { done.write_block(first_block + n, to); },
+      [&](std::size_t n, ByteReader& from) { return done.read_block(first_block + n, from); });
+  stage.end(complete, state, restore);
   if (!complete) return std::nullopt;
   return result;
 }

@@ -20,8 +20,12 @@ std::size_t resolved_threads(std::size_t threads) {
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options) {
   SensitivityCollector collect(plan, model.description().responses.size());
-  Stage stage(options.checkpoints);
-  stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
+  const auto restore = [&](std::span<const std::byte> state) {
+    collect = SensitivityCollector(plan, model.description().responses.size());
+    collect.restore(state);
+  };
+  Stage stage(options.checkpoints, options.team);
+  stage.begin(restore);
   const PendingUnits pending(plan, [&](std::size_t cell) { return collect.units_done(cell); });
   ProgressCounter counter(plan.solves(), collect.total(), options);
   const auto state = [&] { return collect.state(); };
@@ -32,8 +36,10 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
         collect.add(pending[n], stats);
         counter.add(stats.solves);
         stage.merged(state);
-      });
-  stage.end(complete, state);
+      },
+      [](std::size_t, const UnitStats& stats, ByteWriter& to) { stats.write(to); },
+      [&](std::size_t, ByteReader& from) { return UnitStats::read(from, model.description().responses.size()); });
+  stage.end(complete, state, restore);
   if (!complete) return std::nullopt;
   return sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
 }
@@ -41,8 +47,12 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options) {
   MonteCarloCollector collect(plan, model.description().responses.size(), analysis);
-  Stage stage(options.checkpoints);
-  stage.begin([&](std::span<const std::byte> state) { collect.restore(state); });
+  const auto restore = [&](std::span<const std::byte> state) {
+    collect = MonteCarloCollector(plan, model.description().responses.size(), analysis);
+    collect.restore(state);
+  };
+  Stage stage(options.checkpoints, options.team);
+  stage.begin(restore);
   const PendingUnits pending(plan, [&](std::size_t pose) { return collect.units_done(PoseIndex(pose)); });
   ProgressCounter counter(plan.solves(), collect.total(), options);
   const auto state = [&] { return collect.state(); };
@@ -53,8 +63,10 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
         collect.add(pending[n].pose, found);
         counter.add(found.solves);
         stage.merged(state);
-      });
-  stage.end(complete, state);
+      },
+      [](std::size_t, const PoseUnit& found, ByteWriter& to) { found.write(to); },
+      [&](std::size_t, ByteReader& from) { return PoseUnit::read(from, model.description().responses.size()); });
+  stage.end(complete, state, restore);
   if (!complete) return std::nullopt;
   return std::move(collect).result();
 }

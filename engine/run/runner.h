@@ -11,6 +11,7 @@
 #include "engine/model/model.h"
 #include "engine/run/checkpoints.h"
 #include "engine/run/result.h"
+#include "engine/run/team.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -31,6 +32,10 @@ struct RunOptions {
   /// Where the run's state comes from and goes to. May be null. Then a run function throws BytesError for a state that
   /// is not one of its own.
   Checkpoints* checkpoints = nullptr;
+  /// The ranks that share the work; null: this process alone. Every rank calls the same run functions with the same
+  /// arguments and gets the same results; rank 0 alone has checkpoints and reports progress. When a rank is stopped or
+  /// leaves, the functions give nothing, and team->left() says why. The ranks after rank 0 may get Dismissed thrown.
+  Team* team = nullptr;
 };
 
 /// Number of threads that RunOptions::threads stands for.

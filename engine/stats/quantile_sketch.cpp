@@ -22,6 +22,10 @@ constexpr std::uint32_t kLast = (std::uint32_t{0x7ff} << (52 - kIgnoredBits)) - 
 
 constexpr std::uint32_t kSign = std::uint32_t{1} << (63 - kIgnoredBits);
 
+/// BucketedValues are stored as codes: 0 for what is taken for zero, else 1 + 2 (bucket - lowest) + sign.
+constexpr std::uint32_t most_code(std::uint32_t span) { return 2 * span + 2; }
+constexpr std::size_t code_bytes(std::uint32_t span) { return most_code(span) <= 0xffff ? 2 : 4; }
+
 double middle(std::size_t bucket) {
   const auto lower = static_cast<std::uint64_t>(bucket) << kIgnoredBits;
   return std::bit_cast<double>(lower | (std::uint64_t{1} << (kIgnoredBits - 1)));
@@ -82,6 +86,57 @@ POESY_EACH_INSTRUCTION_SET void sort_into_buckets(std::span<const double> values
 BucketedValues::BucketedValues(std::span<const double> values) : buckets(values.size()) {
   POESY_EXPECTS(std::ranges::all_of(values, [](double value) { return std::isfinite(value); }));
   if (!values.empty()) sort_into_buckets(values, *this);
+}
+
+void BucketedValues::write(ByteWriter& to) const {
+  to.number(buckets.size());
+  if (buckets.empty()) return;
+  to.real(min);
+  to.real(max);
+  const bool has_magnitudes = negatives != 0 || positives != 0;
+  const std::uint32_t span = has_magnitudes ? highest - lowest : 0;
+  to.number(has_magnitudes ? lowest : kFirstNormal);
+  to.number(span);
+  const std::size_t width = code_bytes(span);
+  Bytes codes(buckets.size() * width);
+  for (std::size_t k = 0; k < buckets.size(); ++k) {
+    const std::uint32_t bucket = buckets[k] & ~kSign;
+    const std::uint32_t sign = (buckets[k] & kSign) / kSign;
+    const std::uint32_t code = bucket < kFirstNormal ? 0 : 1 + 2 * (bucket - lowest) + sign;
+    for (std::size_t byte = 0; byte < width; ++byte) codes[k * width + byte] = std::byte((code >> (8 * byte)) & 0xffU);
+  }
+  to.raw(codes);
+}
+
+BucketedValues BucketedValues::read(ByteReader& from) {
+  BucketedValues values;
+  values.buckets.resize(from.count(2));
+  if (values.buckets.empty()) return values;
+  values.min = from.real();
+  values.max = from.real();
+  if (!std::isfinite(values.min) || !(values.min <= values.max) || !std::isfinite(values.max)) {
+    throw BytesError("numbers have no range");
+  }
+  values.lowest = static_cast<std::uint32_t>(from.number_up_to(kLast));
+  if (values.lowest < kFirstNormal) throw BytesError("a bucket is for numbers that are taken for zero");
+  const auto span = static_cast<std::uint32_t>(from.number_up_to(kLast - values.lowest));
+  values.highest = values.lowest + span;
+  const std::size_t width = code_bytes(span);
+  const std::span<const std::byte> codes = from.raw(values.buckets.size() * width);
+  std::uint32_t largest = 0;
+  for (std::size_t k = 0; k < values.buckets.size(); ++k) {
+    std::uint32_t code = 0;
+    for (std::size_t byte = 0; byte < width; ++byte) {
+      code |= std::to_integer<std::uint32_t>(codes[k * width + byte]) << (8 * byte);
+    }
+    largest = std::max(largest, code);
+    const std::uint32_t sign = code != 0 ? (code - 1) & 1U : 0;
+    values.buckets[k] = code != 0 ? (values.lowest + (code - 1) / 2) | (sign * kSign) : 0;
+    values.negatives += sign;
+    values.positives += code != 0 ? 1 - sign : 0;
+  }
+  if (largest > most_code(span)) throw BytesError("a number is in no bucket");
+  return values;
 }
 
 void QuantileSketch::Store::reach(std::size_t lowest, std::size_t highest) {

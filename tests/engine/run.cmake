@@ -11,3 +11,4 @@ poesy_test(fidelity_statistical_test LABELS statistical SOURCES engine/run/fidel
            LINKS poesy_run)
 poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_io poesy_models)
 poesy_test(continuation_test LABELS robustness SOURCES engine/run/continuation_test.cpp LINKS poesy_run)
+poesy_test(ranks_test LABELS robustness SOURCES engine/run/ranks_test.cpp LINKS poesy_run)
