@@ -11,9 +11,13 @@ namespace poesy::app {
 namespace {
 
 Ended ended_with(const Job& job, const SolveCounts& solves) {
-  const RunTime time = job.kept.time();
+  const RunTime time = job.kept != nullptr ? job.kept->time() : RunTime();
   Ended ended{solves, run_facts(time.wall, job.options.threads, solves.total())};
   ended.facts.checkpoint_seconds = time.checkpoints;
+  if (job.options.team != nullptr) {
+    ended.facts.ranks = job.options.team->ranks().size();
+    ended.facts.threads = job.options.team->threads();
+  }
   return ended;
 }
 
@@ -63,7 +67,7 @@ std::optional<Ended> run_sensitivity_study(const Job& job) {
     result->separation = separate_errors(job.model, plan.poses(), plan.factors(), standard_deviations(job.study));
   }
   const Ended ended = ended_with(job, solves);
-  write_sensitivity(job.path, job.study, job.poses, *result, ended.facts);
+  if (job.kept != nullptr) write_sensitivity(job.path, job.study, job.poses, *result, ended.facts);
   return ended;
 }
 
@@ -71,7 +75,7 @@ std::optional<Ended> run_identification_study(const Job& job) {
   const auto result = run_identification(job.study, job.model, job.poses.poses, job.options);
   if (!result) return std::nullopt;
   const Ended ended = ended_with(job, result->solves);
-  write_identification(job.path, job.study, job.poses, *result, ended.facts);
+  if (job.kept != nullptr) write_identification(job.path, job.study, job.poses, *result, ended.facts);
   return ended;
 }
 
@@ -80,8 +84,9 @@ std::optional<Ended> run_cases_study(const Job& job) {
                                    Pairing::every_pose_with_every_row, job.options);
   if (!evaluation) return std::nullopt;
   const Ended ended = ended_with(job, evaluation->total());
-  write_cases(job.path, job.study, job.poses, case_result(std::move(*evaluation), job.study.not_converged),
-              ended.facts);
+  if (job.kept != nullptr)
+    write_cases(job.path, job.study, job.poses, case_result(std::move(*evaluation), job.study.not_converged),
+                ended.facts);
   return ended;
 }
 
@@ -90,7 +95,7 @@ std::optional<Ended> run_monte_carlo_study(const Job& job) {
   const auto result = run_monte_carlo(plan, job.model, job.study.analysis, job.options);
   if (!result) return std::nullopt;
   const Ended ended = ended_with(job, result->total());
-  write_monte_carlo(job.path, job.study, job.poses, *result, ended.facts);
+  if (job.kept != nullptr) write_monte_carlo(job.path, job.study, job.poses, *result, ended.facts);
   return ended;
 }
 
@@ -102,7 +107,7 @@ std::optional<Ended> run_coupling_study(const Job& job) {
   if (!evaluation) return std::nullopt;
   const CouplingResult result = coupling_result(*evaluation, coupling, model, job.study.not_converged);
   const Ended ended = ended_with(job, result.total());
-  write_coupling(job.path, job.study, job.poses, result, ended.facts);
+  if (job.kept != nullptr) write_coupling(job.path, job.study, job.poses, result, ended.facts);
   return ended;
 }
 

@@ -17,7 +17,7 @@ struct Job {
   SelectedPoses poses;
   std::string path;  ///< of the result
   RunOptions options;
-  const ResumableRun& kept;
+  const ResumableRun* kept;  ///< null on the ranks that write no result
 };
 
 /// How a study's solves ended, and what they took, in all parts of the run.
@@ -26,7 +26,8 @@ struct Ended {
   RunFacts facts;
 };
 
-/// Runs a study of any kind and writes its result. Empty when it was interrupted. Throws FileError.
+/// Runs a study of any kind and writes its result; on ranks after rank 0 that is left out. Empty when it was
+/// interrupted. Throws FileError.
 std::optional<Ended> run_study(const Job& job);
 
 }  // namespace poesy::app

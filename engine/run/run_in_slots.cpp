@@ -22,6 +22,7 @@ std::size_t pool_slots(const RunOptions& options) { return 4 * resolved_threads(
 
 void run_in_slots(const TicketSource& source, const RunOptions& options, const std::function<SlotJob()>& make_work,
                   const SlotJob& finish) {
+  const handover::Block block;
   const std::size_t threads = resolved_threads(options.threads);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));
