@@ -23,6 +23,8 @@ namespace {
 using namespace poesy;
 
 constexpr std::size_t kResponsesOfMonteCarlo = 12;
+constexpr std::size_t kEveryPose = 16;
+constexpr std::size_t kUnitsPerPose = 50;
 
 double thread_seconds() {
   timespec time{};
@@ -91,8 +93,10 @@ void measure_both(Team& team, std::size_t units_per_cell) {
         "sensitivity", plan, unit, team, [&](const WorkUnit& of, const UnitStats& stats) { collect.add(of, stats); },
         [&](ByteReader& from) { return UnitStats::read(from, responses); });
   }
+  // As many units at few poses: what is done once for a pose does not count in long studies.
   study.analysis.kind = Analysis::Kind::monte_carlo;
-  const Plan plan(study, poses);
+  study.analysis.samples *= kUnitsPerPose;
+  const Plan plan(study, bench::every(kEveryPose, poses));
   const ResponseUnit response{Moments::of(numbers()), BucketedValues(numbers())};
   const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts()};
   MonteCarloCollector collect(plan, kResponsesOfMonteCarlo, study.analysis);

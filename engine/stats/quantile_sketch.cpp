@@ -81,6 +81,47 @@ POESY_EACH_INSTRUCTION_SET void sort_into_buckets(std::span<const double> values
   sorted.max = with_ordinal(max);
 }
 
+/// Codes of buckets.
+POESY_EACH_INSTRUCTION_SET void encode(std::span<const std::uint32_t> buckets, std::uint32_t lowest,
+                                       std::span<std::uint32_t> codes) {
+  for (std::size_t k = 0; k < buckets.size(); ++k) {
+    const std::uint32_t bucket = buckets[k] & ~kSign;
+    const std::uint32_t code = 1 + 2 * (bucket - lowest) + (buckets[k] & kSign) / kSign;
+    codes[k] = bucket < kFirstNormal ? 0 : code;
+  }
+}
+
+/// Turns codes into buckets, and counts their signs.
+POESY_EACH_INSTRUCTION_SET void decode(BucketedValues& values) {
+  std::uint32_t negatives = 0;
+  std::uint32_t zeros = 0;
+  for (std::uint32_t& bucket : values.buckets) {
+    const std::uint32_t nonzero = bucket != 0 ? 1 : 0;
+    const std::uint32_t offset = bucket - nonzero;
+    const std::uint32_t sign = offset & 1U;
+    bucket = nonzero * ((values.lowest + offset / 2) | (sign * kSign));
+    negatives += sign;
+    zeros += 1 - nonzero;
+  }
+  values.negatives = negatives;
+  values.positives = static_cast<std::uint32_t>(values.buckets.size()) - negatives - zeros;
+}
+
+/// Their lowest bytes, then their second bytes, and so on: loops over whole vectors on any machine.
+POESY_EACH_INSTRUCTION_SET void to_planes(std::span<const std::uint32_t> codes, std::span<std::byte> planes) {
+  for (std::size_t plane = 0; plane * codes.size() < planes.size(); ++plane) {
+    std::byte* bytes = planes.data() + plane * codes.size();
+    for (std::size_t k = 0; k < codes.size(); ++k) bytes[k] = static_cast<std::byte>((codes[k] >> (8 * plane)) & 0xffU);
+  }
+}
+
+POESY_EACH_INSTRUCTION_SET void from_planes(std::span<const std::byte> planes, std::span<std::uint32_t> codes) {
+  for (std::size_t plane = 0; plane * codes.size() < planes.size(); ++plane) {
+    const std::byte* bytes = planes.data() + plane * codes.size();
+    for (std::size_t k = 0; k < codes.size(); ++k) codes[k] |= static_cast<std::uint32_t>(bytes[k]) << (8 * plane);
+  }
+}
+
 }  // namespace
 
 BucketedValues::BucketedValues(std::span<const double> values) : buckets(values.size()) {
@@ -97,15 +138,11 @@ void BucketedValues::write(ByteWriter& to) const {
   const std::uint32_t span = has_magnitudes ? highest - lowest : 0;
   to.number(has_magnitudes ? lowest : kFirstNormal);
   to.number(span);
-  const std::size_t width = code_bytes(span);
-  Bytes codes(buckets.size() * width);
-  for (std::size_t k = 0; k < buckets.size(); ++k) {
-    const std::uint32_t bucket = buckets[k] & ~kSign;
-    const std::uint32_t sign = (buckets[k] & kSign) / kSign;
-    const std::uint32_t code = bucket < kFirstNormal ? 0 : 1 + 2 * (bucket - lowest) + sign;
-    for (std::size_t byte = 0; byte < width; ++byte) codes[k * width + byte] = std::byte((code >> (8 * byte)) & 0xffU);
-  }
-  to.raw(codes);
+  std::vector<std::uint32_t> codes(buckets.size());
+  encode(buckets, has_magnitudes ? lowest : kFirstNormal, codes);
+  Bytes planes(buckets.size() * code_bytes(span));
+  to_planes(codes, planes);
+  to.raw(planes);
 }
 
 BucketedValues BucketedValues::read(ByteReader& from) {
@@ -121,21 +158,9 @@ BucketedValues BucketedValues::read(ByteReader& from) {
   if (values.lowest < kFirstNormal) throw BytesError("a bucket is for numbers that are taken for zero");
   const auto span = static_cast<std::uint32_t>(from.number_up_to(kLast - values.lowest));
   values.highest = values.lowest + span;
-  const std::size_t width = code_bytes(span);
-  const std::span<const std::byte> codes = from.raw(values.buckets.size() * width);
-  std::uint32_t largest = 0;
-  for (std::size_t k = 0; k < values.buckets.size(); ++k) {
-    std::uint32_t code = 0;
-    for (std::size_t byte = 0; byte < width; ++byte) {
-      code |= std::to_integer<std::uint32_t>(codes[k * width + byte]) << (8 * byte);
-    }
-    largest = std::max(largest, code);
-    const std::uint32_t sign = code != 0 ? (code - 1) & 1U : 0;
-    values.buckets[k] = code != 0 ? (values.lowest + (code - 1) / 2) | (sign * kSign) : 0;
-    values.negatives += sign;
-    values.positives += code != 0 ? 1 - sign : 0;
-  }
-  if (largest > most_code(span)) throw BytesError("a number is in no bucket");
+  from_planes(from.raw(values.buckets.size() * code_bytes(span)), values.buckets);
+  if (std::ranges::max(values.buckets) > most_code(span)) throw BytesError("a number is in no bucket");
+  decode(values);
   return values;
 }
 
