@@ -1,21 +1,14 @@
 #include <csignal>
-#include <cstdio>
-#include <exception>
 #include <string>
 
 #include "engine/app/command.h"
-#include "engine/app/exit_code.h"
-#include "engine/base/error.h"
+#include "engine/app/exit_code_of.h"
+#include "engine/app/launch.h"
 #include "engine/io/version.h"
 
 namespace {
 
 using namespace poesy::app;
-
-int complain(const char* text, ExitCode code) {
-  std::fprintf(stderr, "poesy: %s\n", text);
-  return code;
-}
 
 std::string version_text() {
   return "poesy " + std::string(poesy::poesy_version()) + " (" + std::string(poesy::git_commit()) + ")";
@@ -36,8 +29,10 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return program.exit(help);
   } catch (const CLI::ParseError& error) {
-    return complain((std::string(error.what()) + "; see poesy --help").c_str(), kBadInput);
+    return complain(std::string(error.what()) + "; see poesy --help", kBadInput);
   }
+  // Nothing else knows how to share its work; under a launcher the first process does it.
+  if (!program.got_subcommand("run") && find_launch().value_or(Launch()).rank != 0) return kDone;
   return action();
 }
 
@@ -45,13 +40,5 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error of its write, as is a full disk
-  try {
-    return parse_and_run(argc, argv);
-  } catch (const poesy::InputError& error) {
-    return complain(error.what(), kBadInput);
-  } catch (const poesy::FileError& error) {
-    return complain(error.what(), kFileTrouble);
-  } catch (const std::exception& error) {
-    return complain((std::string("internal error: ") + error.what() + "; please report it").c_str(), kInternalError);
-  }
+  return exit_code_of([=] { return parse_and_run(argc, argv); });
 }

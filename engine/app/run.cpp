@@ -9,6 +9,7 @@
 #include "engine/app/interrupt.h"
 #include "engine/app/progress.h"
 #include "engine/app/resumable.h"
+#include "engine/app/run_on_ranks.h"
 #include "engine/app/run_study.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
@@ -31,8 +32,10 @@ struct Options {
 };
 
 /// The command line that continues this run.
-std::string resume_command(const Options& options) {
-  std::vector<std::string> words{options.program, "run", options.study};
+std::string resume_command(const Options& options, const Team* team) {
+  std::vector<std::string> words;
+  if (team != nullptr) words = {"mpirun", "-n", std::to_string(team->ranks().size())};
+  words.insert(words.end(), {options.program, "run", options.study});
   const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
   if (!options.result.empty()) add("-o", options.result);
   if (options.shard) add("--shard", to_string(*options.shard));
@@ -111,17 +114,48 @@ std::optional<Ended> run_to_end(const Job& job, ResumableRun& resumable, Progres
   }
 }
 
-int run(const Options& options) {
-  const std::atomic<bool>& stop = catch_interrupts();
+Study study_of(const Options& options) {
   Study study = read_study(options.study, registry(), StudyUse::run);
   if (options.seed) study.seed = *options.seed;
+  return study;
+}
+
+/// What ranks must have in common.
+std::string text_of(const CheckpointIdentity& identity) {
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", identity.poesy_version, identity.git_commit, identity.model,
+                     identity.seed, identity.samples, identity.shard, identity.poses, identity.study);
+}
+
+/// What the ranks after rank 0 do.
+void follow(const Options& options, std::size_t threads, Team& team) {
+  const std::atomic<bool>& stop = catch_interrupts();
+  const Study study = study_of(options);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  SelectedPoses poses = select_poses(study.poses, *model);
+  if (!team.agree(text_of(identity_of(study, poses.poses, options.shard)), threads, &stop)) {
+    throw InputError({options.study}, "is not the same here as on rank 0, or its poses or poesy itself are not",
+                     "give all ranks the same files and the same program");
+  }
+  Checkpoints not_kept([] { return false; }, [](std::span<const Bytes>) {});
+  const auto no_progress = [](const Progress&) {};
+  run_study({study, *model, std::move(poses), {}, {threads, no_progress, &stop, &not_kept, options.shard, &team}, [] {
+               return RunTime();
+             }});
+}
+
+/// In one process, or as rank 0 of a team.
+int run(const Options& options, std::size_t threads, Team* team) {
+  const std::atomic<bool>& stop = catch_interrupts();
+  const Study study = study_of(options);
   const std::string path = options.result.empty() ? default_result(options) : options.result;
   check_result_path(path);
-  ResumableRun resumable(options.resume, path, resume_command(options));
+  ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);
   if (options.shard) check_shard(*options.shard, study, poses.poses.size());
-  resumable.start(identity_of(study, poses.poses, options.shard), options.quiet);
+  const CheckpointIdentity identity = identity_of(study, poses.poses, options.shard);
+  resumable.start(identity, options.quiet);
+  if (team != nullptr && !team->agree(text_of(identity), threads, &stop)) return explain_leaving(*team);
   ProgressPrinter printer(options.quiet);
   const auto on_progress = [&](const Progress& progress) {
     printer(progress);
@@ -131,15 +165,27 @@ int run(const Options& options) {
                 *model,
                 std::move(poses),
                 path,
-                {resolved_threads(options.threads), on_progress, &stop, &resumable.checkpoints(), options.shard},
+                {threads, on_progress, &stop, &resumable.checkpoints(), options.shard, team},
                 [&] { return resumable.time(); }};
   const std::optional<Ended> ended = run_to_end(job, resumable, printer);
   if (!ended) {
+    const int code = team != nullptr ? explain_leaving(*team) : kInterrupted;
     resumable.explain_interruption();
-    return kInterrupted;
+    return code;
   }
   resumable.finish();
   return report_end(job, options.study, *ended);
+}
+
+int run_alone_or_on_ranks(const Options& options) {
+  const auto launch = find_launch();
+  if (!launch || launch->size == 1) return run(options, resolved_threads(options.threads), nullptr);
+  return run_on_ranks(*launch, [&](Team& team, std::size_t default_threads) -> int {
+    const std::size_t threads = options.threads != 0 ? options.threads : default_threads;
+    if (team.leads()) return run(options, threads, &team);
+    follow(options, threads, team);
+    return kDone;
+  });
 }
 
 }  // namespace
@@ -150,7 +196,7 @@ void add_run(CLI::App& program, Action& action) {
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY.toml");
   command->add_option("-o,--output", options->result, "result file; default: the study's name with .h5, here")
       ->type_name("RESULT.h5");
-  command->add_option("--threads", options->threads, "number of threads; default: one per processor")
+  command->add_option("--threads", options->threads, "number of threads, of each rank; default: one per processor")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1024}))
       ->type_name("N");
   command->add_option("--seed", options->seed, "seed, instead of the study's")
@@ -165,10 +211,11 @@ void add_run(CLI::App& program, Action& action) {
   options->resume.add_to(*command);
   command->footer(
       "Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once.\n"
-      "Example: poesy run study.toml -o result.h5 --threads 2");
+      "Example: poesy run study.toml -o result.h5 --threads 2\n"
+      "On several ranks: mpirun -n 4 poesy run study.toml -o result.h5");
   command->callback([options, &program, &action] {
     options->program = program.get_name();
-    action = [options] { return run(*options); };
+    action = [options] { return run_alone_or_on_ranks(*options); };
   });
 }
 

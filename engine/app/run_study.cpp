@@ -23,6 +23,10 @@ Ended ended(const Job& job) {
   const SolveCounts& solves = job.checkpoints().solves();
   Ended ended{solves, run_facts(time.wall, job.options.threads, solves.total())};
   ended.facts.checkpoint_seconds = time.checkpoints;
+  if (job.options.team != nullptr) {
+    ended.facts.ranks = job.options.team->ranks().size();
+    ended.facts.threads = job.options.team->threads();
+  }
   return ended;
 }
 
@@ -65,7 +69,7 @@ void run_sensitivity_study(const Job& job) {
   auto result = job.study.mechanism.compared
                     ? run_both_fidelities(job, plan)
                     : run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
-  if (!result) return;
+  if (!result || !job.writes()) return;
   if (job.model.description().separation) {
     result->separation = separate_errors(job.model, plan.poses(), plan.factors(), standard_deviations(job.study));
   }
@@ -74,13 +78,13 @@ void run_sensitivity_study(const Job& job) {
 
 void run_identification_study(const Job& job) {
   const auto result = run_identification(job.study, job.model, job.poses.poses, job.options);
-  if (result) write_identification(job.path, job.study, job.poses, *result, ended(job).facts);
+  if (result && job.writes()) write_identification(job.path, job.study, job.poses, *result, ended(job).facts);
 }
 
 void run_cases_study(const Job& job) {
   auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, case_table(job.study.analysis.cases),
                                    Pairing::every_pose_with_every_row, job.options);
-  if (!evaluation) return;
+  if (!evaluation || !job.writes()) return;
   const CaseResult result = case_result(std::move(*evaluation), job.study.not_converged);
   write_cases(job.path, job.study, job.poses, result, ended(job).facts);
 }
@@ -88,7 +92,7 @@ void run_cases_study(const Job& job) {
 void run_monte_carlo_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
   const auto result = run_monte_carlo(plan, job.model, job.study.analysis, job.options);
-  if (result) write_monte_carlo(job.path, job.study, job.poses, *result, ended(job).facts);
+  if (result && job.writes()) write_monte_carlo(job.path, job.study, job.poses, *result, ended(job).facts);
 }
 
 void run_coupling_study(const Job& job) {
@@ -96,7 +100,7 @@ void run_coupling_study(const Job& job) {
   const ModelDescription& model = job.model.description();
   const auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, coupling_table(coupling, model),
                                          Pairing::every_pose_with_every_row, job.options, Outcomes::responses);
-  if (!evaluation) return;
+  if (!evaluation || !job.writes()) return;
   const CouplingResult result = coupling_result(*evaluation, coupling, model, job.study.not_converged);
   write_coupling(job.path, job.study, job.poses, result, ended(job).facts);
 }
@@ -122,15 +126,16 @@ std::optional<Ended> run_study(const Job& job) {
   run_any(job);
   if (!job.checkpoints().complete()) return std::nullopt;
   const Ended end = ended(job);
-  if (const auto& shard = job.options.shard) {
+  if (const auto& shard = job.options.shard; shard && job.writes()) {
     write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), end.facts);
   }
   return end;
 }
 
 int report_end(const Job& job, const std::string& study_path, const Ended& ended) {
-  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads, {} not converged\n", job.path, ended.facts.solves,
-                         ended.facts.wall_seconds, ended.facts.threads, ended.solves.not_converged())
+  const std::string ranks = ended.facts.ranks > 1 ? fmt::format(" of {} ranks", ended.facts.ranks) : std::string();
+  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads{}, {} not converged\n", job.path, ended.facts.solves,
+                         ended.facts.wall_seconds, ended.facts.threads, ranks, ended.solves.not_converged())
                  .c_str(),
              stdout);
   if (job.options.shard) return kDone;  // the limit on failures is one of the whole study

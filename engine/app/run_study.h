@@ -21,6 +21,8 @@ struct Job {
   std::function<RunTime()> time;  ///< that the run took so far, in all its parts
 
   Checkpoints& checkpoints() const { return *options.checkpoints; }
+  /// Whether this process writes what was found: of several ranks the first.
+  bool writes() const { return options.team == nullptr || options.team->leads(); }
 };
 
 /// How a study's solves ended, and what they took, in all parts of the run.
@@ -29,7 +31,8 @@ struct Ended {
   RunFacts facts;
 };
 
-/// Runs a study of any kind, or a shard of it, and writes its result. Empty when it was interrupted. Throws FileError.
+/// Runs a study of any kind, or a shard of it, and writes its result, on rank 0 if there are several. Empty when it was
+/// interrupted. Throws FileError.
 std::optional<Ended> run_study(const Job& job);
 
 /// Says what came out; the exit code.

@@ -7,6 +7,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/run/result.h"
+#include "engine/run/team.h"
 
 namespace poesy {
 
@@ -57,6 +58,8 @@ class Checkpoints {
     return sum;
   }
   std::span<const Bytes> stages() const { return stages_; }
+  /// The stage that began last.
+  const Bytes& stage() const { return stages_[begun_ - 1]; }
 
   void save() const { save_(stages_); }
 
@@ -80,16 +83,17 @@ class Checkpoints {
   std::vector<End> ends_;  ///< of the stages that have ended
 };
 
-/// One stage's dealings with checkpoints, if there are any.
+/// One stage's dealings with checkpoints and other ranks, if there are any.
 class Stage {
  public:
-  explicit Stage(Checkpoints* checkpoints) : checkpoints_(checkpoints) {}
+  Stage(Checkpoints* checkpoints, Team* team) : checkpoints_(checkpoints), team_(team) {}
 
-  /// Calls restore(state) if there is a state to take up.
+  /// Calls restore(state) if there is a state to take up: of the checkpoint, that rank 0 has.
   template <class Restore>
   void begin(const Restore& restore) {
-    if (checkpoints_ == nullptr) return;
-    const Bytes& state = checkpoints_->begin();
+    Bytes state;
+    if (checkpoints_ != nullptr) state = checkpoints_->begin();
+    if (team_ != nullptr) state = team_->begin(state);
     if (!state.empty()) restore(std::span<const std::byte>(state));
   }
 
@@ -98,16 +102,31 @@ class Stage {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);
   }
 
-  /// The stage is complete, or was stopped; then a checkpoint is kept.
-  template <class State>
-  void end(bool complete, const SolveCounts& solves, const State& state) {
-    if (checkpoints_ == nullptr) return;
-    checkpoints_->end(complete, solves, state);
-    if (!complete) checkpoints_->save();
+  /// The stage, or a round of it, is complete, or was stopped; then a checkpoint is kept. solves() took it in all parts
+  /// of the run. The ranks after rank 0 first take up rank 0's state when it is complete: then restore(state) is
+  /// called.
+  template <class Solves, class State, class Restore>
+  void end(bool complete, const Solves& solves, const State& state, const Restore& restore) {
+    const bool follows = team_ != nullptr && !team_->leads();
+    if (follows && complete) restore(std::span<const std::byte>(team_->end_state()));
+    if (checkpoints_ != nullptr) {
+      checkpoints_->end(complete, solves(), state);
+      // Before the others are told: who was stopped may have little time left.
+      if (!complete) checkpoints_->save();
+    }
+    if (team_ == nullptr || follows) return;
+    const auto last = [&] { return checkpoints_ != nullptr ? checkpoints_->stage() : state(); };
+    team_->end(complete, complete ? last() : Bytes());
+  }
+
+  /// Another round of the stage begins, from the state with which the one before ended.
+  void next_round() {
+    if (team_ != nullptr) static_cast<void>(team_->begin({}));
   }
 
  private:
   Checkpoints* checkpoints_;
+  Team* team_;
 };
 
 }  // namespace poesy

@@ -43,17 +43,8 @@ Bytes EvaluationProgress::state() const {
                                     block_rows_, blocks_.first, next_}) {
     to.number(number);
   }
-  const std::size_t all = result_->poses * result_->samples;
   const std::size_t first = outcomes(blocks_.first);
-  const std::size_t count = outcomes(next_) - first;
-  for (std::size_t r = 0; r < result_->responses; ++r) {
-    to.reals(std::span(result_->response).subspan(r * all + first, count));
-  }
-  to.reals(std::span(result_->detail).subspan(first * result_->details, count * result_->details));
-  for (std::size_t n = first; n < first + count; ++n) {
-    to.number(static_cast<std::uint64_t>(result_->status[n]));
-    to.number(result_->iterations[n]);
-  }
+  write_outcomes(first, outcomes(next_) - first, to);
   return to.take();
 }
 
@@ -71,16 +62,44 @@ void EvaluationProgress::restore_one(ByteReader& from) {
   const auto end = static_cast<std::size_t>(from.number_up_to(blocks_.end));
   if (end < next_) throw BytesError("has blocks that end before they begin");
   next_ = end;
+  read_outcomes(first, outcomes(next_) - first, from);
+}
+
+void EvaluationProgress::write_outcomes(std::size_t place, std::size_t count, ByteWriter& to) const {
   const std::size_t all = result_->poses * result_->samples;
-  const std::size_t count = outcomes(next_) - first;
   for (std::size_t r = 0; r < result_->responses; ++r) {
-    from.reals(std::span(result_->response).subspan(r * all + first, count));
+    to.reals(std::span(result_->response).subspan(r * all + place, count));
   }
-  from.reals(std::span(result_->detail).subspan(first * result_->details, count * result_->details));
-  for (std::size_t n = first; n < first + count; ++n) {
+  to.reals(std::span(result_->detail).subspan(place * result_->details, count * result_->details));
+  for (std::size_t n = place; n < place + count; ++n) {
+    to.number(static_cast<std::uint64_t>(result_->status[n]));
+    to.number(result_->iterations[n]);
+  }
+}
+
+void EvaluationProgress::read_outcomes(std::size_t place, std::size_t count, ByteReader& from) {
+  const std::size_t all = result_->poses * result_->samples;
+  for (std::size_t r = 0; r < result_->responses; ++r) {
+    from.reals(std::span(result_->response).subspan(r * all + place, count));
+  }
+  from.reals(std::span(result_->detail).subspan(place * result_->details, count * result_->details));
+  for (std::size_t n = place; n < place + count; ++n) {
     result_->status[n] = static_cast<SolveStatus>(from.number_up_to(kStatusNames.size() - 1));
     result_->iterations[n] = static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
   }
+}
+
+void EvaluationProgress::write_block(std::size_t block, ByteWriter& to) const {
+  write_outcomes(outcomes(block), outcomes(block + 1) - outcomes(block), to);
+}
+
+SolveCounts EvaluationProgress::read_block(std::size_t block, ByteReader& from) {
+  const std::size_t first = outcomes(block);
+  const std::size_t end = outcomes(block + 1);
+  read_outcomes(first, end - first, from);
+  SolveCounts solves;
+  for (std::size_t n = first; n < end; ++n) solves.add(result_->status[n], result_->iterations[n]);
+  return solves;
 }
 
 }  // namespace poesy

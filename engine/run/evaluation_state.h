@@ -23,6 +23,10 @@ class EvaluationProgress {
   NumberRange pending() const { return {next_, blocks_.end}; }
   /// Samples of the shard's blocks, filled or not.
   std::size_t samples() const { return outcomes(blocks_.end) - outcomes(blocks_.first); }
+  /// The outcomes of any block that is filled, added or not.
+  void write_block(std::size_t block, ByteWriter& to) const;
+  /// Fills a block that was not added; how its solves ended. Throws BytesError.
+  SolveCounts read_block(std::size_t block, ByteReader& from);
   /// Over the blocks that were added.
   SolveCounts total() const;
 
@@ -34,6 +38,9 @@ class EvaluationProgress {
 
  private:
   void restore_one(ByteReader& from);
+  /// Outcomes from place to place + count of [M x S].
+  void write_outcomes(std::size_t place, std::size_t count, ByteWriter& to) const;
+  void read_outcomes(std::size_t place, std::size_t count, ByteReader& from);
   /// Outcomes in the blocks before this one: the first of [M x S].
   std::size_t outcomes(std::size_t block) const;
 

@@ -19,6 +19,16 @@ inline void publish() {}
 inline void receive() {}
 #endif
 
+/// A block that stands after every such block that ended before. Around objects of oneTBB: their memory goes from
+/// thread to thread inside its allocator.
+class Block {
+ public:
+  Block() { receive(); }
+  ~Block() { publish(); }
+  Block(const Block&) = delete;
+  Block& operator=(const Block&) = delete;
+};
+
 /// A function that oneTBB copies and calls on any of its threads. Calls that overlap stay unordered to the sanitizer,
 /// so real races between them are still found.
 template <class Function>
@@ -31,19 +41,11 @@ class Task {
 
   template <class... Arguments>
   decltype(auto) operator()(Arguments&&... arguments) const {
-    receive();
-    const Published afterwards;
+    const Block block;
     return function_(std::forward<Arguments>(arguments)...);
   }
 
  private:
-  struct Published {
-    Published() = default;
-    ~Published() { publish(); }
-    Published(const Published&) = delete;
-    Published& operator=(const Published&) = delete;
-  };
-
   Function function_;
 };
 

@@ -5,6 +5,27 @@
 
 namespace poesy {
 
+void PoseUnit::write(ByteWriter& to) const {
+  for (const ResponseUnit& response : responses) {
+    response.moments.write(to);
+    response.values.write(to);
+  }
+  solves.write(to);
+  failed.write(to);
+}
+
+PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses, std::uint64_t first) {
+  PoseUnit unit;
+  unit.responses.resize(responses);
+  for (ResponseUnit& response : unit.responses) {
+    response.moments = Moments::read(from);
+    response.values = BucketedValues::read(from);
+  }
+  unit.solves = SolveCounts::read(from);
+  unit.failed = FailedSamples::read(from, unit.solves.not_converged(), first, first + unit.solves.total());
+  return unit;
+}
+
 PoseUnitEvaluator::PoseUnitEvaluator(const Plan& plan, const Model& model)
     : plan_(&plan),
       responses_(model.description().responses.size()),

@@ -24,6 +24,10 @@ struct PoseUnit {
   std::vector<ResponseUnit> responses;  ///< [R], over the samples that count
   SolveCounts solves;
   FailedSamples failed;
+
+  void write(ByteWriter& to) const;
+  /// Of samples from `first` on.
+  static PoseUnit read(ByteReader& from, std::size_t responses, std::uint64_t first);
 };
 
 /// Solves work units of a Monte Carlo study serially, all factors varying together. Factor f draws from the address

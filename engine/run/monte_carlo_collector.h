@@ -37,7 +37,7 @@ struct PoseSamples {
 /// hold. The order in which poses are finished changes nothing.
 class MonteCarloCollector {
  public:
-  static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
+  static constexpr std::size_t kMostKeptBytes = std::size_t{16} << 20U;
 
   MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis);
 

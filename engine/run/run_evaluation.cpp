@@ -97,8 +97,9 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
   EvaluationResult result = empty_evaluation(model, poses, samples, outcomes);
   const std::size_t blocks = (samples + kBlockRows - 1) / kBlockRows;
   EvaluationProgress done(result, kBlockRows, options.shard.value_or(Shard()));
-  Stage stage(options.checkpoints);
-  stage.begin([&](std::span<const std::byte> state) { done.restore(state); });
+  const auto restore = [&](std::span<const std::byte> state) { done.restore(state); };
+  Stage stage(options.checkpoints, options.team);
+  stage.begin(restore);
   ProgressCounter counter(done.samples(), done.total(), options);
   const NumberRange pending = done.pending();
   const auto state = [&] { return done.state(); };
@@ -115,8 +116,11 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
         done.add_block();
         counter.add(solves);
         stage.merged(state);
-      });
-  stage.end(complete, done.total(), state);
+      },
+      [&](std::size_t n, const SolveCounts&, ByteWriter& to) { done.write_block(pending.first + n, to); },
+      [&](std::size_t n, ByteReader& from) { return done.read_block(pending.first + n, from); });
+  stage.end(
+      complete, [&] { return done.total(); }, state, restore);
   if (!complete || options.shard) return std::nullopt;
   return result;
 }

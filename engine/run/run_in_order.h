@@ -5,37 +5,39 @@
 #include <functional>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "engine/run/result.h"
+#include "engine/run/run_in_slots.h"
+#include "engine/run/run_over_ranks.h"
 #include "engine/run/runner.h"
 
 namespace poesy {
 
-/// A job of a pool: the number of the work, and the slot for what it gives.
-using SlotJob = std::function<void(std::size_t n, std::size_t slot)>;
-
-/// Slots that run_in_slots uses: a few for each thread.
-std::size_t pool_slots(const RunOptions& options);
-
-/// Calls work(n, slot) for n = 0 .. count - 1 on a pool of threads, each with the work that make_work() gave it, and
-/// finish(n, slot) in the order of n. A slot is not used again before it is finished. Returns false when stopped.
-bool run_in_slots(std::size_t count, const RunOptions& options, const std::function<SlotJob()>& make_work,
-                  const SlotJob& finish);
-
 /// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, each with its own worker, and finish(n, output)
-/// in the order of n. A few outputs per thread are in flight at any time. Returns false when stopped.
-template <class MakeWorker, class Work, class Finish>
-bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish) {
+/// in the order of n. A few outputs per thread are in flight at any time. Returns false when stopped. With a team, work
+/// is done on all ranks, and finish called on rank 0 alone (run_over_ranks.h): pack(n, output, to) writes an output,
+/// unpack(n, from) gives it back on rank 0.
+template <class MakeWorker, class Work, class Finish, class Pack, class Unpack>
+bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish,
+                  Pack pack, Unpack unpack) {
   using Worker = std::invoke_result_t<MakeWorker>;
   using Output = std::invoke_result_t<Work, Worker&, std::size_t>;
-  std::vector<Output> outputs(pool_slots(options));
+  std::vector<Output> outputs(options.team == nullptr ? pool_slots(options) : rank_slots(options));
   const auto make_work = [&]() -> SlotJob {
     return [&, worker = std::make_shared<Worker>(make_worker())](std::size_t n, std::size_t slot) {
       outputs[slot] = work(*worker, n);
     };
   };
-  return run_in_slots(count, options, make_work, [&](std::size_t n, std::size_t slot) { finish(n, outputs[slot]); });
+  if (options.team == nullptr) {
+    return run_counted(count, options, make_work, [&](std::size_t n, std::size_t slot) { finish(n, outputs[slot]); });
+  }
+  return run_over_ranks(
+      count, options,
+      {make_work, [&](std::size_t n, std::size_t slot) { finish(n, std::exchange(outputs[slot], Output{})); },
+       [&](std::size_t n, std::size_t slot, ByteWriter& to) { pack(n, outputs[slot], to); },
+       [&](std::size_t n, std::size_t slot, ByteReader& from) { outputs[slot] = unpack(n, from); }});
 }
 
 /// Reports progress after each finished piece of work.

@@ -25,6 +25,7 @@ std::vector<std::size_t> all_positions(std::size_t count) {
   return positions;
 }
 
+/// Into rounds and a collector that are at their beginning.
 void restore(std::span<const std::byte> state, const Plan& plan, Rounds& rounds, SensitivityCollector& collect) {
   ByteReader from(state);
   rounds.restore(from);
@@ -64,17 +65,23 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
                                                  const RunOptions& options) {
   const std::size_t responses = model.description().responses.size();
   const std::size_t poses = plan.poses().size();
+  const Rounds::Rule rule{responses, all_positions(responses), conf_level, kIndexRounding};
   SensitivityCollector collect(plan, responses);
-  Rounds rounds(plan, {responses, all_positions(responses), conf_level, kIndexRounding});
-  Stage stage(options.checkpoints);
-  stage.begin([&](std::span<const std::byte> state) { restore(state, plan, rounds, collect); });
+  Rounds rounds(plan, rule);
+  const auto take_up = [&](std::span<const std::byte> state) {
+    collect = SensitivityCollector(plan, responses);
+    rounds = Rounds(plan, rule);
+    restore(state, plan, rounds, collect);
+  };
+  Stage stage(options.checkpoints, options.team);
+  stage.begin(take_up);
   const NumberRange cells = options.shard.value_or(Shard()).of(plan.cells());
   ProgressCounter counter(plan.solves(), collect.total(), options);
   const auto state = [&] { return rounds.state_before(collect.state()); };
   const auto indices = [&](std::size_t slot) {
     return global_indices(collect.cells_of(slot), plan.distributions()[slot].standard_deviation(), conf_level);
   };
-  do {
+  for (;;) {
     const PendingUnits pending(
         plan, [&](std::size_t cell) { return collect.units_done(cell); },
         [&](std::size_t cell) { return cells.holds(cell) ? rounds.units(cell / poses) : 0; });
@@ -86,10 +93,15 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
           collect.add(pending[n], stats);
           counter.add(stats.solves);
           stage.merged(state);
-        });
-    stage.end(complete, collect.total(), state);
+        },
+        [](std::size_t, const UnitStats& stats, ByteWriter& to) { stats.write(to); },
+        [&](std::size_t n, ByteReader& from) { return UnitStats::read(from, responses, pending[n].first.value); });
+    stage.end(
+        complete, [&] { return collect.total(); }, state, take_up);
     if (!complete) return std::nullopt;
-  } while (rounds.go_on(indices));
+    if (!rounds.go_on(indices)) break;
+    stage.next_round();
+  }
   if (options.shard) return std::nullopt;
   auto result = sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
   result.convergence = rounds.result();
@@ -100,10 +112,11 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
                                                 const RunOptions& options) {
   const ModelDescription& description = model.description();
   const std::size_t responses = description.responses.size();
-  Rounds rounds(plan, {responses, description.headline.empty() ? all_positions(responses) : description.headline,
-                       analysis.conf_level, 0.0});
+  const Rounds::Rule rule{responses, description.headline.empty() ? all_positions(responses) : description.headline,
+                          analysis.conf_level, 0.0};
+  Rounds rounds(plan, rule);
   Bytes before;  // the collector's state at the end of the round before this one, or of an earlier run
-  Stage stage(options.checkpoints);
+  Stage stage(options.checkpoints, options.team);
   stage.begin([&](std::span<const std::byte> state) {
     ByteReader from(state);
     rounds.restore(from);
@@ -127,8 +140,17 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
           collect.add(pending[n].pose, found);
           counter->add(found.solves);
           stage.merged(state);
+        },
+        [](std::size_t, const PoseUnit& found, ByteWriter& to) { found.write(to); },
+        [&](std::size_t n, ByteReader& from) { return PoseUnit::read(from, responses, pending[n].first.value); });
+    stage.end(
+        complete, [&] { return collect.total(); }, state,
+        [&](std::span<const std::byte> end) {
+          ByteReader from(end);
+          Rounds(plan, rule).restore(from);  // what was decided before this round is known here
+          collect = MonteCarloCollector(part, responses, analysis);
+          collect.restore(end.last(from.left()));
         });
-    stage.end(complete, collect.total(), state);
     if (!complete || options.shard) return std::nullopt;
     if (!rounds.go_on([&](std::size_t) { return overall_means(collect.finished()); })) {
       MonteCarloResult result = std::move(collect).result();
@@ -136,6 +158,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
       return result;
     }
     before = collect.state();
+    stage.next_round();
   }
 }
 

@@ -12,6 +12,7 @@
 #include "engine/run/checkpoints.h"
 #include "engine/run/result.h"
 #include "engine/run/shard.h"
+#include "engine/run/team.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -34,6 +35,10 @@ struct RunOptions {
   Checkpoints* checkpoints = nullptr;
   /// The shard to run, instead of the whole. It gives no result, only its state to the checkpoints.
   std::optional<Shard> shard = std::nullopt;
+  /// The ranks that share the work; null: this process alone. Every rank calls the same run functions with the same
+  /// arguments and gets the same results; rank 0 alone has checkpoints and reports progress. When a rank is stopped or
+  /// leaves, the functions give nothing, and team->left() says why. The ranks after rank 0 may get Dismissed thrown.
+  Team* team = nullptr;
 };
 
 /// Number of threads that RunOptions::threads stands for.

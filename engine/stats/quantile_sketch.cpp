@@ -22,6 +22,10 @@ constexpr std::uint32_t kLast = (std::uint32_t{0x7ff} << (52 - kIgnoredBits)) - 
 
 constexpr std::uint32_t kSign = std::uint32_t{1} << (63 - kIgnoredBits);
 
+/// BucketedValues are stored as codes: 0 for what is taken for zero, else 1 + 2 (bucket - lowest) + sign.
+constexpr std::uint32_t most_code(std::uint32_t span) { return 2 * span + 2; }
+constexpr std::size_t code_bytes(std::uint32_t span) { return most_code(span) <= 0xffff ? 2 : 4; }
+
 double middle(std::size_t bucket) {
   const auto lower = static_cast<std::uint64_t>(bucket) << kIgnoredBits;
   return std::bit_cast<double>(lower | (std::uint64_t{1} << (kIgnoredBits - 1)));
@@ -77,11 +81,87 @@ POESY_EACH_INSTRUCTION_SET void sort_into_buckets(std::span<const double> values
   sorted.max = with_ordinal(max);
 }
 
+/// Codes of buckets.
+POESY_EACH_INSTRUCTION_SET void encode(std::span<const std::uint32_t> buckets, std::uint32_t lowest,
+                                       std::span<std::uint32_t> codes) {
+  for (std::size_t k = 0; k < buckets.size(); ++k) {
+    const std::uint32_t bucket = buckets[k] & ~kSign;
+    const std::uint32_t code = 1 + 2 * (bucket - lowest) + (buckets[k] & kSign) / kSign;
+    codes[k] = bucket < kFirstNormal ? 0 : code;
+  }
+}
+
+/// Turns codes into buckets, and counts their signs.
+POESY_EACH_INSTRUCTION_SET void decode(BucketedValues& values) {
+  std::uint32_t negatives = 0;
+  std::uint32_t zeros = 0;
+  for (std::uint32_t& bucket : values.buckets) {
+    const std::uint32_t nonzero = bucket != 0 ? 1 : 0;
+    const std::uint32_t offset = bucket - nonzero;
+    const std::uint32_t sign = offset & 1U;
+    bucket = nonzero * ((values.lowest + offset / 2) | (sign * kSign));
+    negatives += sign;
+    zeros += 1 - nonzero;
+  }
+  values.negatives = negatives;
+  values.positives = static_cast<std::uint32_t>(values.buckets.size()) - negatives - zeros;
+}
+
+/// Their lowest bytes, then their second bytes, and so on: loops over whole vectors on any machine.
+POESY_EACH_INSTRUCTION_SET void to_planes(std::span<const std::uint32_t> codes, std::span<std::byte> planes) {
+  for (std::size_t plane = 0; plane * codes.size() < planes.size(); ++plane) {
+    std::byte* bytes = planes.data() + plane * codes.size();
+    for (std::size_t k = 0; k < codes.size(); ++k) bytes[k] = static_cast<std::byte>((codes[k] >> (8 * plane)) & 0xffU);
+  }
+}
+
+POESY_EACH_INSTRUCTION_SET void from_planes(std::span<const std::byte> planes, std::span<std::uint32_t> codes) {
+  for (std::size_t plane = 0; plane * codes.size() < planes.size(); ++plane) {
+    const std::byte* bytes = planes.data() + plane * codes.size();
+    for (std::size_t k = 0; k < codes.size(); ++k) codes[k] |= static_cast<std::uint32_t>(bytes[k]) << (8 * plane);
+  }
+}
+
 }  // namespace
 
 BucketedValues::BucketedValues(std::span<const double> values) : buckets(values.size()) {
   POESY_EXPECTS(std::ranges::all_of(values, [](double value) { return std::isfinite(value); }));
   if (!values.empty()) sort_into_buckets(values, *this);
+}
+
+void BucketedValues::write(ByteWriter& to) const {
+  to.number(buckets.size());
+  if (buckets.empty()) return;
+  to.real(min);
+  to.real(max);
+  const bool has_magnitudes = negatives != 0 || positives != 0;
+  const std::uint32_t span = has_magnitudes ? highest - lowest : 0;
+  to.number(has_magnitudes ? lowest : kFirstNormal);
+  to.number(span);
+  std::vector<std::uint32_t> codes(buckets.size());
+  encode(buckets, has_magnitudes ? lowest : kFirstNormal, codes);
+  Bytes planes(buckets.size() * code_bytes(span));
+  to_planes(codes, planes);
+  to.raw(planes);
+}
+
+BucketedValues BucketedValues::read(ByteReader& from) {
+  BucketedValues values;
+  values.buckets.resize(from.count(2));
+  if (values.buckets.empty()) return values;
+  values.min = from.real();
+  values.max = from.real();
+  if (!std::isfinite(values.min) || !(values.min <= values.max) || !std::isfinite(values.max)) {
+    throw BytesError("numbers have no range");
+  }
+  values.lowest = static_cast<std::uint32_t>(from.number_up_to(kLast));
+  if (values.lowest < kFirstNormal) throw BytesError("a bucket is for numbers that are taken for zero");
+  const auto span = static_cast<std::uint32_t>(from.number_up_to(kLast - values.lowest));
+  values.highest = values.lowest + span;
+  from_planes(from.raw(values.buckets.size() * code_bytes(span)), values.buckets);
+  if (std::ranges::max(values.buckets) > most_code(span)) throw BytesError("a number is in no bucket");
+  decode(values);
+  return values;
 }
 
 void QuantileSketch::Store::reach(std::size_t lowest, std::size_t highest) {

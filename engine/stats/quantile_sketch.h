@@ -23,6 +23,11 @@ struct BucketedValues {
   std::uint32_t positives = 0;
   double min = std::numeric_limits<double>::infinity();
   double max = -std::numeric_limits<double>::infinity();
+
+  /// As much of it as a sketch takes, in two bytes for each number (four where the magnitudes span 2^128 or more).
+  void write(ByteWriter& to) const;
+  /// Throws BytesError for what no numbers give.
+  static BucketedValues read(ByteReader& from);
 };
 
 /// Quantiles of a stream of numbers without keeping them: a histogram whose buckets are the numbers' own leading bits,

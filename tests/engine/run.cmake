@@ -15,3 +15,4 @@ poesy_test(continuation_test LABELS robustness SOURCES engine/run/continuation_t
 poesy_test(adaptive_test LABELS determinism SOURCES engine/run/adaptive_test.cpp LINKS poesy_run)
 poesy_test(adaptive_statistical_test LABELS statistical SOURCES engine/run/adaptive_statistical_test.cpp
            LINKS poesy_run Boost::headers)
+poesy_test(ranks_test LABELS robustness SOURCES engine/run/ranks_test.cpp LINKS poesy_run)

@@ -23,6 +23,12 @@ program_test(full_disk robustness)
 program_test(slurm cluster)
 set_tests_properties(program.full_disk program.slurm PROPERTIES SKIP_RETURN_CODE 77)
 set_tests_properties(program.slurm PROPERTIES TIMEOUT 1200)
+# Sanitizers find fault with memory and threads of Open MPI's own; ranks_test runs ranks as threads under them.
+if(NOT POESY_SANITIZE)
+  program_test(mpi robustness)
+  set_property(TEST program.mpi APPEND PROPERTY ENVIRONMENT POESY_HAS_MPI=$<IF:$<BOOL:${POESY_MPI}>,ON,OFF>)
+  set_tests_properties(program.mpi PROPERTIES PROCESSORS 2)
+endif()
 if(POESY_SANITIZE)
   # Runs take ten times as long there.
   set_property(TEST program.kill APPEND PROPERTY ENVIRONMENT POESY_KILLS=6)

@@ -1,4 +1,4 @@
-"""The scripts in cluster/ under a real Slurm, started for this test: results are those of a plain run.
+"""The scripts in results/slurm/ under a real Slurm, started for this test: results are those of a plain run.
 
 Skipped (exit code 77) where Slurm or munge are not installed. The test of the time limit takes a minute or two.
 """
@@ -17,8 +17,8 @@ sys.path.insert(0, str(ROOT / "tests/cluster"))
 import slurm
 
 SKIPPED = 77
-ARRAY = ROOT / "cluster/array.sbatch"
-MPI = ROOT / "cluster/mpi.sbatch"
+ARRAY = ROOT / "results/slurm/array.sbatch"
+MPI = ROOT / "results/slurm/mpi.sbatch"
 SHARDS = 3
 RANKS = 2
 DONE = slurm.Ended("COMPLETED", 0)

@@ -91,5 +91,42 @@ TEST(StoredSketch, RefusesWhatNoStreamGives) {
   EXPECT_THROW(read_back<QuantileSketch>(bytes(0, 1, 261888, kMost, 1)), BytesError);
 }
 
+TEST(StoredBuckets, AreTakenAsTheNumbersThemselves) {
+  constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+  constexpr double kMax = std::numeric_limits<double>::max();
+  for (const std::vector<double>& values :
+       {numbers(1000), std::vector<double>{}, std::vector<double>{0.0, -0.0, kTiny}, std::vector<double>{-1.5},
+        std::vector<double>{0.0, kMax, -1e-300, kTiny, 3.0}, std::vector<double>{-kMax, kMax}}) {
+    const BucketedValues buckets(values);
+    QuantileSketch expected;
+    expected.add(buckets);
+    QuantileSketch found;
+    const Bytes bytes = written(buckets);
+    found.add(read_back<BucketedValues>(bytes));
+    EXPECT_EQ(written(found), written(expected));
+    for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 100) {
+      EXPECT_THROW(read_back<BucketedValues>(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length))),
+                   BytesError);
+    }
+  }
+  EXPECT_LT(written(BucketedValues(numbers(1000))).size(), 2100U);
+}
+
+TEST(StoredBuckets, OfAnyOtherBytesDoNoHarm) {
+  const Bytes sound = written(BucketedValues(numbers(50)));
+  for (std::size_t at = 0; at < sound.size(); ++at) {
+    for (const auto flip : {std::byte{1}, std::byte{0x80}, std::byte{0xff}}) {
+      Bytes changed = sound;
+      changed[at] ^= flip;
+      try {
+        QuantileSketch sketch;
+        sketch.add(read_back<BucketedValues>(changed));
+      } catch (const BytesError&) {
+        continue;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace poesy

@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <string_view>
+
+#include "bench/published_study.h"
+#include "engine/app/launch.h"
+#include "engine/app/mpi_ranks.h"
+#include "engine/run/monte_carlo_collector.h"
+#include "engine/run/run_in_order.h"
+#include "engine/run/sensitivity_collector.h"
+#include "tests/support/fake_ranks.h"
+
+// How many units one writer takes: hands out, receives, unpacks and merges. Ranks solve nothing, but send what a unit
+// gives. Rank 0 works on few units itself, so nearly all come from others. By mpirun on as many ranks as it starts,
+// else on threads of this process: rank_bench [RANKS [UNITS_PER_CELL]].
+
+namespace {
+
+using namespace poesy;
+
+constexpr std::size_t kResponsesOfMonteCarlo = 12;
+constexpr std::size_t kEveryPose = 16;
+constexpr std::size_t kUnitsPerPose = 50;
+
+double thread_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// 1000 numbers around zero, as a response may have.
+std::vector<double> numbers() {
+  std::vector<double> values(Plan::kUnitSamples);
+  fill_uniforms({1, Purpose::error_samples, FactorIndex(0), PoseIndex(0)}, SampleIndex(0), values);
+  Distribution::normal(1e-3).transform(values);
+  return values;
+}
+
+SolveCounts counts() {
+  SolveCounts solves;
+  for (std::size_t n = 0; n < Plan::kUnitSamples; ++n) solves.add(SolveStatus::converged, 2);
+  return solves;
+}
+
+/// One run with empty solves, on every rank; rank 0 prints what it took.
+template <class Output, class Add, class Read>
+void measure(const char* kind, const Plan& plan, const Output& unit, Team& team, const Add& add, const Read& read) {
+  RunOptions options;
+  options.threads = 1;
+  options.team = &team;
+  Stage stage(nullptr, &team);
+  stage.begin([](std::span<const std::byte>) {});
+  ByteWriter packed;
+  unit.write(packed);
+  const std::size_t bytes = packed.take().size();
+  const bool leads = team.leads();
+  const double cpu = thread_seconds();
+  const auto start = std::chrono::steady_clock::now();
+  run_in_order(
+      plan.units(), options, [] { return 0; },
+      [&](int, std::size_t) {
+        if (leads) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        return unit;
+      },
+      [&](std::size_t n, const Output& output) { add(plan.unit(n), output); },
+      [](std::size_t, const Output& output, ByteWriter& to) { output.write(to); },
+      [&](std::size_t, ByteReader& from) { return read(from); });
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double writer = thread_seconds() - cpu;
+  stage.end(
+      true, [] { return Bytes{std::byte{1}}; }, [](std::span<const std::byte>) {});
+  if (!leads) return;
+  const auto units = static_cast<double>(plan.units());
+  fmt::print("{:12} {} ranks, {} units of {} bytes: {:.0f} units/s; writer {:.2f} us of CPU time for a unit\n", kind,
+             team.ranks().size(), plan.units(), bytes, units / wall, 1e6 * writer / units);
+  std::fflush(stdout);
+}
+
+void measure_both(Team& team, std::size_t units_per_cell) {
+  Study study = bench::published_study(bench::kPublishedPoses, units_per_cell * Plan::kUnitSamples);
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  const PoseSet poses = select_poses(study.poses, *model).poses;
+  {
+    const Plan plan(study, poses);
+    const std::size_t responses = model->description().responses.size();
+    const UnitStats unit{std::vector(responses, Moments::of(numbers())), counts()};
+    SensitivityCollector collect(plan, responses);
+    measure(
+        "sensitivity", plan, unit, team, [&](const WorkUnit& of, const UnitStats& stats) { collect.add(of, stats); },
+        [&](ByteReader& from) { return UnitStats::read(from, responses); });
+  }
+  // As many units at few poses: what is done once for a pose does not count in long studies.
+  study.analysis.kind = Analysis::Kind::monte_carlo;
+  study.analysis.samples *= kUnitsPerPose;
+  const Plan plan(study, bench::every(kEveryPose, poses));
+  const ResponseUnit response{Moments::of(numbers()), BucketedValues(numbers())};
+  const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts()};
+  MonteCarloCollector collect(plan, kResponsesOfMonteCarlo, study.analysis);
+  measure(
+      "monte-carlo", plan, unit, team, [&](const WorkUnit& of, const PoseUnit& found) { collect.add(of.pose, found); },
+      [](ByteReader& from) { return PoseUnit::read(from, kResponsesOfMonteCarlo); });
+}
+
+std::size_t argument(int argc, char** argv, int at, std::size_t otherwise) {
+  if (argc <= at) return otherwise;
+  const std::string_view text = argv[at];
+  std::from_chars(text.data(), text.data() + text.size(), otherwise);
+  return otherwise;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::size_t units_per_cell = argument(argc, argv, 2, 20);
+  const auto launch = app::find_launch();
+  if (!launch || launch->size == 1) {
+    test::run_on_fake_ranks(argument(argc, argv, 1, 3), [&](Team& team) { measure_both(team, units_per_cell); });
+    return 0;
+  }
+  const auto ranks = app::connect_ranks(*launch);
+  Team team(*ranks);
+  if (!team.leads()) return team.follow([&] { measure_both(team, units_per_cell); });
+  measure_both(team, units_per_cell);
+  return team.dismiss(0, std::chrono::seconds(60)) ? 0 : 1;
+}

@@ -1,0 +1,139 @@
+#include "engine/app/mpi_ranks.h"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.h"
+
+namespace poesy::app {
+namespace {
+
+/// MPI counts bytes by int, so a long message goes in pieces. Its last piece has the first tag, all others the second.
+constexpr std::size_t kPieceBytes = std::size_t{1} << 30U;
+constexpr int kLastPiece = 0;
+constexpr int kMoreFollows = 1;
+
+std::string processor_name() {
+  std::string name(MPI_MAX_PROCESSOR_NAME, '\0');
+  int length = 0;
+  MPI_Get_processor_name(name.data(), &length);
+  name.resize(static_cast<std::size_t>(length));
+  return name;
+}
+
+std::size_t count_on_this_machine() {
+  MPI_Comm here = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  int size = 1;
+  MPI_Comm_size(here, &size);
+  MPI_Comm_free(&here);
+  return static_cast<std::size_t>(size);
+}
+
+/// MPI ends the program when one of its calls fails, which is its default.
+class MpiRanks : public LaunchedRanks {
+ public:
+  MpiRanks() {
+    // One thread at a time calls: the one that leads or follows a stage.
+    int provided = MPI_THREAD_SINGLE;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    int number = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &number);
+    rank_ = static_cast<std::size_t>(number);
+    MPI_Comm_size(MPI_COMM_WORLD, &number);
+    size_ = static_cast<std::size_t>(number);
+    partial_.resize(size_);
+    threads_allowed_ = provided >= MPI_THREAD_FUNNELED;
+  }
+  MpiRanks(const MpiRanks&) = delete;
+  MpiRanks& operator=(const MpiRanks&) = delete;
+  ~MpiRanks() override {
+    for (Sending& sending : under_way_) MPI_Wait(&sending.request, MPI_STATUS_IGNORE);
+    MPI_Finalize();
+  }
+
+  std::size_t rank() const override { return rank_; }
+  std::size_t size() const override { return size_; }
+  std::size_t on_this_machine() const override { return count_on_this_machine(); }
+  std::string name() const override { return "rank " + std::to_string(rank_) + " on " + processor_name(); }
+  bool threads_allowed() const { return threads_allowed_; }
+
+  void send(std::size_t to, std::shared_ptr<const Bytes> bytes) override {
+    std::size_t sent = 0;
+    do {
+      const std::size_t count = std::min(kPieceBytes, bytes->size() - sent);
+      const int tag = sent + count == bytes->size() ? kLastPiece : kMoreFollows;
+      Sending& sending = under_way_.emplace_back(Sending{MPI_REQUEST_NULL, bytes});
+      MPI_Isend(bytes->data() + sent, static_cast<int>(count), MPI_BYTE, static_cast<int>(to), tag, MPI_COMM_WORLD,
+                &sending.request);
+      sent += count;
+    } while (sent < bytes->size());
+  }
+
+  std::optional<Message> try_receive() override {
+    forget_what_was_sent();
+    for (;;) {
+      int found = 0;
+      MPI_Message message = MPI_MESSAGE_NULL;
+      MPI_Status status;
+      MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &found, &message, &status);
+      if (found == 0) return std::nullopt;
+      int count = 0;
+      MPI_Get_count(&status, MPI_BYTE, &count);
+      const auto from = static_cast<std::size_t>(status.MPI_SOURCE);
+      Bytes& bytes = partial_[from];
+      const std::size_t before = bytes.size();
+      bytes.resize(before + static_cast<std::size_t>(count));
+      MPI_Mrecv(bytes.data() + before, count, MPI_BYTE, &message, &status);
+      if (status.MPI_TAG == kLastPiece) return Message{from, std::exchange(bytes, {})};
+    }
+  }
+
+  [[noreturn]] void abort(int exit_code) override {
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+    std::abort();
+  }
+
+ private:
+  struct Sending {
+    MPI_Request request;
+    std::shared_ptr<const Bytes> bytes;
+  };
+
+  void forget_what_was_sent() {
+    std::erase_if(under_way_, [](Sending& sending) {
+      int done = 0;
+      MPI_Test(&sending.request, &done, MPI_STATUS_IGNORE);
+      return done != 0;
+    });
+  }
+
+  std::size_t rank_ = 0;
+  std::size_t size_ = 1;
+  bool threads_allowed_ = false;
+  std::vector<Sending> under_way_;
+  std::vector<Bytes> partial_;  ///< [size] of messages of which pieces are missing
+};
+
+}  // namespace
+
+std::unique_ptr<LaunchedRanks> connect_ranks(const Launch& launch) {
+  auto ranks = std::make_unique<MpiRanks>();
+  if (ranks->size() != launch.size) {
+    throw InputError({},
+                     "the launcher started " + std::to_string(launch.size) + " processes, but MPI connects " +
+                         std::to_string(ranks->size()),
+                     "use the launcher of the Open MPI that poesy was built with: mpirun, or srun --mpi=pmix");
+  }
+  if (!ranks->threads_allowed()) {
+    throw InputError({}, "this MPI does not allow threads", "use one that gives MPI_THREAD_FUNNELED");
+  }
+  return ranks;
+}
+
+}  // namespace poesy::app

@@ -1,0 +1,67 @@
+#include "engine/run/run_in_slots.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_pipeline.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include "engine/run/handover.h"
+
+namespace poesy {
+namespace {
+
+namespace tbb = oneapi::tbb;
+
+bool stopped(const RunOptions& options) {
+  return options.stop != nullptr && options.stop->load(std::memory_order_relaxed);
+}
+
+}  // namespace
+
+std::size_t pool_slots(const RunOptions& options) { return 4 * resolved_threads(options.threads); }
+
+void run_in_slots(const TicketSource& source, const RunOptions& options, const std::function<SlotJob()>& make_work,
+                  const SlotJob& finish) {
+  const handover::Block block;
+  const std::size_t threads = resolved_threads(options.threads);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  tbb::task_arena arena(static_cast<int>(threads));
+  tbb::enumerable_thread_specific<SlotJob> works(make_work);
+  const handover::Task start([&](tbb::flow_control& control) -> Ticket {
+    if (const auto ticket = source()) return *ticket;
+    control.stop();
+    return {};
+  });
+  const handover::Task work([&](Ticket ticket) {
+    works.local()(ticket.n, ticket.slot);
+    return ticket;
+  });
+  const handover::Task collect([&](Ticket ticket) { finish(ticket.n, ticket.slot); });
+  arena.execute([&] {
+    tbb::parallel_pipeline(pool_slots(options),
+                           tbb::make_filter<void, Ticket>(tbb::filter_mode::serial_in_order, start) &
+                               tbb::make_filter<Ticket, Ticket>(tbb::filter_mode::parallel, work) &
+                               tbb::make_filter<Ticket, void>(tbb::filter_mode::serial_in_order, collect));
+  });
+  handover::receive();
+}
+
+bool run_counted(std::size_t count, const RunOptions& options, const std::function<SlotJob()>& make_work,
+                 const SlotJob& finish) {
+  // The pipeline finishes in order with at most so many numbers under way, so no two of those share a slot.
+  const std::size_t slots = pool_slots(options);
+  std::size_t next = 0;
+  std::size_t finished = 0;
+  const auto source = [&]() -> std::optional<Ticket> {
+    if (next == count || stopped(options)) return std::nullopt;
+    const std::size_t n = next++;
+    return Ticket{n, n % slots};
+  };
+  run_in_slots(source, options, make_work, [&](std::size_t n, std::size_t slot) {
+    finish(n, slot);
+    ++finished;
+  });
+  return finished == count;
+}
+
+}  // namespace poesy

@@ -1,0 +1,195 @@
+"""Runs under mpirun give what one process gives, and end cleanly whatever happens to a rank."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+
+from poesy_program import PROGRAM, main
+from resumption import CASES, COUPLING, FIDELITIES, IDENTIFICATION, MONTE_CARLO, SENSITIVITY, ResumptionTest
+
+MPIRUN = shutil.which("mpirun")
+HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
+ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+SMALLER = {
+    "sensitivity": SENSITIVITY,
+    "monte-carlo": MONTE_CARLO,
+    "evaluate": CASES.replace("count = 4000", "count = 300"),
+    "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
+    "coupling": COUPLING.replace("count = 20000", "count = 2000"),
+    "fidelities": FIDELITIES,
+}
+
+
+class RankTest(ResumptionTest):
+    def start(self, ranks, *options, output="out.h5"):
+        command = [MPIRUN, "--oversubscribe", "-n", str(ranks), PROGRAM, "run", "study.toml", "-o", output,
+                   *map(str, options)]
+        return subprocess.Popen(command, cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def mpirun(self, ranks, *options, output="out.h5"):
+        with self.start(ranks, *options, output=output) as run:
+            out, messages = run.communicate(timeout=300)
+        return run.returncode, out.decode(), messages.decode(errors="replace")
+
+    def succeeds_on(self, ranks, *options):
+        code, out, messages = self.mpirun(ranks, "--quiet", *options)
+        self.assertEqual(code, 0, messages)
+        return out
+
+    def rank_process(self, run, rank):
+        """The process of a rank, as soon as it is there."""
+        end = time.monotonic() + 60
+        while time.monotonic() < end and run.poll() is None:
+            for folder in Path("/proc").glob("[0-9]*"):
+                try:
+                    environment = (folder / "environ").read_bytes().split(b"\0")
+                    started_by = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+                    program = (folder / "exe").resolve()
+                except (OSError, IndexError):
+                    continue
+                if (f"OMPI_COMM_WORLD_RANK={rank}".encode() in environment and program == Path(PROGRAM).resolve()
+                        and started_by == run.pid):
+                    return int(folder.name)
+            time.sleep(0.01)
+        return self.fail("the rank did not start")
+
+    def await_checkpoint(self, run):
+        while not self.newer.exists() and run.poll() is None:
+            time.sleep(0.01)
+
+
+@unittest.skipUnless(MPIRUN, "there is no mpirun")
+@unittest.skipUnless(HAS_MPI, "this poesy is built without MPI")
+class Mpi(RankTest):
+    def test_same_content_as_one_process(self):
+        for kind, study in SMALLER.items():
+            expected = self.undisturbed(study)
+            for ranks in (1, 2, 3, 4):
+                with self.subTest(kind=kind, ranks=ranks):
+                    out = self.succeeds_on(ranks, "--threads", 1)
+                    self.assertEqual(self.content_hash(), expected)
+                    with h5py.File(self.folder / "out.h5") as result:
+                        self.assertEqual(result["run/ranks"][()], ranks)
+                        self.assertEqual(result["run/threads"][()], ranks)
+                    if ranks > 1:
+                        self.assertIn(f" on {ranks} threads of {ranks} ranks", out)
+                    self.assertEqual(list(self.folder.glob("out.h5.*")), [])
+                    (self.folder / "out.h5").unlink()
+
+    def long_study(self):
+        study = SENSITIVITY.replace("samples = 12300", "samples = 82300")
+        return self.undisturbed(study)
+
+    def test_a_rank_that_is_killed(self):
+        expected = self.long_study()
+        for rank in (0, 1, 2):
+            with self.subTest(rank=rank):
+                with self.start(3, "--threads", 1, "--checkpoint-every", "0.05 s") as run:
+                    process = self.rank_process(run, rank)
+                    self.await_checkpoint(run)
+                    os.kill(process, signal.SIGKILL)
+                    run.communicate(timeout=60)
+                self.assertNotEqual(run.returncode, 0)
+                self.assertFalse((self.folder / "out.h5").exists())
+                self.assertTrue(self.newer.exists())
+                if rank == 1:
+                    self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet", "--resume")
+                else:
+                    self.succeeds_on(2, "--resume")
+                self.assertEqual(self.content_hash(), expected)
+                self.assertEqual(list(self.folder.glob("out.h5.part*")), [])
+                (self.folder / "out.h5").unlink()
+
+    def test_stopped_and_resumed(self):
+        expected = self.long_study()
+        code, _, messages = self.mpirun(3, "--quiet", "--threads", 1, "--max-wall", "0.1 s")
+        self.assertEqual(code, 4, messages)
+        self.assertIn("mpirun -n 3 ", messages)
+        self.assertEqual(messages.count("interrupted"), 1, messages)
+        self.succeeds_on(4, "--resume", "--threads", 1)
+        self.assertEqual(self.content_hash(), expected)
+
+    def test_sigterm(self):
+        expected = self.long_study()
+        for rank in ("mpirun", 0, 2):
+            with self.subTest(rank=rank):
+                with self.start(3, "--threads", 1, "--checkpoint-every", "0.05 s") as run:
+                    process = run.pid if rank == "mpirun" else self.rank_process(run, rank)
+                    self.await_checkpoint(run)
+                    os.kill(process, signal.SIGTERM)
+                    _, messages = run.communicate(timeout=60)
+                self.assertNotEqual(run.returncode, 0, messages)
+                if rank != "mpirun":
+                    self.assertEqual(run.returncode, 4, messages)
+                if rank == 2:
+                    self.assertIn(b"poesy: rank 2 on ", messages)
+                self.assertFalse((self.folder / "out.h5").exists())
+                self.succeeds_on(3, "--resume", "--threads", 1)
+                self.assertEqual(self.content_hash(), expected)
+                (self.folder / "out.h5").unlink()
+
+    def test_errors_are_said_once_and_end_all(self):
+        self.write("study.toml", SENSITIVITY.replace("samples = 12300", "samples = 1"))
+        code, _, messages = self.mpirun(3)
+        self.assertEqual(code, 2, messages)
+        self.assertEqual(messages.count("poesy: study.toml"), 1, messages)
+        self.write("study.toml", SENSITIVITY)
+        self.write("out.h5.part", "an earlier run")
+        code, _, messages = self.mpirun(3)
+        self.assertEqual(code, 2, messages)
+        self.assertEqual(messages.count("holds an earlier run"), 1, messages)
+
+    def test_full_disk(self):
+        if os.geteuid() != 0:
+            self.skipTest("mounting a small file system needs root")
+        self.write("study.toml", SENSITIVITY.replace("count = 16", "count = 600").replace("samples = 12300", "samples = 2"))
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], check=False).returncode != 0:
+            self.skipTest("a small file system cannot be mounted here")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        code, _, messages = self.mpirun(3, "--quiet", output="disk/out.h5")
+        self.assertEqual(code, 3, messages)
+        self.assertEqual(messages.count("No space left"), 1, messages)
+
+    def test_ranks_that_read_another_study(self):
+        self.write("study.toml", SENSITIVITY)
+        other = self.folder / "elsewhere"
+        other.mkdir()
+        (other / "study.toml").write_text(SENSITIVITY.replace("seed = 5", "seed = 6"))
+        command = [MPIRUN, "--oversubscribe", "-n", "2", PROGRAM, "run", "study.toml", "-o", "out.h5", ":", "-n", "1",
+                   "--wdir", str(other), PROGRAM, "run", "study.toml", "-o", "out.h5"]
+        done = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"poesy: rank 2 on ", done.stderr)
+        self.assertIn(b"study.toml: is not the same here as on rank 0", done.stderr)
+
+    def test_other_commands_are_done_once(self):
+        command = [MPIRUN, "--oversubscribe", "-n", "3", PROGRAM, "models"]
+        done = subprocess.run(command, env=ENVIRONMENT, capture_output=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.decode(), self.succeeds("models"))
+
+
+class WithoutMpi(RankTest):
+    def test_a_launcher_that_is_not_of_this_mpi(self):
+        """Without MPI, or where MPI finds no other rank: refused, lest each process write the same file."""
+        if HAS_MPI:
+            self.skipTest("this poesy has MPI")
+        self.write("study.toml", SENSITIVITY)
+        for rank in (0, 1):
+            launched = os.environ | {"OMPI_COMM_WORLD_RANK": str(rank), "OMPI_COMM_WORLD_SIZE": "2"}
+            done = subprocess.run([PROGRAM, "run", "study.toml"], cwd=self.folder, env=launched, capture_output=True,
+                                  timeout=60, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(b"POESY_MPI" in done.stderr, rank == 0)
+
+
+if __name__ == "__main__":
+    main()

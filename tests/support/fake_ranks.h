@@ -1,0 +1,102 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "engine/run/team.h"
+
+namespace poesy::test {
+
+/// Ranks that are threads of this process, with a queue of messages for each.
+class FakeNetwork {
+ public:
+  explicit FakeNetwork(std::size_t size) : inboxes_(size) {}
+
+  void send(std::size_t to, Ranks::Message message) {
+    const std::lock_guard lock(mutex_);
+    bytes_ += message.bytes.size();
+    inboxes_[to].push_back(std::move(message));
+  }
+
+  std::optional<Ranks::Message> receive(std::size_t at) {
+    const std::lock_guard lock(mutex_);
+    if (inboxes_[at].empty()) return std::nullopt;
+    Ranks::Message message = std::move(inboxes_[at].front());
+    inboxes_[at].pop_front();
+    return message;
+  }
+
+  std::size_t size() const { return inboxes_.size(); }
+  /// Of all messages that were sent.
+  std::size_t bytes() const { return bytes_; }
+  /// Of messages that nobody received.
+  std::size_t left() const {
+    std::size_t sum = 0;
+    for (const auto& inbox : inboxes_) sum += inbox.size();
+    return sum;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::deque<Ranks::Message>> inboxes_;
+  std::size_t bytes_ = 0;
+};
+
+class FakeRanks : public Ranks {
+ public:
+  FakeRanks(FakeNetwork& network, std::size_t rank) : network_(&network), rank_(rank) {}
+
+  std::size_t rank() const override { return rank_; }
+  std::size_t size() const override { return network_->size(); }
+  std::string name() const override { return "rank " + std::to_string(rank_) + " on fake"; }
+  void send(std::size_t to, std::shared_ptr<const Bytes> bytes) override { network_->send(to, {rank_, *bytes}); }
+  std::optional<Message> try_receive() override { return network_->receive(rank_); }
+
+ private:
+  FakeNetwork* network_;
+  std::size_t rank_;
+};
+
+/// How a run on fake ranks ended.
+struct FakeRun {
+  std::vector<int> exit_codes;      ///< of each rank
+  std::optional<RankLeft> left;     ///< as rank 0 knows it
+  std::exception_ptr problem;       ///< what rank 0's body threw
+  std::size_t bytes = 0;            ///< of all messages
+  std::size_t messages_unread = 0;  ///< when all ranks were gone
+};
+
+/// Runs the body on each of the ranks as the program does. Rank 0's exit code: 0, or 9 when it threw, or 7 when the
+/// others were not gone in time.
+inline FakeRun run_on_fake_ranks(std::size_t size, const std::function<void(Team&)>& body) {
+  FakeNetwork network(size);
+  FakeRun run;
+  run.exit_codes.resize(size);
+  std::vector<std::thread> others;
+  for (std::size_t rank = 1; rank < size; ++rank) {
+    others.emplace_back([&, rank] {
+      FakeRanks ranks(network, rank);
+      Team team(ranks);
+      run.exit_codes[rank] = team.follow([&] { body(team); });
+    });
+  }
+  FakeRanks ranks(network, 0);
+  Team team(ranks);
+  try {
+    body(team);
+  } catch (...) {
+    run.problem = std::current_exception();
+  }
+  run.exit_codes[0] = run.problem ? 9 : 0;
+  if (!team.dismiss(run.exit_codes[0], std::chrono::seconds(60))) run.exit_codes[0] = 7;
+  for (std::thread& other : others) other.join();
+  run.left = team.left();
+  run.bytes = network.bytes();
+  run.messages_unread = network.left();
+  return run;
+}
+
+}  // namespace poesy::test
