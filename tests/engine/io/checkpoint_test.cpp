@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/io/checkpoint_files.h"
 #include "engine/io/sha256.h"
+#include "tests/engine/io/example_result.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -146,6 +147,15 @@ class Files : public testing::Test {
   std::string newer_ = folder_ / "r.h5.part";
   std::string older_ = folder_ / "r.h5.part.1";
 };
+
+TEST(CheckpointIdentity, LeavesTheLimitOnFailuresOpen) {
+  Example example;
+  const CheckpointIdentity without = identity_of(example.study, example.poses.poses);
+  example.study.max_not_converged = 0.01;
+  EXPECT_EQ(identity_of(example.study, example.poses.poses), without);
+  example.study.not_converged = NotConverged::include;
+  EXPECT_FALSE(identity_of(example.study, example.poses.poses) == without);
+}
 
 TEST_F(Files, KeepTwoGenerations) {
   CheckpointFiles files(result_);
