@@ -121,6 +121,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
     ByteReader from(state);
     rounds.restore(from);
     const auto rest = state.last(from.left());
+    if (rest.empty()) throw BytesError("is cut off");
     before.assign(rest.begin(), rest.end());
   });
   std::optional<ProgressCounter> counter;
