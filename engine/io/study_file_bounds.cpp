@@ -52,10 +52,11 @@ class Bounds {
   }
 
   void check_groups() const {
-    const auto written = analysis_.find("groups");
+    const auto value = analysis_.find("groups");
+    const std::vector<StudyValue> written = value ? value->list() : std::vector<StudyValue>{};
     for (std::size_t g = 0; g < study_.analysis.groups.size(); ++g) {
       const ErrorSize& group = study_.analysis.groups[g];
-      const StudySection section = written ? written->list()[g].section() : analysis_;
+      const StudySection section = written.empty() ? analysis_ : written[g].section();
       for (const FactorIndex factor : study_.analysis.factors) check(factor, group.linear, group.angular, section);
     }
   }

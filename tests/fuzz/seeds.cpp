@@ -90,7 +90,6 @@ void write_results(const std::string& folder) {
   write_sensitivity_seed(folder + "/sensitivity");
   write_cases_seed(folder + "/cases");
   write_identification_seed(folder + "/identification");
-  test::Example().write_evaluation(folder + "/paired", Pairing::row_by_row);
   test::Example().write_monte_carlo(folder + "/monte_carlo");
   test::Example().write_coupling(folder + "/coupling");
 }
