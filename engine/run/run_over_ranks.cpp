@@ -48,12 +48,11 @@ class Leader {
   bool run() {
     LookPause pause;
     while (next_to_merge_ < count_) {
-      bool busy = receive();
-      busy |= take_own();
-      busy |= merge();
+      if (receive()) pause.reset();
+      take_own();
+      merge();
       for (std::size_t rank = 0; rank < ranks_.size(); ++rank) hand_out(rank);
       if (stopped(*options_) || team_->left() || pool_.failed()) break;
-      if (busy) pause.reset();
       pool_.wait(pause.next());
     }
     pool_.finish();
@@ -76,7 +75,7 @@ class Leader {
     delivered_.push_back(n);
   }
 
-  bool take_own() {
+  void take_own() {
     std::vector<std::size_t> delivered;
     {
       const std::lock_guard lock(mutex_);
@@ -84,7 +83,6 @@ class Leader {
     }
     for (const std::size_t n : delivered) done_[n % window_] = 1;
     returned(ranks_[0], delivered.size());
-    return !delivered.empty();
   }
 
   bool receive() {
@@ -130,8 +128,7 @@ class Leader {
     if (numbers > 0 && rank.given == 0 && is_quick) rank.ahead = std::min(kMostAhead, 2 * rank.ahead);
   }
 
-  bool merge() {
-    const std::size_t before = next_to_merge_;
+  void merge() {
     while (next_to_merge_ < count_ && done_[next_to_merge_ % window_] != 0) {
       const std::size_t slot = next_to_merge_ % window_;
       work_->finish(next_to_merge_, slot);
@@ -139,7 +136,6 @@ class Leader {
       waiting_bytes_ -= std::exchange(bytes_[slot], 0);
       ++next_to_merge_;
     }
-    return next_to_merge_ != before;
   }
 
   /// Towards the end a rank gets ever smaller parts, so that all end at about the same time.

@@ -108,7 +108,7 @@ class LookPause {
   void sleep();
 
  private:
-  static constexpr std::chrono::microseconds kShortest{20};
+  static constexpr std::chrono::microseconds kShortest{100};
   static constexpr std::chrono::microseconds kLongest{500};
   std::chrono::microseconds length_ = kShortest;
 };
