@@ -72,7 +72,7 @@ void measure(const char* kind, const Plan& plan, const Output& unit, Team& team,
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double writer = thread_seconds() - cpu;
   stage.end(
-      true, [] { return Bytes{std::byte{1}}; }, [](std::span<const std::byte>) {});
+      true, [] { return SolveCounts(); }, [] { return Bytes{std::byte{1}}; }, [](std::span<const std::byte>) {});
   if (!leads) return;
   const auto units = static_cast<double>(plan.units());
   fmt::print("{:12} {} ranks, {} units of {} bytes: {:.0f} units/s; writer {:.2f} us of CPU time for a unit\n", kind,
@@ -87,22 +87,22 @@ void measure_both(Team& team, std::size_t units_per_cell) {
   {
     const Plan plan(study, poses);
     const std::size_t responses = model->description().responses.size();
-    const UnitStats unit{std::vector(responses, Moments::of(numbers())), counts()};
+    const UnitStats unit{std::vector(responses, Moments::of(numbers())), counts(), {}};
     SensitivityCollector collect(plan, responses);
     measure(
         "sensitivity", plan, unit, team, [&](const WorkUnit& of, const UnitStats& stats) { collect.add(of, stats); },
-        [&](ByteReader& from) { return UnitStats::read(from, responses); });
+        [&](ByteReader& from) { return UnitStats::read(from, responses, 0); });
   }
   // As many units at few poses: what is done once for a pose does not count in long studies.
   study.analysis.kind = Analysis::Kind::monte_carlo;
   study.analysis.samples *= kUnitsPerPose;
   const Plan plan(study, bench::every(kEveryPose, poses));
   const ResponseUnit response{Moments::of(numbers()), BucketedValues(numbers())};
-  const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts()};
+  const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts(), {}};
   MonteCarloCollector collect(plan, kResponsesOfMonteCarlo, study.analysis);
   measure(
       "monte-carlo", plan, unit, team, [&](const WorkUnit& of, const PoseUnit& found) { collect.add(of.pose, found); },
-      [](ByteReader& from) { return PoseUnit::read(from, kResponsesOfMonteCarlo); });
+      [](ByteReader& from) { return PoseUnit::read(from, kResponsesOfMonteCarlo, 0); });
 }
 
 std::size_t argument(int argc, char** argv, int at, std::size_t otherwise) {

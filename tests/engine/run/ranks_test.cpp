@@ -70,7 +70,8 @@ struct Squares {
           to.number(output);
         },
         [](std::size_t, ByteReader& from) { return static_cast<std::size_t>(from.number()); });
-    stage.end(complete, state, restore);
+    stage.end(
+        complete, [] { return SolveCounts(); }, state, restore);
     return complete ? std::optional(merged) : std::nullopt;
   }
 };
