@@ -6,7 +6,7 @@
 namespace poesy {
 
 inline constexpr unsigned long kTrialSeconds = 5;
-inline constexpr unsigned long kTrialBytes = 1UL << 30U;
+inline constexpr unsigned long kTrialBytes = 1UL << 28U;
 
 /// Calls read() in a child process, so that nothing that comes of it reaches this one; returns if it ended well there.
 ///

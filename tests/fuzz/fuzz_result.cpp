@@ -17,13 +17,21 @@ namespace {
 using namespace poesy;
 
 /// Where tables are written: one folder in memory for all inputs.
+class TableFolder {
+ public:
+  TableFolder() { fuzz::expect(mkdtemp(path_.data()) != nullptr, "there is a folder in memory"); }
+  TableFolder(const TableFolder&) = delete;
+  TableFolder& operator=(const TableFolder&) = delete;
+  ~TableFolder() { ::rmdir(path_.c_str()); }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_ = "/dev/shm/poesy-fuzz-XXXXXX";
+};
+
 const std::string& folder() {
-  static const std::string path = [] {
-    std::string pattern = "/dev/shm/poesy-fuzz-XXXXXX";
-    fuzz::expect(mkdtemp(pattern.data()) != nullptr, "there is a folder in memory");
-    return pattern;
-  }();
-  return path;
+  static const TableFolder only;
+  return only.path();
 }
 
 /// No child may take longer than the fuzzer lets an input take.

@@ -211,7 +211,7 @@ TEST(DamagedResult, NeverCrashesTheReader) {
   const std::string intact = read_bytes(path);
   std::size_t refused = 0;
   std::size_t different = 0;
-  for (std::size_t place = 0; place < intact.size(); place += 61) {
+  for (std::size_t place = 0; place < intact.size(); place += 151) {
     std::string damaged = intact;
     damaged[place] = static_cast<char>(damaged[place] ^ 0xff);
     write_bytes(path, damaged);
@@ -223,7 +223,7 @@ TEST(DamagedResult, NeverCrashesTheReader) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 100U);
+  EXPECT_GT(refused, 50U);
   EXPECT_GT(different, 20U);
 }
 
