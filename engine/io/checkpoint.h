@@ -22,13 +22,13 @@ struct CheckpointIdentity {
   std::uint64_t samples = 0;  ///< 0 where the kind of study draws none; a run may have more than its checkpoint
   std::string study;          ///< the resolved study, without seed, samples and max_not_converged
   std::string poses;          ///< SHA-256 of the poses, hexadecimal
-  std::string shard;          ///< "2/5"; empty for the whole study
+  std::string shard = {};     ///< "2/5"; empty for the whole study
 
   bool operator==(const CheckpointIdentity&) const = default;
 };
 
 /// That of a run of this program.
-CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard);
+CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard = std::nullopt);
 
 /// Seconds that a run took.
 struct RunTime {

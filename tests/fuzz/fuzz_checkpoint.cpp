@@ -60,7 +60,7 @@ void offer_to_monte_carlo(State state) {
 
 void offer_to_evaluation(State state) {
   EvaluationResult result = fuzz::empty_evaluation();
-  const auto make = [&] { return EvaluationProgress(result, fuzz::kBlockRows); };
+  const auto make = [&] { return EvaluationProgress(result, fuzz::kBlockRows, Shard()); };
   offer(state, make, [](const EvaluationProgress& progress) { static_cast<void>(progress.total()); });
 }
 
