@@ -1,5 +1,5 @@
-// A result file. What reads is printed and exported. A crash or a hang of HDF5 in the child that reads first
-// (engine/io/trial_read.h) is no finding; one in this process is.
+// A result file, or a shard of one. What reads is printed and exported. A crash or a hang of HDF5 in the child that
+// reads first (engine/io/trial_read.h) is no finding; one in this process is.
 #include <sys/resource.h>
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
+#include "engine/io/shard_file.h"
 #include "engine/report/tables.h"
 #include "tests/fuzz/h5_checksums.h"
 #include "tests/fuzz/shared_coverage.h"
@@ -63,5 +64,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fuzz::MemoryFile file(bytes);
   fuzz::accepted<FileError>([&] { static_cast<void>(verify_result(file.path())); });
   fuzz::accepted<FileError>([&] { use(file.path()); });
+  fuzz::accepted<FileError>([&] { static_cast<void>(read_shard(file.path())); });
   return 0;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/io/checkpoint.h"
+#include "engine/io/shard_file.h"
 #include "engine/run/cases.h"
 #include "engine/run/evaluation_state.h"
 #include "tests/engine/io/example_result.h"
@@ -50,7 +51,33 @@ void write_sensitivity_seed(const std::string& path) {
   fidelity.nonlinearity = {0.5, 0.0625, 0.03125, 0.75};
   fidelity.linear = {1, 0};
   fidelity.not_converged = {0, 1, 2, 3, 4, 5, 6, 7};
+  result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::singular}}};
   write_sensitivity(path, example.study, example.poses, result, example.facts);
+}
+
+void write_convergence_seed(const std::string& path) {
+  test::Example example;
+  SensitivityResult result = example.sensitivity();
+  ConvergenceResult& convergence = result.convergence.emplace();
+  convergence.min = 1000;
+  convergence.max = 3000;
+  convergence.relative_error = 0.05;
+  convergence.conf_level = 0.95;
+  convergence.milestones = {1000, 2000};
+  const std::size_t indices = result.responses * result.factors;
+  convergence.quantity.assign(2 * indices, 0.5);
+  convergence.half_width.assign(2 * indices, 0.25);
+  convergence.reached.assign(indices, 1);
+  convergence.relative_half_width.assign(indices, 0.5);
+  convergence.samples.assign(result.factors, 2000);
+  example.study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
+  write_sensitivity(path, example.study, example.poses, result, example.facts);
+}
+
+void write_shard_seed(const std::string& path) {
+  const test::Example example;
+  const std::vector<Bytes> stages{Bytes(5, std::byte{3}), Bytes(7, std::byte{1})};
+  write_shard(path, example.study, example.poses, {1, 3}, stages, example.facts);
 }
 
 void write_cases_seed(const std::string& path) {
@@ -92,6 +119,8 @@ void write_results(const std::string& folder) {
   write_identification_seed(folder + "/identification");
   test::Example().write_monte_carlo(folder + "/monte_carlo");
   test::Example().write_coupling(folder + "/coupling");
+  write_convergence_seed(folder + "/convergence");
+  write_shard_seed(folder + "/shard");
 }
 
 /// The states of a run at every moment at which it may stop.
@@ -110,7 +139,7 @@ std::vector<Bytes> states_of(const Run& run) {
 std::vector<Bytes> evaluation_states() {
   std::vector<Bytes> states;
   EvaluationResult result = fuzz::empty_evaluation();
-  EvaluationProgress progress(result, fuzz::kBlockRows);
+  EvaluationProgress progress(result, fuzz::kBlockRows, Shard());
   for (std::size_t block = 0; block < 6; ++block) {
     states.push_back(progress.state());
     progress.add_block();
@@ -127,7 +156,8 @@ void write_checkpoint(const std::string& path, std::span<const Bytes> stages) {
                                     .seed = 5,
                                     .samples = 2300,
                                     .study = "[poses]\ncount = 2\n",
-                                    .poses = "0123"};
+                                    .poses = "0123",
+                                    .shard = "2/5"};
   Bytes file;
   const CheckpointPieces pieces(identity, {2.5, 0.5}, stages);
   pieces.for_each([&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
