@@ -97,7 +97,10 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
   EvaluationResult result = empty_evaluation(model, poses, samples, outcomes);
   const std::size_t blocks = (samples + kBlockRows - 1) / kBlockRows;
   EvaluationProgress done(result, kBlockRows, options.shard.value_or(Shard()));
-  const auto restore = [&](std::span<const std::byte> state) { done.restore(state); };
+  const auto restore = [&](std::span<const std::byte> state) {
+    done = EvaluationProgress(result, kBlockRows, options.shard.value_or(Shard()));
+    done.restore(state);
+  };
   Stage stage(options.checkpoints, options.team);
   stage.begin(restore);
   ProgressCounter counter(done.samples(), done.total(), options);
