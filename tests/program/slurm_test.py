@@ -131,7 +131,7 @@ class SlurmTest(ResumptionTest):
     @HAS_MPI
     def test_mpi_time_limit(self):
         """With a minute's limit a run stops itself after ten seconds and goes back into the queue until it is done."""
-        expected = self.undisturbed(SENSITIVITY.replace("12300", "3000300"))
+        expected = self.undisturbed(SENSITIVITY.replace("12300", "1500300"))
         job = self.submit(f"--ntasks={RANKS}", "--time=1", MPI, "study.toml", "out.h5")
         self.completes(job)
         self.assertEqual(self.content_hash(), expected)
