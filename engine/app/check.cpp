@@ -185,10 +185,17 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
   return text + "\n";
 }
 
+/// "2.3 s", "14 min", "3.5 h"
+std::string readable_time(double seconds) {
+  if (seconds < 9.95) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 120.0) return fmt::format("{:.0f} s", seconds);
+  return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
 /// seconds: of all solves that there may be.
 std::string time_text(const Outlook& expected, double seconds) {
-  if (expected.least == 1.0) return fmt::format("about {:.2g} s", seconds);
-  return fmt::format("at least about {:.2g} s, at most about {:.2g} s", expected.least * seconds, seconds);
+  if (expected.least == 1.0) return "about " + readable_time(seconds);
+  return "at least about " + readable_time(expected.least * seconds) + ", at most about " + readable_time(seconds);
 }
 
 int check(const std::string& path) {

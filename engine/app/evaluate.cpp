@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
 #include <limits>
 #include <utility>
@@ -67,7 +68,9 @@ int evaluate(const Options& options) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");
   }
-  if (!options.result.empty()) check_result_path(options.result);
+  if (!options.result.empty()) {
+    check_result_path(options.result, std::array{options.study, options.poses, options.errors});
+  }
   const Pairing pairing = options.paired ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
   const auto start = std::chrono::steady_clock::now();
   const std::size_t threads = resolved_threads(options.threads);

@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
 #include "engine/io/result_file.h"
@@ -13,6 +14,7 @@ struct Options {
 };
 
 int export_result(const Options& options) {
+  static_cast<void>(read_result_warily(options.result));
   for (const std::string& file : export_tables(options.result, options.folder)) std::puts(file.c_str());
   return kDone;
 }

@@ -7,12 +7,27 @@
 #include "engine/base/units.h"
 
 namespace poesy::app {
+namespace {
+
+/// A share of failures above which statistics of the rest mislead.
+constexpr double kNoticeable = 0.01;
+
+}  // namespace
 
 ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std::string& study_path,
                         const std::string& remedy) {
   const std::uint64_t failed = solves.not_converged();
   if (failed == 0) return kDone;
   const double share = static_cast<double>(failed) / static_cast<double>(solves.total());
+  if (share > kNoticeable && study.not_converged == NotConverged::exclude) {
+    std::fputs(
+        fmt::format("poesy: warning: {:.3g} % of the samples did not converge and are left out; these are mostly "
+                    "large errors, so what is left may say far too little: raise solver.max_iterations, or take "
+                    "method = \"newton\"\n",
+                    100.0 * share)
+            .c_str(),
+        stderr);
+  }
   if (share <= study.max_not_converged) return kDone;
   std::fputs(
       fmt::format("poesy: {}: {} of {} samples did not converge, a share of {:.3g}, and solver.max_not_converged "

@@ -18,6 +18,8 @@ void on_signal(int /*signal*/) {
 const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  // Of a terminal that was closed; nohup has it ignored.
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return interrupted;
 }
 

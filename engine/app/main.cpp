@@ -1,5 +1,7 @@
+#include <cerrno>
 #include <csignal>
 #include <string>
+#include <system_error>
 
 #include "engine/app/command.h"
 #include "engine/app/exit_code_of.h"
@@ -36,9 +38,17 @@ int parse_and_run(int argc, char** argv) {
   return action();
 }
 
+/// The exit code, unless what was printed did not arrive.
+int flushed(int code) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  const std::string reason = errno == 0 ? "" : " (" + std::generic_category().message(errno) + ")";
+  return complain(("the output cannot be written" + reason).c_str(), kFileTrouble);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error of its write, as is a full disk
-  return exit_code_of([=] { return parse_and_run(argc, argv); });
+  return flushed(exit_code_of([=] { return parse_and_run(argc, argv); }));
 }

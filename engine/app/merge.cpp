@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/app/command.h"
 #include "engine/app/run_study.h"
 #include "engine/base/error.h"
@@ -24,8 +26,15 @@ RunTime time_of(const std::vector<StoredShard>& shards) {
   return sum;
 }
 
+/// The largest of all shards.
+std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*fact) {
+  std::size_t largest = 0;
+  for (const StoredShard& shard : shards) largest = std::max(largest, shard.facts.*fact);
+  return largest;
+}
+
 int merge(const Options& options) {
-  check_result_path(options.result);
+  check_result_path(options.result, options.shards);
   std::vector<StoredShard> shards;
   for (const std::string& path : options.shards) shards.push_back(read_shard(path));
   std::vector<Bytes> merged = merge_shards(shards);
@@ -35,8 +44,15 @@ int merge(const Options& options) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   // The whole run from here on: as one that is resumed when all its solves are done.
   Checkpoints done([] { return false; }, [](std::span<const Bytes>) {}, std::move(merged));
-  RunOptions run{.threads = first.facts.threads, .progress = [](const Progress&) {}, .checkpoints = &done};
-  const Job job{study, *model, whole.poses, options.result, std::move(run), [time = time_of(shards)] { return time; }};
+  RunOptions run{.threads = 1, .progress = [](const Progress&) {}, .checkpoints = &done};
+  const Job job{study,
+                *model,
+                whole.poses,
+                options.result,
+                std::move(run),
+                [time = time_of(shards)] { return time; },
+                most(shards, &RunFacts::threads),
+                most(shards, &RunFacts::ranks)};
   try {
     return report_end(job, options.result, run_study(job).value());
   } catch (const BytesError& error) {

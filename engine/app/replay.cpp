@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
 #include "engine/base/error.h"
@@ -32,7 +33,7 @@ struct Options {
 /// Throws unless `number` is one of 0 .. count - 1.
 void check_number(const Options& options, const std::string& what, std::size_t number, std::size_t count) {
   if (number < count) return;
-  refuse(options, fmt::format("{} {}: the result has {} {}s", what, number, count, what),
+  refuse(options, fmt::format("{} {}: there are {} {}s", what, number, count, what),
          count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
 }
 
@@ -65,7 +66,8 @@ ReplayedSample replay_drawn(const Options& options, const StoredResult& result, 
   const bool together = analysis.kind == Analysis::Kind::monte_carlo;
   for (std::size_t p = 0; p < (together ? 1 : result.factors.size()); ++p) names.push_back(varied_name(result, p));
   const std::size_t slot = position_of(options, "varied error", names);
-  const SampleIndex sample(required_sample(options, analysis.samples));
+  const auto& adaptive = together ? result.monte_carlo.convergence : result.sensitivity.convergence;
+  const SampleIndex sample(required_sample(options, adaptive ? adaptive->samples[slot] : analysis.samples));
   return replay_sample(stored.study, model, stored.poses.poses, slot, PoseIndex(options.pose), sample);
 }
 
@@ -201,7 +203,7 @@ std::string reference_text(const ModelDescription& model, const ReplayedSample& 
 }
 
 int replay(const Options& options) {
-  const StoredResult result = read_result(options.result);
+  const StoredResult result = read_result_warily(options.result);
   warn_of_other_program(options, result);
   check_number(options, "pose", options.pose, result.poses.size());
   const StoredStudy stored = stored_study(result, options.result, registry());
@@ -231,8 +233,13 @@ void add_replay(CLI::App& program, Action& action) {
   command->add_option("factor", options->factor, "error that varied; all: a Monte Carlo result; or the name of a case")
       ->required()
       ->type_name("FACTOR");
-  command->add_option("pose", options->pose, "number of the pose, from 0")->required()->type_name("POSE");
-  command->add_option("sample", options->sample, "number of the sample, from 0; not of a case")->type_name("SAMPLE");
+  command->add_option("pose", options->pose, "number of the pose, from 0")
+      ->required()
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("POSE");
+  command->add_option("sample", options->sample, "number of the sample, from 0; not of a case")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SAMPLE");
   command->footer(
       "'poesy show' names a sample that failed, failures.csv of 'poesy export' and /solver/failed_* the first ones.\n"
       "Example: poesy replay result.h5 epsilon_1_4_z 12 345");

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <utility>
 
 #include "engine/app/duration.h"
 #include "engine/app/interrupt.h"
@@ -61,14 +63,19 @@ std::string shell_command(const std::vector<std::string>& words) {
 }
 
 ResumableRun::ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
-    : resume_(options.resume),
+    : lock_(result_path),
+      resume_(options.resume),
       keep_(options.keep),
       command_(std::move(resume_command)),
       files_(result_path),
       every_(duration_of(parse_duration(options.every, "--checkpoint-every"))) {
   if (!options.max_wall.empty()) end_ = Clock::now() + duration_of(parse_duration(options.max_wall, "--max-wall"));
   if (resume_ && !files_.exist()) {
-    throw InputError({.file = files_.newer()}, "there is no such checkpoint to resume from",
+    std::error_code ignored;
+    const bool done = std::filesystem::exists(result_path, ignored);
+    throw InputError({.file = files_.newer()},
+                     done ? "there is no such checkpoint, and " + result_path + " is there: that run is complete"
+                          : std::string("there is no such checkpoint to resume from"),
                      "leave --resume out to run the study from the beginning");
   }
   if (!resume_ && files_.exist()) {
@@ -105,8 +112,15 @@ void ResumableRun::check_time() const {
   if (end_ && Clock::now() >= *end_) interrupt();
 }
 
+bool ResumableRun::due() {
+  const Clock::time_point now = Clock::now();
+  if (now < next_) return false;
+  due_since_ = now;
+  return true;
+}
+
 void ResumableRun::save(std::span<const Bytes> stages) {
-  const Clock::time_point before = Clock::now();
+  const Clock::time_point before = std::exchange(due_since_, std::nullopt).value_or(Clock::now());
   no_room_ = true;
   files_.write(identity_, time(), stages);
   no_room_ = false;

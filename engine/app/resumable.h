@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/io/checkpoint_files.h"
+#include "engine/io/run_lock.h"
 #include "engine/run/checkpoints.h"
 #include "engine/run/runner.h"
 
@@ -55,9 +56,10 @@ class ResumableRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  bool due() const { return Clock::now() >= next_; }
+  bool due();
   void save(std::span<const Bytes> stages);
 
+  RunLock lock_;
   bool resume_;
   bool keep_;
   std::string command_;
@@ -70,7 +72,8 @@ class ResumableRun {
   RunTime before_;  ///< that earlier parts of the run took
   double checkpoint_seconds_ = 0.0;
   Clock::time_point next_;
-  bool no_room_ = false;  ///< the last checkpoint could not be written
+  std::optional<Clock::time_point> due_since_;  ///< when the checkpoint was asked for that is being made
+  bool no_room_ = false;                        ///< the last checkpoint could not be written
   std::optional<Checkpoints> checkpoints_;
 };
 

@@ -85,11 +85,12 @@ std::size_t divisible(const Study& study, std::size_t poses) {
 void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
   if (study.analysis.kind == Analysis::Kind::identification) {
     throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
-                     "run it whole, it is small, or over MPI ranks");
+                     "run it whole, for it is small, or with mpirun");
   }
   if (study.analysis.adaptive) {
-    throw InputError({}, "--shard divides no study with adaptive samples, which ends errors by what all poses say",
-                     "write samples = N, or run it over MPI ranks");
+    throw InputError(
+        {}, "--shard divides no study with adaptive samples: when an error has enough is decided over all poses",
+        "write samples = N, or run it with mpirun");
   }
   if (const std::size_t most = divisible(study, poses); shard.count > most) {
     throw InputError(
@@ -138,9 +139,23 @@ void follow(const Options& options, std::size_t threads, Team& team) {
   }
   Checkpoints not_kept([] { return false; }, [](std::span<const Bytes>) {});
   const auto no_progress = [](const Progress&) {};
-  run_study({study, *model, std::move(poses), {}, {threads, no_progress, &stop, &not_kept, options.shard, &team}, [] {
-               return RunTime();
-             }});
+  run_study({study,
+             *model,
+             std::move(poses),
+             {},
+             {threads, no_progress, &stop, &not_kept, options.shard, options.resume.keep, &team},
+             [] { return RunTime(); },
+             threads});
+}
+
+/// The ranks never began. What an earlier run kept is kept; without one, a checkpoint of nothing is there to be
+/// resumed.
+int leave_before_the_start(const Team& team, ResumableRun& resumable) {
+  const int code = explain_leaving(team);
+  if (code != kInterrupted) return code;
+  resumable.checkpoints().save();
+  resumable.explain_interruption();
+  return code;
 }
 
 /// In one process, or as rank 0 of a team.
@@ -148,14 +163,15 @@ int run(const Options& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
   const std::string path = options.result.empty() ? default_result(options) : options.result;
-  check_result_path(path);
+  check_result_path(path, std::span(&options.study, 1));
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);
   if (options.shard) check_shard(*options.shard, study, poses.poses.size());
   const CheckpointIdentity identity = identity_of(study, poses.poses, options.shard);
   resumable.start(identity, options.quiet);
-  if (team != nullptr && !team->agree(text_of(identity), threads, &stop)) return explain_leaving(*team);
+  if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
+    return leave_before_the_start(*team, resumable);
   ProgressPrinter printer(options.quiet);
   const auto on_progress = [&](const Progress& progress) {
     printer(progress);
@@ -165,8 +181,10 @@ int run(const Options& options, std::size_t threads, Team* team) {
                 *model,
                 std::move(poses),
                 path,
-                {threads, on_progress, &stop, &resumable.checkpoints(), options.shard, team},
-                [&] { return resumable.time(); }};
+                {threads, on_progress, &stop, &resumable.checkpoints(), options.shard, options.resume.keep, team},
+                [&] { return resumable.time(); },
+                team != nullptr ? team->threads() : threads,
+                team != nullptr ? team->ranks().size() : 1};
   const std::optional<Ended> ended = run_to_end(job, resumable, printer);
   if (!ended) {
     const int code = team != nullptr ? explain_leaving(*team) : kInterrupted;

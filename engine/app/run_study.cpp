@@ -21,12 +21,9 @@ namespace {
 Ended ended(const Job& job) {
   const RunTime time = job.time();
   const SolveCounts& solves = job.checkpoints().solves();
-  Ended ended{solves, run_facts(time.wall, job.options.threads, solves.total())};
+  Ended ended{solves, run_facts(time.wall, job.threads, solves.total())};
   ended.facts.checkpoint_seconds = time.checkpoints;
-  if (job.options.team != nullptr) {
-    ended.facts.ranks = job.options.team->ranks().size();
-    ended.facts.threads = job.options.team->threads();
-  }
+  ended.facts.ranks = job.ranks;
   return ended;
 }
 

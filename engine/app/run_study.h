@@ -19,6 +19,8 @@ struct Job {
   std::string path;               ///< of the result
   RunOptions options;             ///< with checkpoints
   std::function<RunTime()> time;  ///< that the run took so far, in all its parts
+  std::size_t threads;            ///< of all ranks together
+  std::size_t ranks = 1;
 
   Checkpoints& checkpoints() const { return *options.checkpoints; }
   /// Whether this process writes what was found: of several ranks the first.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
 #include "engine/base/error.h"
@@ -35,7 +36,7 @@ void show_alone(const std::string& response, StoredResult& result) {
 }
 
 int show(const Options& options) {
-  StoredResult result = read_result(options.result);
+  StoredResult result = read_result_warily(options.result);
   const std::string response = response_of(options, result);
   if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
   std::fputs(summary_text(result).c_str(), stdout);

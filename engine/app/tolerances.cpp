@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/exit_code.h"
 #include "engine/base/error.h"
@@ -61,7 +62,7 @@ double positive(const std::string& text, std::string_view option, const NamedUni
 }
 
 StoredResult read_sensitivity_result(const std::string& path) {
-  StoredResult result = read_result(path);
+  StoredResult result = read_result_warily(path);
   if (result.kind != "sensitivity") {
     throw InputError({path}, "tolerances need indices, but this is a result of kind '" + result.kind + "'",
                      "give the result of a sensitivity study");

@@ -12,7 +12,6 @@
 namespace poesy {
 namespace {
 
-constexpr std::string_view kMagic = "poesy-checkpoint";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
 
@@ -74,6 +73,7 @@ std::string program(const CheckpointIdentity& identity) {
 CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard) {
   Study rest = study;
   rest.seed = 0;
+  rest.title.clear();
   rest.max_not_converged = 1.0;  // judges the run when it is done
   if (draws_samples(study)) rest.analysis.samples = 0;
   return {.poesy_version = poesy_version(),
@@ -125,7 +125,7 @@ CheckpointPieces::CheckpointPieces(const CheckpointIdentity& identity, const Run
                                    std::span<const Bytes> stages)
     : stages_(stages) {
   ByteWriter head;
-  head.raw(std::as_bytes(std::span(kMagic)));
+  head.raw(std::as_bytes(std::span(kCheckpointMagic)));
   head.number(kVersion);
   write_identity(head, identity);
   head.real(time.wall);
@@ -149,7 +149,7 @@ std::size_t CheckpointPieces::size() const {
 }
 
 Checkpoint decode_checkpoint(std::span<const std::byte> file) {
-  const auto magic = std::as_bytes(std::span(kMagic));
+  const auto magic = std::as_bytes(std::span(kCheckpointMagic));
   if (file.size() < magic.size() + kDigestBytes || !std::ranges::equal(file.first(magic.size()), magic)) {
     throw BytesError("is not a checkpoint of poesy");
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/bytes.h"
@@ -13,6 +14,9 @@
 
 namespace poesy {
 
+/// What the bytes of a checkpoint begin with.
+inline constexpr std::string_view kCheckpointMagic = "poesy-checkpoint";
+
 /// What a run must have in common with the checkpoint that it takes up.
 struct CheckpointIdentity {
   std::string poesy_version;
@@ -20,7 +24,7 @@ struct CheckpointIdentity {
   std::string model;
   std::uint64_t seed = 0;
   std::uint64_t samples = 0;  ///< 0 where the kind of study draws none; a run may have more than its checkpoint
-  std::string study;          ///< the resolved study, without seed, samples and max_not_converged
+  std::string study;          ///< the resolved study, without title, seed, samples and max_not_converged
   std::string poses;          ///< SHA-256 of the poses, hexadecimal
   std::string shard = {};     ///< "2/5"; empty for the whole study
 
@@ -28,7 +32,8 @@ struct CheckpointIdentity {
 };
 
 /// That of a run of this program.
-CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const std::optional<Shard>& shard = std::nullopt);
+CheckpointIdentity identity_of(const Study& study, const PoseSet& poses,
+                               const std::optional<Shard>& shard = std::nullopt);
 
 /// Seconds that a run took.
 struct RunTime {

@@ -1,11 +1,14 @@
 #include "engine/io/poesy_file.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 #include <vector>
 
+#include "engine/io/checkpoint.h"
 #include "engine/io/result_format.h"
 
 namespace poesy {
@@ -13,10 +16,20 @@ namespace {
 
 constexpr const char* kOther = "give a result file written by poesy";
 
+bool is_checkpoint(const std::string& path) {
+  std::array<char, kCheckpointMagic.size()> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::ranges::equal(begin, kCheckpointMagic);
+}
+
 h5::File open_hdf5(const std::string& path) {
   try {
     return h5::File::open(path);
   } catch (const h5::Error& error) {
+    if (is_checkpoint(path)) {
+      throw FileError(path, "is a checkpoint of a run that has not ended, not a result",
+                      "continue the run with poesy run --resume");
+    }
     throw FileError(path, std::string("is not an intact HDF5 file: ") + error.what(), kOther);
   }
 }

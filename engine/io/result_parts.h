@@ -106,4 +106,7 @@ void add_coupling(ResultBuilder& result, const Study& study, const CouplingResul
 /// Fills in `coupling`.
 void read_coupling(const h5::File& file, StoredResult& result);
 
+/// What a shard found, of a file that is one: /shard.
+void add_shard(ResultBuilder& result, const Shard& shard, std::span<const Bytes> stages);
+
 }  // namespace poesy

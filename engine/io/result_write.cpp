@@ -1,7 +1,9 @@
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "engine/base/contract.h"
@@ -76,7 +78,7 @@ void add_run(ResultBuilder& result, const RunFacts& facts) {
   result.add_scalar("/run/created", facts.created, {"1", "When the run ended (UTC, ISO 8601)"});
   result.add_scalar("/run/host", facts.host, {"1", "Name of the machine"});
   result.add_scalar("/run/cpu", facts.cpu, {"1", "Its processor"});
-  result.add_scalar<std::uint64_t>("/run/threads", facts.threads, {"1", "Threads in each rank"});
+  result.add_scalar<std::uint64_t>("/run/threads", facts.threads, {"1", "Threads, of all ranks together"});
   result.add_scalar<std::uint64_t>("/run/ranks", facts.ranks, {"1", "MPI ranks"});
   result.add_scalar("/run/wall_seconds", facts.wall_seconds, {"s", "Time the solves took"});
   result.add_scalar("/run/checkpoint_seconds", facts.checkpoint_seconds, {"s", "Of that time, spent on checkpoints"});
@@ -120,6 +122,15 @@ void compose_result(const std::string& path, std::string_view kind, const Study&
     add_responses(result, study.model());
     compose(result);
   });
+}
+
+/// Also what cannot be read; an empty file holds nothing that could be lost.
+bool looks_like_hdf5(const std::string& path) {
+  constexpr std::array kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::array<char, kSignature.size()> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  return file.gcount() == 0 || begin == kSignature;
 }
 
 }  // namespace
@@ -175,13 +186,22 @@ void write_shard(const std::string& path, const Study& study, const SelectedPose
                     [&](ResultBuilder& file) { add_shard(file, shard, stages); });
 }
 
-void check_result_path(const std::string& path) {
+void check_result_path(const std::string& path, std::span<const std::string> inputs) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
     throw InputError({.file = path}, fs::is_directory(path, ignored) ? "is a folder" : "is not a plain file",
                      "name a file for the result");
+  }
+  for (const std::string& input : inputs) {
+    if (fs::equivalent(path, input, ignored)) {
+      throw InputError({.file = path}, "is also an input, which the result would replace", "name another file with -o");
+    }
+  }
+  if (fs::exists(path, ignored) && !looks_like_hdf5(path)) {
+    throw InputError({.file = path}, "exists and is no result of poesy, and it would be lost",
+                     "name another file with -o, or remove it");
   }
   if (!fs::is_directory(folder, ignored)) {
     throw InputError({.file = path}, "its folder " + folder.string() + " does not exist", "make it or choose another");

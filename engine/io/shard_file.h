@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/io/result_builder.h"
 #include "engine/run/result.h"
 #include "engine/run/shard.h"
 #include "engine/study/study.h"
@@ -31,9 +30,6 @@ void write_shard(const std::string& path, const Study& study, const SelectedPose
 
 /// Reads one back. Throws FileError when it is not one, or when it was changed since it was written.
 StoredShard read_shard(const std::string& path);
-
-/// The group /shard of such a file.
-void add_shard(ResultBuilder& result, const Shard& shard, std::span<const Bytes> stages);
 
 /// Puts the shards of a study together: the state of each of its runs, whole. Throws InputError that names the files
 /// when they are not the shards of one study, written by this program's version, each once.

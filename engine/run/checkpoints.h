@@ -109,14 +109,15 @@ class Stage {
   void end(bool complete, const Solves& solves, const State& state, const Restore& restore) {
     const bool follows = team_ != nullptr && !team_->leads();
     if (follows && complete) restore(std::span<const std::byte>(team_->end_state()));
-    if (checkpoints_ != nullptr) {
+    if (checkpoints_ != nullptr && follows) checkpoints_->end(complete, solves(), [] { return Bytes(); });
+    if (checkpoints_ != nullptr && !follows) {
       checkpoints_->end(complete, solves(), state);
       // Before the others are told: who was stopped may have little time left.
       if (!complete) checkpoints_->save();
     }
     if (team_ == nullptr || follows) return;
-    const auto last = [&] { return checkpoints_ != nullptr ? checkpoints_->stage() : state(); };
-    team_->end(complete, complete ? last() : Bytes());
+    const Bytes own = complete && checkpoints_ == nullptr ? state() : Bytes();
+    team_->end(complete, checkpoints_ != nullptr ? checkpoints_->stage() : own);
   }
 
   /// Another round of the stage begins, from the state with which the one before ended.

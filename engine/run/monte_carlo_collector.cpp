@@ -63,9 +63,11 @@ PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
   return samples;
 }
 
-MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis)
+MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis,
+                                         bool for_longer_study)
     : plan_(&plan),
       responses_(responses),
+      for_longer_study_(for_longer_study),
       sketches_(responses),
       moments_(plan.poses().size() * responses),
       failed_(plan.poses().size()),
@@ -95,10 +97,10 @@ void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
   }
   POESY_EXPECTS(pose == open_ && !is_finished(pose.value));
   const bool whole = unit.solves.total() == Plan::kUnitSamples;
-  if (!whole) keep();
+  if (for_longer_study_ && !whole) keep();
   at_pose_.add(unit);
   if (at_pose_.solves.total() < plan_->samples()) return;
-  if (whole) keep();
+  if (for_longer_study_ && whole) keep();
   finish_pose();
 }
 

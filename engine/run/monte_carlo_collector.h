@@ -32,14 +32,15 @@ struct PoseSamples {
 };
 
 /// Puts units together, pose by pose. Holds the samples of one pose, as sketches, and of all finished poses together
-/// their sketches: memory grows neither with the samples nor, but for the result, with the poses. So that a study with
-/// more samples can go on from it, it also keeps the sketches of finished poses, packed, as many as kMostKeptBytes
-/// hold. The order in which poses are finished changes nothing.
+/// their sketches: memory grows neither with the samples nor, but for the result, with the poses. If a study with more
+/// samples is to go on from it, it also keeps the sketches of finished poses, packed, as many as kMostKeptBytes hold.
+/// The order in which poses are finished changes nothing.
 class MonteCarloCollector {
  public:
-  static constexpr std::size_t kMostKeptBytes = std::size_t{16} << 20U;
+  static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
 
-  MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis);
+  /// for_longer_study: whether to keep sketches of finished poses.
+  MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool for_longer_study = true);
 
   /// Units of a pose come one after another.
   void add(PoseIndex pose, const PoseUnit& unit);
@@ -82,6 +83,7 @@ class MonteCarloCollector {
 
   const Plan* plan_;
   std::size_t responses_;
+  bool for_longer_study_;
   PoseIndex open_;                        ///< the open pose, if there is one
   PoseSamples at_pose_;                   ///< its samples
   std::vector<QuantileSketch> sketches_;  ///< [R] of the finished poses together

@@ -220,7 +220,7 @@ struct RunFacts {
   std::string created;  ///< UTC, ISO 8601
   std::string host;
   std::string cpu;
-  std::size_t threads = 1;
+  std::size_t threads = 1;  ///< of all ranks together
   std::size_t ranks = 1;
   double wall_seconds = 0.0;        ///< of all parts of a run that was stopped and resumed
   double checkpoint_seconds = 0.0;  ///< of these, for checkpoints

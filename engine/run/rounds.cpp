@@ -141,6 +141,8 @@ std::optional<ConvergenceResult> Rounds::result() const {
 Bytes Rounds::state_before(Bytes rest) const {
   if (!adaptive_) return rest;
   ByteWriter to;
+  to.reserve(rest.size() + rows_.size() * 2 * sizeof(double) * rule_.responses * samples_.size() +
+             sizeof(std::uint64_t) + 2);
   to.number(rows_.size());
   for (const Row& row : rows_) {
     to.reals(row.quantity);

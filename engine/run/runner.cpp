@@ -124,10 +124,11 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
     if (rest.empty()) throw BytesError("is cut off");
     before.assign(rest.begin(), rest.end());
   });
+  const bool keeps = options.for_longer_study || plan.adaptive();
   std::optional<ProgressCounter> counter;
   for (;;) {
     const Plan part = plan.with_samples(rounds.samples(0));
-    MonteCarloCollector collect(part, responses, analysis);
+    MonteCarloCollector collect(part, responses, analysis, keeps);
     if (!before.empty()) collect.restore(std::exchange(before, {}));
     if (!counter) counter.emplace(plan.solves(), collect.total(), options);
     const PendingUnits pending(part, options.shard.value_or(Shard()),
@@ -149,7 +150,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
         [&](std::span<const std::byte> end) {
           ByteReader from(end);
           Rounds(plan, rule).restore(from);  // what was decided before this round is known here
-          collect = MonteCarloCollector(part, responses, analysis);
+          collect = MonteCarloCollector(part, responses, analysis, keeps);
           collect.restore(end.last(from.left()));
         });
     if (!complete || options.shard) return std::nullopt;

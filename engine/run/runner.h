@@ -35,6 +35,8 @@ struct RunOptions {
   Checkpoints* checkpoints = nullptr;
   /// The shard to run, instead of the whole. It gives no result, only its state to the checkpoints.
   std::optional<Shard> shard = std::nullopt;
+  /// A Monte Carlo study keeps what a longer one would go on from (MonteCarloCollector).
+  bool for_longer_study = true;
   /// The ranks that share the work; null: this process alone. Every rank calls the same run functions with the same
   /// arguments and gets the same results; rank 0 alone has checkpoints and reports progress. When a rank is stopped or
   /// leaves, the functions give nothing, and team->left() says why. The ranks after rank 0 may get Dismissed thrown.
