@@ -1,7 +1,6 @@
-#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <string>
-#include <system_error>
 
 #include "engine/app/command.h"
 #include "engine/app/exit_code_of.h"
@@ -40,10 +39,9 @@ int parse_and_run(int argc, char** argv) {
 
 /// The exit code, unless what was printed did not arrive.
 int flushed(int code) {
-  errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  const std::string reason = errno == 0 ? "" : " (" + std::generic_category().message(errno) + ")";
-  return complain(("the output cannot be written" + reason).c_str(), kFileTrouble);
+  std::fputs("poesy: what was to be printed cannot be written; see whether there is room where it goes\n", stderr);
+  return kFileTrouble;
 }
 
 }  // namespace

@@ -43,8 +43,8 @@ void write_coupling(const std::string& path, const Study& study, const SelectedP
                     const CouplingResult& result, const RunFacts& facts);
 
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
-/// folder does not exist, when what stands there is one of the inputs, or anything other than an HDF5 file, FileError
-/// when the folder cannot be written.
+/// folder does not exist, when what stands there is one of the inputs, or neither named like a result (.h5) nor an HDF5
+/// file, FileError when the folder cannot be written.
 void check_result_path(const std::string& path, std::span<const std::string> inputs = {});
 
 /// A pose coordinate or response or factor as a result file names it.

@@ -124,8 +124,9 @@ void compose_result(const std::string& path, std::string_view kind, const Study&
   });
 }
 
-/// Also what cannot be read; an empty file holds nothing that could be lost.
-bool looks_like_hdf5(const std::string& path) {
+/// Whether a file is named like a result, or is one: then a newer result may replace it. An empty file holds nothing.
+bool may_be_replaced(const std::string& path) {
+  if (std::filesystem::path(path).extension() == ".h5") return true;
   constexpr std::array kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   std::array<char, kSignature.size()> begin{};
   std::ifstream file(path, std::ios::binary);
@@ -199,7 +200,7 @@ void check_result_path(const std::string& path, std::span<const std::string> inp
       throw InputError({.file = path}, "is also an input, which the result would replace", "name another file with -o");
     }
   }
-  if (fs::exists(path, ignored) && !looks_like_hdf5(path)) {
+  if (fs::exists(path, ignored) && !may_be_replaced(path)) {
     throw InputError({.file = path}, "exists and is no result of poesy, and it would be lost",
                      "name another file with -o, or remove it");
   }

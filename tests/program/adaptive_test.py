@@ -77,6 +77,16 @@ class Adaptive(ResumptionTest):
             self.assertEqual(done.returncode, 2)
             self.assertIn(word, done.stderr.decode())
 
+    def test_replay_knows_what_was_drawn(self):
+        self.write("study.toml", STUDIES["sensitivity"])
+        self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
+        with h5py.File(self.folder / "out.h5") as result:
+            samples = int(result["convergence/samples"][0])
+        self.succeeds("replay", "out.h5", "delta_1_1_y", 0, samples - 1)
+        for beyond in (samples, -1):
+            done = self.poesy("replay", "out.h5", "delta_1_1_y", 0, beyond)
+            self.assertEqual(done.returncode, 2, done.stderr)
+
     def test_check_says_what_it_means(self):
         self.write("study.toml", STUDIES["sensitivity"])
         text = self.succeeds("check", "study.toml")

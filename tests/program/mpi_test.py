@@ -16,6 +16,7 @@ from resumption import CASES, COUPLING, FIDELITIES, IDENTIFICATION, MONTE_CARLO,
 MPIRUN = shutil.which("mpirun")
 HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
 SMALLER = {
     "sensitivity": SENSITIVITY,
     "monte-carlo": MONTE_CARLO,
@@ -23,6 +24,8 @@ SMALLER = {
     "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
     "coupling": COUPLING.replace("count = 20000", "count = 2000"),
     "fidelities": FIDELITIES,
+    "adaptive sensitivity": SENSITIVITY.replace("samples = 12300", ADAPTIVE),
+    "adaptive monte-carlo": MONTE_CARLO.replace("samples = 12300", ADAPTIVE.replace("0.01", "0.003")),
 }
 
 

@@ -67,6 +67,40 @@ class Resume(ResumptionTest):
             for path in self.folder.glob("out.h5*"):
                 path.unlink()
 
+    def test_one_run_of_a_result_at_a_time(self):
+        self.write("study.toml", SENSITIVITY.replace("12300", "100000000"))
+        command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "0.01 s"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE) as run:
+            while not self.newer.exists():
+                time.sleep(0.01)
+            for options in ((), ("--resume",)):
+                second = self.poesy("run", "study.toml", "-o", "out.h5", *options)
+                self.assertEqual(second.returncode, 2)
+                self.assertIn(b"out.h5: another run is computing this result", second.stderr)
+            run.send_signal(signal.SIGHUP)
+            _, messages = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 4, messages)
+        self.assertFalse((self.folder / "out.h5.lock").exists())
+        shown = self.poesy("show", "out.h5.part")
+        self.assertEqual(shown.returncode, 3)
+        self.assertIn(b"is a checkpoint of a run that has not ended", shown.stderr)
+
+    def test_output_that_does_not_arrive(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, "template", "2upr-rpu"], stdout=full, stderr=subprocess.PIPE, check=False)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn(b"cannot be written", done.stderr)
+
+    def test_changed_result(self):
+        self.write("study.toml", SENSITIVITY.replace("12300", "300"))
+        self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
+        with h5py.File(self.folder / "out.h5", "r+") as result:
+            result["sensitivity/global"][0, 0] *= 2
+        for command in (("show",), ("export", "-d", "tables")):
+            done = self.poesy(*command, "out.h5")
+            self.assertEqual(done.returncode, 0)
+            self.assertIn(b"out.h5 was changed since it was written", done.stderr)
+
     def test_more_samples(self):
         for study in (SENSITIVITY, MONTE_CARLO, FIDELITIES):
             for old, new in (("12300", "15000"), ("12000", "12300"), ("300", "12300"), ("3000", "12001")):

@@ -108,6 +108,16 @@ class Shards(ResumptionTest):
             state[len(state) // 2] ^= 1
         self.refused(3, names, "s1.h5", "was changed since it was written")
 
+    def test_never_over_an_input(self):
+        self.write("study.toml", SENSITIVITY.replace("12300", "300"))
+        names = self.run_shards(2)
+        for command in (("merge", *names, "-o", names[0]), ("run", "study.toml", "-o", "study.toml")):
+            before = (self.folder / command[-1]).read_bytes()
+            done = self.poesy(*command)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(b"is also an input", done.stderr)
+            self.assertEqual((self.folder / command[-1]).read_bytes(), before)
+
     def test_bad_divisions(self):
         self.write("study.toml", SENSITIVITY)
         for text in ("0/2", "3/2", "2", "1/0", "a/b", "1/2/3", "-1/2", "1/99999999999999999999999"):

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <cmath>
 
 #include "engine/base/error.h"
@@ -168,6 +170,15 @@ TEST(CheckResultPath, RefusesWhatCannotBecomeAResult) {
   EXPECT_THROW(check_result_path(folder.path() + "/"), InputError);
   EXPECT_THROW(check_result_path("/dev/null"), InputError);
   EXPECT_THROW(check_result_path(""), InputError);
+}
+
+TEST(CheckResultPath, KeepsOtherFilesFromBeingReplaced) {
+  const TempFolder folder;
+  write_bytes(folder / "study.toml", "old");
+  write_bytes(folder / "shard.h5", "old");
+  EXPECT_THROW(check_result_path(folder / "study.toml"), InputError);
+  EXPECT_THROW(check_result_path(folder / "shard.h5", std::array{folder / "study.toml", folder / "./shard.h5"}),
+               InputError);
 }
 
 }  // namespace
