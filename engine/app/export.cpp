@@ -14,8 +14,8 @@ struct Options {
 };
 
 int export_result(const Options& options) {
-  static_cast<void>(read_result_warily(options.result));
-  for (const std::string& file : export_tables(options.result, options.folder)) std::puts(file.c_str());
+  const StoredResult result = read_result_warily(options.result);
+  for (const std::string& file : export_tables(result, options.folder)) std::puts(file.c_str());
   return kDone;
 }
 

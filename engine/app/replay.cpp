@@ -11,6 +11,7 @@
 #include "engine/app/exit_code.h"
 #include "engine/base/error.h"
 #include "engine/io/stored_study.h"
+#include "engine/io/trial_read.h"
 #include "engine/io/version.h"
 #include "engine/run/cases.h"
 #include "engine/run/replay.h"
@@ -60,7 +61,7 @@ ReplayedSample replay_drawn(const Options& options, const StoredResult& result, 
                             const Model& model) {
   const Analysis& analysis = stored.study.analysis;
   if (name(analysis.kind) != result.kind || analysis.factors.size() != result.factors.size()) {
-    throw FileError(options.result, "keeps a study that does not fit it", "take another copy, or run the study again");
+    throw FileError(options.result, "keeps a study that does not fit it", kDamagedRemedy);
   }
   std::vector<std::string> names;
   const bool together = analysis.kind == Analysis::Kind::monte_carlo;

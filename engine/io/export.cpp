@@ -90,7 +90,10 @@ void write_factors(TableFolder& folder, const StoredResult& result) {
 }
 
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder) {
-  const StoredResult result = read_result(result_path);
+  return export_tables(read_result(result_path), folder);
+}
+
+std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder) {
   make_folder(folder);
   TableFolder tables(folder);
   write_poses(tables, result);

@@ -10,9 +10,6 @@
 
 namespace poesy {
 
-/// What to do about a damaged file.
-inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
-
 /// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, or of a newer major
 /// version; h5::Error when it is damaged in a way that HDF5 reports.
 h5::File open_poesy_file(const std::string& path);

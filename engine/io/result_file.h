@@ -76,6 +76,7 @@ struct StoredResult {
   std::string poesy_version;
   std::string git_commit;
   std::string content_sha256;
+  bool changed = false;  ///< whether the content no longer has that hash
   std::vector<NamedUnit> pose_coordinates;
   PoseSet poses;
   std::vector<double> condition;  ///< [M] of each pose; empty in files of older versions
@@ -114,7 +115,8 @@ std::string varied_name(const StoredResult& result, std::size_t slot);
 /// The listed failures of a sampled result; of another kind there are none.
 const std::vector<Failure>& listed_failures(const StoredResult& result);
 
-/// Reads a result file. Throws FileError when it is not one, or of a newer major version. Does not check the hash.
+/// Reads a result file. Throws FileError when it is not one, or of a newer major version. One that was changed since it
+/// was written is read as it is, and says so.
 StoredResult read_result(const std::string& path);
 
 struct Verification {
@@ -185,6 +187,8 @@ Verification verify_result(const std::string& path);
 ///                           errors that were solved
 ///
 /// Returns the paths of the files written. Throws FileError.
+std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder);
+/// The same for a result that is still to be read.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);
 
 }  // namespace poesy

@@ -54,6 +54,7 @@ StoredResult read_all(const h5::File& file) {
   result.poesy_version = text_attribute(file, "poesy_version");
   result.git_commit = text_attribute(file, "git_commit");
   result.content_sha256 = stored_hash(file);
+  result.changed = result.content_sha256 != content_sha256(file);
   result.study_text = file.read<std::string>("/study/text").at(0);
   result.pose_coordinates = read_pose_coordinates(file);
   SelectedPoses poses = read_poses(file);

@@ -21,7 +21,6 @@ namespace poesy {
 namespace {
 
 constexpr std::string_view kEndedWell = "+";  ///< all that such a child says; any other says what the FileError said
-constexpr const char* kDamaged = "take another copy, or run the study again";
 
 /// A file descriptor.
 class Descriptor {
@@ -145,7 +144,8 @@ void trial_read(const std::string& path, const std::function<void()>& read) {
   if (said == kEndedWell) return;
   if (!said.empty()) throw FileError("", said, "");
   const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
-  throw FileError(path, slow ? "is damaged: reading it does not end" : "is damaged: reading it crashes", kDamaged);
+  throw FileError(path, slow ? "is damaged: reading it does not end" : "is damaged: reading it crashes",
+                  kDamagedRemedy);
 }
 
 }  // namespace poesy

@@ -5,6 +5,9 @@
 
 namespace poesy {
 
+/// What to do about a damaged file.
+inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
+
 inline constexpr unsigned long kTrialSeconds = 5;
 inline constexpr unsigned long kTrialBytes = 1UL << 28U;
 

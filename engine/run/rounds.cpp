@@ -20,8 +20,6 @@ double half_width(const Estimate& estimate) {
   return known ? std::max(estimate.value - low, high - estimate.value) : kNaN;
 }
 
-std::size_t units_for(std::size_t samples) { return (samples + Plan::kUnitSamples - 1) / Plan::kUnitSamples; }
-
 }  // namespace
 
 std::size_t least_samples(const Plan& plan) {
@@ -39,12 +37,12 @@ Rounds::Rounds(const Plan& plan, Rule rule)
       samples_(plan.slots(), least_samples(plan)),
       ended_(plan.slots(), false) {}
 
-std::size_t Rounds::units(std::size_t slot) const { return units_for(samples_[slot]); }
+std::size_t Rounds::units(std::size_t slot) const { return Plan::units_for(samples_[slot]); }
 
 bool Rounds::may_hold(std::size_t slot, std::size_t units) const {
   const std::size_t before =
-      rows_.empty() ? 0 : units_for(ended_[slot] ? samples_[slot] : milestones_[rows_.size() - 1]);
-  return before <= units && units <= units_for(samples_[slot]);
+      rows_.empty() ? 0 : Plan::units_for(ended_[slot] ? samples_[slot] : milestones_[rows_.size() - 1]);
+  return before <= units && units <= Plan::units_for(samples_[slot]);
 }
 
 double Rounds::excess(const Row& row, std::size_t cell) const {

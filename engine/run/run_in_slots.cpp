@@ -12,10 +12,6 @@ namespace {
 
 namespace tbb = oneapi::tbb;
 
-bool stopped(const RunOptions& options) {
-  return options.stop != nullptr && options.stop->load(std::memory_order_relaxed);
-}
-
 }  // namespace
 
 std::size_t pool_slots(const RunOptions& options) { return 4 * resolved_threads(options.threads); }

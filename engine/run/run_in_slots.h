@@ -11,6 +11,11 @@ namespace poesy {
 /// A job of a pool: the number of the work, and the slot for what it gives.
 using SlotJob = std::function<void(std::size_t n, std::size_t slot)>;
 
+/// Whether the run is to end soon.
+inline bool stopped(const RunOptions& options) {
+  return options.stop != nullptr && options.stop->load(std::memory_order_relaxed);
+}
+
 /// Slots that run_in_slots uses: a few for each thread.
 std::size_t pool_slots(const RunOptions& options);
 

@@ -23,10 +23,6 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
 constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
 constexpr std::chrono::microseconds kSendEvery{500};
 
-bool stopped(const RunOptions& options) {
-  return options.stop != nullptr && options.stop->load(std::memory_order_relaxed);
-}
-
 /// Rank 0.
 class Leader {
  public:

@@ -6,12 +6,6 @@
 #include "engine/base/contract.h"
 
 namespace poesy {
-namespace {
-
-std::size_t units_for(std::size_t samples) { return (samples + Plan::kUnitSamples - 1) / Plan::kUnitSamples; }
-
-}  // namespace
-
 Plan::Plan(const Study& study, PoseSet poses)
     : poses_(std::move(poses)),
       factors_(study.analysis.factors),

@@ -30,6 +30,9 @@ class Plan {
   /// A unit never holds more samples than this, so that memory per unit is bounded.
   static constexpr std::size_t kUnitSamples = 1000;
 
+  /// Units that so many samples of a cell make up, the last one perhaps smaller.
+  static constexpr std::size_t units_for(std::size_t samples) { return (samples + kUnitSamples - 1) / kUnitSamples; }
+
   Plan(const Study& study, PoseSet poses);
 
   std::size_t slots() const { return slots_; }

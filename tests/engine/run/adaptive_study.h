@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/run/runner.h"
+#include "tests/engine/run/prepared.h"
 #include "tests/support/fake_model.h"
 
 namespace poesy::test {
@@ -23,9 +24,8 @@ inline Study adaptive_study(Analysis::Kind kind, double relative_error, std::siz
   return study;
 }
 
-struct AdaptiveRun {
-  explicit AdaptiveRun(const Study& of)
-      : study(of), model(build_model(of.mechanism)), plan(of, select_poses(of.poses, *model).poses) {}
+struct AdaptiveRun : Prepared {
+  using Prepared::Prepared;
 
   std::optional<SensitivityResult> sensitivity(const RunOptions& options) const {
     return run_sensitivity(plan, *model, study.analysis.conf_level, options);
@@ -33,10 +33,6 @@ struct AdaptiveRun {
   std::optional<MonteCarloResult> monte_carlo(const RunOptions& options) const {
     return run_monte_carlo(plan, *model, study.analysis, options);
   }
-
-  Study study;
-  std::unique_ptr<Model> model;
-  Plan plan;
 };
 
 }  // namespace poesy::test

@@ -6,10 +6,13 @@
 #include "engine/random/stream.h"
 #include "engine/run/replay.h"
 #include "engine/run/runner.h"
+#include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
 
 namespace poesy {
 namespace {
+
+using test::Prepared;
 
 using Kind = Analysis::Kind;
 
@@ -70,14 +73,6 @@ Study study_of(Kind kind, std::size_t samples, std::size_t poses, double sigma =
   study.seed = 11;
   return study;
 }
-
-struct Prepared {
-  explicit Prepared(const Study& of)
-      : study(of), model(build_model(of.mechanism)), plan(of, select_poses(of.poses, *model).poses) {}
-  Study study;
-  std::unique_ptr<Model> model;
-  Plan plan;
-};
 
 double draw(const Plan& plan, std::size_t p, std::size_t pose, std::size_t sample) {
   double value = uniform_from_bits(

@@ -6,6 +6,7 @@
 
 #include "engine/run/identification.h"
 #include "engine/run/runner.h"
+#include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
 
 namespace poesy::test {
@@ -30,14 +31,6 @@ inline Study study_of(Kind kind, std::size_t samples) {
   study.seed = 3;
   return study;
 }
-
-struct Prepared {
-  explicit Prepared(const Study& of)
-      : study(of), model(build_model(of.mechanism)), plan(of, select_poses(of.poses, *model).poses) {}
-  Study study;
-  std::unique_ptr<Model> model;
-  Plan plan;
-};
 
 /// All numbers of a result, bit by bit.
 using Bits = std::vector<std::uint64_t>;
