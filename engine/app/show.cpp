@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,8 @@
 
 namespace poesy::app {
 namespace {
+
+constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --json";
 
 struct Options {
   std::string result;
@@ -79,7 +82,7 @@ int show(const Options& options) {
   if (options.top) keep_first(*options.top, tables);
   const std::string text = options.json ? json_of(result, tables)
                                         : summary_text(result) + failures_text(result, options.result) + "\n" +
-                                              text_of(tables, options.width.value_or(output_width()));
+                                              text_of(tables, options.width.value_or(output_width()), kRemedy);
   std::fputs(text.c_str(), stdout);
   return kDone;
 }
