@@ -41,7 +41,9 @@ poesy_interop_test(python_read_results ${POESY_PYTHON} -B ${scripts}/read_result
 poesy_interop_test(octave_read_results ${POESY_OCTAVE} --no-init-file --quiet ${scripts}/check_read_results.m
                    ${PROJECT_SOURCE_DIR} ${examples})
 set_tests_properties(interop.python_read_results interop.octave_read_results PROPERTIES
-                     TIMEOUT 300
-                     FIXTURES_REQUIRED "interop_examples;interop_strangers" ENVIRONMENT "POESY_PYTHON=${POESY_PYTHON}")
+                     TIMEOUT 300 FIXTURES_REQUIRED "interop_examples;interop_strangers" ENVIRONMENT "POESY_PYTHON=${POESY_PYTHON}")
+add_test(NAME interop.reading_guide COMMAND ${POESY_PYTHON} -B ${scripts}/reading_guide_test.py $<TARGET_FILE:poesy>
+                                            ${POESY_OCTAVE})
+set_tests_properties(interop.reading_guide PROPERTIES LABELS interop TIMEOUT 300)
 poesy_interop_test(python_values ${POESY_PYTHON} ${scripts}/check_values.py ${examples}/sensitivity.h5
                    ${examples}/evaluate.h5 ${examples}/paired.h5)
