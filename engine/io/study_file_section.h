@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
@@ -18,6 +17,7 @@
 namespace poesy {
 
 class StudySection;
+struct StudyTable;
 
 /// One value of a study file. Every function throws InputError at the value's place when the value is not what is
 /// asked for. Refers to the parsed file, which must outlive it.
@@ -52,7 +52,7 @@ class StudyValue {
   Place place_;
 };
 
-/// A table of a study file, in the same way.
+/// A table of a study file, in the same way. A key must be described where it stands, or asking for it is a bug.
 class StudySection {
  public:
   /// `name` is empty for the file as a whole.
@@ -62,9 +62,12 @@ class StudySection {
   bool empty() const { return table_->empty(); }
   std::vector<std::string> keys() const;
 
+  /// Throws for a key that is not described (engine/io/study_keys.h). For sections whose keys are all fixed.
+  void allow() const;
   /// Throws for a key that is not one of these; `what` says what the keys of this section are.
-  void allow(std::span<const std::string_view> known, std::string_view what = "key") const;
-  void allow(std::initializer_list<std::string_view> known) const { allow(std::span(known.begin(), known.size())); }
+  void allow(std::span<const std::string_view> known, std::string_view what) const;
+  /// Throws for a key that does not hold where the section's chooser is this word.
+  void refuse_all_but_those_for(std::string_view word) const;
   /// Throws when the key is there: it "does not belong to OWNER".
   void refuse(std::string_view key, std::string_view owner) const;
 
@@ -80,6 +83,7 @@ class StudySection {
   std::string where() const;
 
   const toml::table* table_;
+  const StudyTable* described_;
   std::string name_;
   Place place_;
 };

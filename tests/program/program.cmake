@@ -37,6 +37,7 @@ endif()
 program_test(tolerances unit)
 program_test(trajectory unit)
 program_test(coupling unit)
+program_test(reference unit)
 program_test(tutorial unit)
 
 add_test(NAME regression.golden
