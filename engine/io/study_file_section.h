@@ -26,19 +26,28 @@ class StudyValue {
   /// `name` is the value's full name for messages: "errors.linear.sigma".
   StudyValue(const toml::node& node, std::string name, const Place& section);
 
+  /// Where it stands.
   const Place& place() const { return place_; }
+  /// Whether it is a text in quotes.
   bool is_text() const { return node_->is_string(); }
+  /// Whether it is a table.
   bool is_section() const { return node_->is_table(); }
 
+  /// A text in quotes.
   std::string text() const;
+  /// An integer within these bounds, both included.
   std::int64_t whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
+  /// A finite number without a unit.
   double number() const;
   /// SI.
   double quantity(Dimension dimension) const;
+  /// SI, above zero.
   double positive_quantity(Dimension dimension) const;
   /// The position among these words.
   std::size_t word(std::span<const std::string_view> words) const;
+  /// A table.
   StudySection section() const;
+  /// The elements of a list, named with their positions.
   std::vector<StudyValue> list() const;
 
   /// "NAME PROBLEM; REMEDY" at the value's place.
@@ -58,8 +67,11 @@ class StudySection {
   /// `name` is empty for the file as a whole.
   StudySection(const toml::table& table, std::string name, Place place);
 
+  /// Where it begins.
   const Place& place() const { return place_; }
+  /// Whether it has no key.
   bool empty() const { return table_->empty(); }
+  /// The keys that the file gives, in the order of their bytes.
   std::vector<std::string> keys() const;
 
   /// Throws for a key that is not described (engine/io/study_keys.h). For sections whose keys are all fixed.
@@ -71,6 +83,7 @@ class StudySection {
   /// Throws when the key is there: it "does not belong to OWNER".
   void refuse(std::string_view key, std::string_view owner) const;
 
+  /// Empty when it is missing.
   std::optional<StudyValue> find(std::string_view key) const;
   /// Throws when it is missing; the remedy says what to write.
   StudyValue require(std::string_view key, std::string_view remedy) const;

@@ -9,7 +9,7 @@ namespace poesy {
 
 /// One of the words that a key takes.
 struct StudyWord {
-  std::string_view name;
+  std::string_view name;     ///< as a study file has it
   std::string_view meaning;  ///< a clause
 };
 
@@ -30,10 +30,11 @@ struct StudyKey {
 struct StudyTable {
   /// "analysis.groups", with '.' between names and without the numbers of a list; empty for the file itself.
   std::vector<std::string_view> paths;
-  std::string_view meaning;
+  std::string_view meaning;       ///< a sentence
   std::string_view chooser = {};  ///< the key by whose word other keys of this table hold or not
-  std::vector<StudyKey> keys;
+  std::vector<StudyKey> keys;     ///< in the order in which they are listed
 
+  /// Null where it has none of that name.
   const StudyKey* find(std::string_view key) const;
   /// The keys' names, in order.
   std::vector<std::string_view> names() const;
