@@ -98,29 +98,17 @@ function lines(figure, data) {
         Plot.areaY(points, { x: "x", y1: scaled("low"), y2: scaled("high"), fill: colour, fillOpacity: 0.13 }),
         Plot.line(points, { x: "x", y: scaled("y"), stroke: colour, strokeWidth: 1.7, strokeDasharray: dash }),
         points.length <= 40 ? Plot.dot(points, { x: "x", y: scaled("y"), fill: colour, r: 2.2 }) : [],
-        Plot.tip(
-          points,
-          Plot.pointer({
-            x: "x",
-            y: scaled("y"),
-            maxRadius: 14,
-            title: (point) =>
-              [
-                label,
-                `${data.x.label} ${withUnit(plain(point.x), data.x.unit)}`,
-                withUnit(number(point.y), unit),
-                Number.isFinite(point.low)
-                  ? `interval ${number(point.low)} to ${withUnit(number(point.high), unit)}`
-                  : "",
-              ]
-                .filter(Boolean)
-                .join("\n"),
-          }),
-        ),
+        tip(points, {
+          x: "x",
+          y: scaled("y"),
+          maxRadius: 14,
+          title: (point) =>
+            `${label}\n${data.x.label} ${withUnit(plain(point.x), data.x.unit)}\n${withInterval({ ...point, value: point.y }, unit)}`,
+        }),
       ].flat(),
     );
     const xDomain = extent(x);
-    const svg = draw(describe(one, shown, unit), {
+    const svg = draw(sentence(one, shown, unit), {
       width,
       height,
       marginLeft: 56,
@@ -149,7 +137,7 @@ function lines(figure, data) {
     return element("div", { class: "panel" }, title(labelled(one.label, axis.unit)), svg);
   }
 
-  function describe(one, shown, unit) {
+  function sentence(one, shown, unit) {
     const ends = shown.map(({ label, points }) => ({
       label,
       y: points.findLast(({ y }) => Number.isFinite(y))?.y ?? NaN,

@@ -27,6 +27,12 @@ function withUnit(text, unit) {
   return unit ? `${text}\u202f${unit}` : text;
 }
 
+/// The value, and on a line of its own its interval where that is known.
+function withInterval({ value, low, high }, unit) {
+  const text = withUnit(number(value), unit);
+  return Number.isFinite(low) ? `${text}\ninterval ${number(low)} to ${withUnit(number(high), unit)}` : text;
+}
+
 /// "label (unit)"
 function labelled(label, unit) {
   return unit ? `${label} (${unit})` : label;
@@ -47,7 +53,8 @@ function logTicks([low, high], most) {
   const all = (multiples) =>
     powers.flatMap((p) => multiples.map((m) => m * 10 ** p)).filter((v) => v >= low * 0.999 && v <= high * 1.001);
   const tens = all([1]);
-  if (tens.length < 3) return all([1, 2, 5]);
+  const finer = all([1, 2, 5]);
+  if (tens.length < 3 && finer.length <= Math.max(4, most)) return finer;
   const step = Math.ceil(tens.length / Math.max(2, most));
   return tens.filter((_, k) => k % step === 0);
 }

@@ -89,9 +89,23 @@ function draw(description, options) {
     ...options,
     style: { fontSize: `${FONT_SIZE}px`, fontFamily: "var(--sans)", ...options.style },
   });
+  describe(svg, description);
+  return svg;
+}
+
+/// Makes an SVG of Plot's one picture with one description, not a group of unnamed parts with labels.
+function describe(svg, description) {
+  for (const part of svg.querySelectorAll("[aria-label]")) {
+    part.dataset.mark = part.getAttribute("aria-label");
+    part.removeAttribute("aria-label");
+  }
   svg.setAttribute("role", "img");
   svg.setAttribute("aria-label", description);
-  return svg;
+}
+
+/// What is said of the item under the pointer. The tables say it to those who have none.
+function tip(items, options, pointer = Plot.pointer) {
+  return Object.assign(Plot.tip(items, pointer(options)), { ariaLabel: undefined });
 }
 
 function title(text) {
@@ -124,7 +138,7 @@ function fieldColours(array, label, unit, log = false) {
   const positive = Array.from(array).filter((v) => v > 0);
   const logarithmic = log && positive.length > 0;
   const domain = extent(logarithmic ? positive : array);
-  const axis = logarithmic ? { factor: 1, unit } : axisUnit(domain, unit);
+  const axis = axisUnit(domain, unit);
   const type = logarithmic ? "log" : "linear";
   const scale = logarithmic ? d3.scaleSequentialLog(domain, FIELD_COLOURS) : d3.scaleSequential(domain, FIELD_COLOURS);
   const colour = (value) => (Number.isFinite(value) && !(logarithmic && value <= 0) ? scale(value) : null);
@@ -137,14 +151,19 @@ function fieldColours(array, label, unit, log = false) {
       marginBottom: 20,
       marginLeft: 14,
       marginRight: 26,
-      ...(logarithmic ? { ticks: logTicks(domain, 5), tickFormat: logTick } : { ticks: 5 }),
+      ...(logarithmic
+        ? {
+            ticks: logTicks(
+              domain.map((v) => v / axis.factor),
+              6,
+            ),
+            tickFormat: logTick,
+          }
+        : { ticks: 5 }),
       style: { fontSize: `${FONT_SIZE}px`, fontFamily: "var(--sans)" },
     });
-    ramp.setAttribute("role", "img");
-    ramp.setAttribute(
-      "aria-label",
-      `Colours from ${withUnit(number(domain[0]), unit)} to ${withUnit(number(domain[1]), unit)}.`,
-    );
+    const [low, high] = domain.map((v) => withUnit(number(v), unit));
+    describe(ramp, `Colours from ${low} to ${high}.`);
     const unknown = known(array).length < array.length ? [swatch("var(--unknown)", "var(--unknown)", "unknown")] : [];
     return element("div", { class: "legend" }, element("span", {}, labelled(label, axis.unit)), ramp, ...unknown);
   };
