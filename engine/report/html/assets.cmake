@@ -1,5 +1,5 @@
 # cmake -D "SCRIPTS=a.js;b.js" -D STYLE=x.css -D PACKAGES=node_modules -D OUTPUT=assets.cpp -P assets.cmake
-# Writes the C++ source behind assets.h.
+# Writes the C++ source behind assets.h, and beside it the assets as files.
 
 # What would end the element in which the text is to stand, or the literal, ends the build instead.
 function(check_inlines name text)
@@ -36,12 +36,14 @@ endforeach()
 string(APPEND report "})();\n")
 file(READ ${STYLE} style)
 
+get_filename_component(folder ${OUTPUT} DIRECTORY)
 set(constants "")
 set(branches "")
 foreach(asset IN ITEMS d3:d3.js plot:plot.js report:report.js style:report.css)
   string(REPLACE ":" ";" asset ${asset})
   list(POP_FRONT asset variable name)
   check_inlines(${name} "${${variable}}")
+  file(WRITE ${folder}/${name} "${${variable}}")
   string(APPEND constants "constexpr char ${variable}[] = R\"poesy(${${variable}})poesy\";\n\n")
   string(APPEND branches "  if (name == \"${name}\") return {${variable}, sizeof ${variable} - 1};\n")
 endforeach()
