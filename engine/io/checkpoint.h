@@ -55,7 +55,7 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 /// The bytes of a checkpoint file, piece by piece, for states may be large. In the notation of engine/base/bytes.h:
 ///
 ///     16 bytes "poesy-checkpoint"
-///     number   version of the format, 1
+///     number   version of the format, 2
 ///     text     poesy_version, git_commit, model
 ///     number   seed, samples
 ///     text     study, poses, shard

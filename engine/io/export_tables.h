@@ -95,6 +95,7 @@ void export_tolerances(TableFolder& folder, const StoredResult& result);
 void export_separation(TableFolder& folder, const StoredResult& result);
 void export_fidelity(TableFolder& folder, const StoredResult& result);
 void export_convergence(TableFolder& folder, const StoredResult& result);
+void export_history(TableFolder& folder, const StoredResult& result);
 void export_evaluation(TableFolder& folder, const StoredResult& result);
 void export_identification(TableFolder& folder, const StoredResult& result);
 void export_monte_carlo(TableFolder& folder, const StoredResult& result);

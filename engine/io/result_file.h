@@ -16,9 +16,9 @@
 namespace poesy {
 
 /// Writes the result of a sensitivity study: /sensitivity, /tolerances and /solver, and with them /separation where the
-/// model separates its errors, /fidelity where the study compares two fidelities and /convergence where its samples are
-/// adaptive. The file appears whole or not at all under its name: written beside it under a temporary name, synced,
-/// renamed. Throws FileError and leaves an existing file as it was.
+/// model separates its errors, /fidelity where the study compares two fidelities, /convergence where its samples are
+/// adaptive and /sensitivity/history where they are not. The file appears whole or not at all under its name: written
+/// beside it under a temporary name, synced, renamed. Throws FileError and leaves an existing file as it was.
 void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts);
 
@@ -149,6 +149,8 @@ Verification verify_result(const std::string& path);
 ///                               discrepancy, nonlinearity, SI; where the study compares two, as the next:
 ///     fidelity_not_converged.csv   factor | one column a pose, samples that the second fidelity did not solve
 ///
+///     history_RESPONSE.csv      factor | samples, index and interval after so many, SI; where the study has a fixed
+///                               number of samples
 ///     convergence.csv           factor | samples, and for each response 1 or 0 for reached and the relative
 ///     half-width;
 ///                               where the study has adaptive samples, as the next:

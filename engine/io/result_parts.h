@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,11 @@ void read_fidelity(const h5::File& file, StoredResult& result);
 /// How adaptive samples came to their end: /convergence.
 void add_convergence(ResultBuilder& result, std::string_view kind, const ConvergenceResult& found);
 ConvergenceResult read_convergence(const h5::File& file, std::string_view kind);
+
+/// What the indices were after fewer samples: /sensitivity/history.
+void add_history(ResultBuilder& result, const IndexHistory& found, double conf_level);
+/// Empty in files of older versions.
+std::optional<IndexHistory> read_history(const h5::File& file);
 
 void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found);
 void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing);

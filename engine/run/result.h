@@ -73,6 +73,16 @@ struct ConvergenceResult {
   std::vector<std::uint64_t> samples;       ///< [P] at each pose
 };
 
+/// What the global indices of a study with a fixed number of samples were after the first ones: R responses, P varied
+/// factors, K numbers of samples (engine/study/history_points.h). Each is what a study with exactly so many samples at
+/// each pose would find, bit by bit: a pose where its samples give no index makes it NaN.
+struct IndexHistory {
+  std::vector<std::uint64_t> samples;  ///< [K] at each pose, ascending; the last is the study's number
+  std::vector<double> global;          ///< [R x P x K] SI; the last of each is the result's index
+  std::vector<double> global_ci_low;   ///< [R x P x K]
+  std::vector<double> global_ci_high;  ///< [R x P x K]
+};
+
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined.
 struct SensitivityResult {
   std::size_t responses = 0;
@@ -96,6 +106,8 @@ struct SensitivityResult {
   std::optional<FidelityResult> fidelity;      ///< where the study compares two fidelities
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
+  /// Where it has a fixed number of samples; not in files of older versions.
+  std::optional<IndexHistory> history;
 
   SolveCounts total() const;
 };
