@@ -21,7 +21,7 @@ int parse_and_run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("Start with: poesy models; poesy template 2upr-rpu > study.toml; poesy run study.toml");
   Action action;
-  for (const auto add : {add_run, add_check, add_evaluate, add_show, add_replay, add_merge, add_export, add_verify,
+  for (const auto add : {add_run, add_check, add_evaluate, add_show, add_report, add_replay, add_merge, add_export, add_verify,
                          add_models, add_template, add_tolerances}) {
     add(program, action);
   }
