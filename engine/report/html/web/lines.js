@@ -18,8 +18,6 @@ function lines(figure, data) {
     return panels.map((one) => drawPanel(one, width));
   });
   const redraw = () => place.redraw();
-  const choices = new Choices(data.choices, redraw);
-  place.controls.append(...choices.controls);
   if (data.panels.length > MOST_PANELS)
     place.controls.append(
       select(
@@ -55,11 +53,10 @@ function lines(figure, data) {
 
   /// [{label, colour, dash, points: [{x, y, low, high}]}] of the series ticked.
   function seriesShown({ series }) {
-    const of = (name) => (name ? row(values(name), choices.row, x.length) : null);
     return series
       .filter(({ label }) => ticked.has(label))
       .map(({ label, value, low, high, style }) => {
-        const [y, below, above] = [of(value), of(low), of(high)];
+        const [y, below, above] = [value, low, high].map(values);
         const points = d3
           .range(x.length)
           .map((k) => ({ x: x[k], y: y[k], low: below ? below[k] : NaN, high: above ? above[k] : NaN }));
@@ -75,7 +72,7 @@ function lines(figure, data) {
   }
 
   function drawPanel(one, width) {
-    const unit = Array.isArray(one.unit) ? one.unit[choices.row] : one.unit;
+    const { unit } = one;
     const shown = seriesShown(one);
     const numbers = shown
       .flatMap(({ points }) => points.flatMap(({ y, low, high }) => [y, low, high]))
@@ -143,8 +140,7 @@ function lines(figure, data) {
       y: points.findLast(({ y }) => Number.isFinite(y))?.y ?? NaN,
     }));
     const best = ends[d3.maxIndex(ends, ({ y }) => y)] ?? ends[0];
-    const of = choices.text ? ` of ${choices.text}` : "";
-    return `Lines: ${one.label}${of} over ${data.x.label}, ${shown.length} lines. At its end the highest is ${best.label} with ${withUnit(number(best.y), unit)}.`;
+    return `Lines: ${one.label} over ${data.x.label}, ${shown.length} lines. At its end the highest is ${best.label} with ${withUnit(number(best.y), unit)}.`;
   }
 }
 

@@ -23,8 +23,13 @@ function plain(value) {
   return Number.isFinite(value) ? String(Number(value.toPrecision(5))).replace("-", "−") : "unknown";
 }
 
+/// "1" is the unit of pure numbers.
+function isUnit(unit) {
+  return Boolean(unit) && unit !== "1";
+}
+
 function withUnit(text, unit) {
-  return unit ? `${text}\u202f${unit}` : text;
+  return isUnit(unit) ? `${text}\u202f${unit}` : text;
 }
 
 /// The value, and on a line of its own its interval where that is known.
@@ -35,7 +40,7 @@ function withInterval({ value, low, high }, unit) {
 
 /// "label (unit)"
 function labelled(label, unit) {
-  return unit ? `${label} (${unit})` : label;
+  return isUnit(unit) ? `${label} (${unit})` : label;
 }
 
 /// What an axis is divided by so that its ticks are short numbers, and the unit that then stands beside it.
@@ -44,7 +49,7 @@ function axisUnit(domain, unit) {
   const exponent = largest > 0 ? Math.floor(Math.log10(largest)) : 0;
   if (exponent >= -3 && exponent < 5) return { factor: 1, unit };
   const power = 3 * Math.floor(exponent / 3);
-  return { factor: 10 ** power, unit: `${powerOfTen(power)}${unit ? ` ${unit}` : ""}` };
+  return { factor: 10 ** power, unit: `${powerOfTen(power)}${isUnit(unit) ? ` ${unit}` : ""}` };
 }
 
 /// Ticks of a logarithmic axis, at most that many: powers of ten, and their multiples by 2 and 5 where there are few.
