@@ -5,6 +5,7 @@
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
@@ -54,7 +55,8 @@ void add_show(CLI::App& program, Action& action) {
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
   command->add_option("--response", options->response, "response to rank by, or to show alone where nothing is ranked")
       ->type_name("NAME");
-  command->footer("Example: poesy show result.h5 --response angular_deformation");
+  command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
+                              {"ranked by another response", "poesy show result.h5 --response angular_deformation"}}));
   command->callback([options, &action] { action = [options] { return show(*options); }; });
 }
 
