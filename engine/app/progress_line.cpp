@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <string_view>
+#include <utility>
 
 #include "engine/app/duration.h"
 
 namespace poesy::app {
 namespace {
 
-constexpr std::size_t kShortestBar = 6;
+constexpr std::size_t kShortestBar = 4;
 constexpr std::size_t kLongestBar = 60;
+constexpr std::size_t kRoomForLeft = std::string_view("1 min 20 s left").size();
 constexpr std::string_view kGap = "  ";
 
 double share_done(const Progress& progress) {
@@ -59,14 +61,20 @@ std::string bar(double share, std::size_t length) {
   return "[" + std::string(filled, '#') + std::string(length - filled, '.') + "]";
 }
 
-/// The share done and these details behind it, with a bar in what is left of the width. Empty where that is too little.
-std::string with_bar(const ProgressFacts& facts, const std::vector<std::string>& details, std::size_t width) {
+/// Empty where the line is too long.
+std::string within(std::size_t width, std::string line) {
+  return line.size() <= width ? std::move(line) : std::string();
+}
+
+/// The share done, these details and, behind them, the time left, with a bar in the room that this leaves, also when
+/// that time takes a few columns more. Empty where that is too little.
+std::string with_bar(const ProgressFacts& facts, const std::string& details, std::size_t width) {
   const std::string begin = stage_text(facts) + fmt::format("{:5.1f} % ", percent_done(facts.progress));
-  std::string end;
-  for (const std::string& detail : details) end.append(kGap).append(detail);
-  const std::size_t taken = begin.size() + 2 + end.size();
+  const std::string left = left_text(facts);
+  const std::size_t taken = begin.size() + 2 + details.size() + kGap.size() + std::max(kRoomForLeft, left.size());
   if (taken + kShortestBar > width) return {};
-  return begin + bar(share_done(facts.progress), std::min(width - taken, kLongestBar)) + end;
+  return begin + bar(share_done(facts.progress), std::min(width - taken, kLongestBar)) + details + std::string(kGap) +
+         left;
 }
 
 }  // namespace
@@ -77,19 +85,20 @@ std::string plain_line(const ProgressFacts& facts) {
 }
 
 std::string live_line(const ProgressFacts& facts, std::size_t width) {
-  const std::string rate = rate_text(facts.rate);
+  const std::string rate = fmt::format("{}{:>15}", kGap, rate_text(facts.rate));
+  const std::string count = std::string(kGap) + count_text(facts.progress);
+  const std::string failures = std::string(kGap) + failures_text(facts.progress);
   const std::string left = left_text(facts);
-  for (const std::vector<std::string>& details : {std::vector{rate, failures_text(facts.progress), left},
-                                                  {rate, count_text(facts.progress), left},
-                                                  {rate, left},
-                                                  {left}}) {
-    if (std::string line = with_bar(facts, details, width); !line.empty()) return line;
-  }
-  const std::string share = fmt::format("{:.1f} %", percent_done(facts.progress));
-  for (const std::string& line : {share + ", " + left, share}) {
-    if (line.size() <= width) return line;
-  }
-  return {};
+  const std::string share = stage_text(facts) + fmt::format("{:.1f} %", percent_done(facts.progress));
+  const std::array from_most_to_least{with_bar(facts, rate + failures, width),
+                                      within(width, plain_line(facts)),
+                                      with_bar(facts, rate + count, width),
+                                      with_bar(facts, rate, width),
+                                      with_bar(facts, {}, width),
+                                      within(width, share + ", " + left),
+                                      within(width, share)};
+  const auto fits = std::ranges::find_if(from_most_to_least, [](const std::string& line) { return !line.empty(); });
+  return fits != from_most_to_least.end() ? *fits : std::string();
 }
 
 }  // namespace poesy::app
