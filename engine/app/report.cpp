@@ -5,6 +5,7 @@
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/io/file_writer.h"
 #include "engine/io/output_path.h"
@@ -59,7 +60,8 @@ void add_report(CLI::App& program, Action& action) {
       ->type_name("RESULT.h5 [OTHER.h5]");
   command->add_option("-o,--output", options->report, "report; default: RESULT.html beside the result")
       ->type_name("REPORT.html");
-  command->footer("Example: poesy report result.h5 -o report.html; poesy report before.h5 after.h5 -o change.html");
+  command->footer(footer("", {{"gives result.html", "poesy report result.h5"},
+                              {"two results compared", "poesy report before.h5 after.h5 -o change.html"}}));
   command->callback([options, &action] { action = [options] { return report(*options); }; });
 }
 
