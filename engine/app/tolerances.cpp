@@ -8,12 +8,14 @@
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
+#include "engine/app/output_width.h"
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/io/tolerance_files.h"
 #include "engine/io/wording.h"
-#include "engine/report/display.h"
+#include "engine/report/text_table.h"
 #include "engine/report/tolerance_table.h"
 #include "engine/run/sensitivity.h"
 #include "models/registry.h"
@@ -167,7 +169,8 @@ int set_tolerances(const Options& options) {
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
   if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
-  std::string text = tolerance_table(result, found) + "\n" + write_files(options, result, found);
+  std::string text =
+      text_of(tolerance_table(result, found), output_width()) + "\n" + write_files(options, result, found);
   if (found.limit) text += explanation(result, found);
   std::fputs(text.c_str(), stdout);
   return kDone;
@@ -195,7 +198,9 @@ void add_tolerances(CLI::App& program, Action& action) {
                    "folder for tolerances.csv and the studies that confirm it; default: RESULT_tolerances, here")
       ->type_name("DIR");
   command->footer(
-      "Example: poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\" -d tolerances");
+      footer("", {{"tolerances of equal effect", "poesy tolerances result.h5 --response linear_deformation"},
+                  {"that keep the response within a limit",
+                   "poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\""}}));
   command->callback([options, &action] { action = [options] { return set_tolerances(*options); }; });
 }
 
