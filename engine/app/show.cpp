@@ -10,6 +10,7 @@
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/output_width.h"
 #include "engine/base/error.h"
@@ -110,7 +111,9 @@ void add_show(CLI::App& program, Action& action) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
   command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
-  command->footer("Example: poesy show result.h5 --response angular_deformation --top 10");
+  command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
+                              {"the ten errors that matter most to another response",
+                               "poesy show result.h5 --response angular_deformation --top 10"}}));
   command->callback([options, &action] { action = [options] { return show(*options); }; });
 }
 

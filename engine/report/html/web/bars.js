@@ -51,18 +51,16 @@ function bars(figure, data) {
     const [value, low, high] = [quantity.value, quantity.low, quantity.high].map((name) => at(values(name)));
     const largest = names.map((_, p) => d3.max(series, (_, s) => Math.abs(value(s, p))));
     const order = data.sort === "none" ? d3.range(names.length) : ranked(largest);
-    return order
-      .slice(0, all ? names.length : FIRST_BARS)
-      .flatMap((p) =>
-        series.map((_, s) => ({
-          name: names[p],
-          unit: unitOf(p),
-          series: s,
-          value: value(s, p),
-          low: low(s, p),
-          high: high(s, p),
-        })),
-      );
+    return order.slice(0, all ? names.length : FIRST_BARS).flatMap((p) =>
+      series.map((_, s) => ({
+        name: names[p],
+        unit: unitOf(p),
+        series: s,
+        value: value(s, p),
+        low: low(s, p),
+        high: high(s, p),
+      })),
+    );
   }
 
   function drawBars(rows, width) {
@@ -74,7 +72,7 @@ function bars(figure, data) {
     const domain = log
       ? [d3.min(ends) / 1.3, d3.max(ends) * 1.3]
       : [Math.min(0, d3.min(ends)), Math.max(0, d3.max(ends)) || 1];
-    const axis = log ? { factor: 1, unit: rows[0].unit } : axisUnit(domain, rows[0].unit);
+    const axis = oneUnit ? axisUnit(domain, rows[0].unit) : { factor: 1 };
     const scaled = (v) => (log && !(v > 0) ? NaN : v / axis.factor);
     const valueText = ({ value, unit }) => (oneUnit ? number(value / axis.factor) : withUnit(number(value), unit));
 
@@ -85,16 +83,7 @@ function bars(figure, data) {
     const count = rows.length / series.length;
     const offset = (s) => (s + 0.5 - series.length / 2) * thickness;
     const channels = (s) => ({ y: "name", dy: offset(s) });
-    const tip = ({ name, series: s, value, low, high, unit }) =>
-      [
-        name,
-        series[s],
-        withUnit(number(value), unit),
-        Number.isFinite(low) ? `interval ${number(low)} to ${withUnit(number(high), unit)}` : "",
-      ]
-        .filter(Boolean)
-        .join("\n");
-
+    const said = (d) => [d.name, series[d.series], withInterval(d, d.unit)].filter(Boolean).join("\n");
     // Behind whatever of the bar and its interval reaches farthest to the right.
     const labelAt = ({ value, high }) =>
       Math.max(domain[0], d3.max([value, high, log ? domain[0] : 0].filter(Number.isFinite)));
@@ -140,7 +129,7 @@ function bars(figure, data) {
         }),
       ].flat();
     });
-    const svg = draw(describe(rows), {
+    const svg = draw(sentence(rows), {
       width,
       height: count * step + 26,
       marginLeft,
@@ -154,7 +143,13 @@ function bars(figure, data) {
         label: null,
         grid: true,
         ...(log
-          ? { ticks: logTicks(domain, (width - marginLeft - marginRight) / 45), tickFormat: logTick }
+          ? {
+              ticks: logTicks(
+                domain.map((v) => v / axis.factor),
+                (width - marginLeft - marginRight) / 45,
+              ),
+              tickFormat: logTick,
+            }
           : { ticks: Math.max(2, Math.floor((width - marginLeft - marginRight) / 90)) }),
       },
       y: {
@@ -168,7 +163,7 @@ function bars(figure, data) {
       marks: [
         ...marks,
         log ? [] : Plot.ruleX([0], { stroke: "var(--ink)" }),
-        Plot.tip(rows, Plot.pointerY({ x: (d) => scaled(d.value), y: "name", title: tip, anchor: "left" })),
+        tip(rows, { x: (d) => scaled(d.value), y: "name", title: said, anchor: "left" }, Plot.pointerY),
       ],
     });
     return [title(labelled(quantity.label, oneUnit ? axis.unit : "")), series.length > 1 ? legend() : [], svg].flat();
@@ -179,7 +174,7 @@ function bars(figure, data) {
     return element("p", { class: "swatches" }, ...entries);
   }
 
-  function describe(rows) {
+  function sentence(rows) {
     const best = rows[d3.maxIndex(rows, ({ value }) => Math.abs(value))];
     const of = choices.text ? ` of ${choices.text}` : "";
     const whose = series.length > 1 ? ` (${series[best.series]})` : "";

@@ -44,7 +44,7 @@ function heatmap(figure, data) {
     const named = d3.range(0, rows.length, Math.ceil((ROW_HEIGHT - 1) / rowHeight));
     const marginLeft = Math.min(textWidth(...rows) + 10, width * 0.36);
     const ticks = ticksAt(poses, width - marginLeft);
-    const svg = draw(describe(array), {
+    const svg = draw(sentence(array), {
       width,
       height: rowHeight * rows.length + 44,
       marginLeft,
@@ -99,7 +99,7 @@ function heatmap(figure, data) {
     return d3.range(0, count, step).map((c) => ({ at: c + 0.5, text: plain(Number(by[poses[c]].toPrecision(3))) }));
   }
 
-  function describe(array) {
+  function sentence(array) {
     const i = d3.maxIndex(array);
     const largest = `${rows[Math.floor(i / count)]} at ${noun} ${(i % count) + 1} with ${withUnit(number(array[i]), layer.unit)}`;
     return `Heat map: ${layer.label} for ${rows.length} rows and ${count} ${noun}s. The largest value is that of ${largest}.`;
