@@ -65,7 +65,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
     const std::size_t r = shown.responses[both.first];
     const NamedUnit& response = a.responses[r];
     const std::vector<double> values = shown.at_poses(local_differences(a, b, factors, {r, both.second}));
-    const ArrayName array = pool.add("difference_" + response.name, values, display(response).si);
+    const ArrayName array = pool.add(fmt::format("difference/{}", r), values, display(response).si);
     map.layers.push_back({"B - A, effect on " + response.name, unit_text(response), array});
     fields.push_back({map.layers.back().label, map.layers.back().unit, array, map.rows});
   }

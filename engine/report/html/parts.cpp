@@ -77,6 +77,7 @@ std::vector<Table> take_tables(std::vector<Table>& tables, std::span<const std::
 
 std::vector<double> ShownCells::at_poses(std::span<const double> values) const {
   std::vector<double> kept;
+  if (poses.empty()) return kept;
   kept.reserve(values.size() / all_poses * poses.size());
   for (std::size_t row = 0; row < values.size(); row += all_poses) {
     for (const std::size_t m : poses) kept.push_back(values[row + m]);
@@ -125,7 +126,8 @@ std::vector<Coordinate> pose_coordinates(const StoredResult& result, const Shown
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];
     const std::vector<double> values = shown.at_poses(result.poses.column(c));
-    coordinates.push_back({named.name, unit_text(named), pool.add("pose_" + named.name, values, display(named).si)});
+    coordinates.push_back(
+        {named.name, unit_text(named), pool.add(fmt::format("pose/{}", c), values, display(named).si)});
   }
   return coordinates;
 }

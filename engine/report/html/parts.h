@@ -41,7 +41,7 @@ struct ShownCells {
   std::size_t all_responses = 0;
   std::size_t all_poses = 0;
 
-  /// Of numbers at all poses, rows x M, those at the poses that are shown.
+  /// Of numbers at all poses, [rows x M], those at the poses that are shown.
   std::vector<double> at_poses(std::span<const double> values) const;
   bool thinned() const { return poses.size() < all_poses; }
   /// What is left out, in a sentence; empty where nothing is.

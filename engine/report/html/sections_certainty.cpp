@@ -52,7 +52,7 @@ Series series_of(const Course& course, std::size_t at, double scale, std::string
 Panel panel_of(const StoredResult& result, const Course& course, std::size_t r, ArrayPool& pool) {
   const NamedUnit& response = result.responses[r];
   const double unit = display(response).si;
-  const std::string array = "samples_" + response.name;
+  const std::string array = fmt::format("samples/{}", r);
   Panel panel{response.name, unit_text(response), {}};
   if (result.kind != "sensitivity") {
     panel.series.push_back(series_of(course, r, 1.0 / unit, "all errors together", array, pool));
@@ -62,7 +62,7 @@ Panel panel_of(const StoredResult& result, const Course& course, std::size_t r, 
     const std::size_t at = r * result.factors.size() + p;
     if (!has_effect(result.sensitivity.global[at])) continue;
     panel.series.push_back(series_of(course, at, result.factor_sigma[p] / unit, result.factors[p].name,
-                                     array + "_" + result.factors[p].name, pool));
+                                     fmt::format("{}/{}", array, p), pool));
   }
   return panel;
 }
@@ -74,11 +74,13 @@ Lines lines_of(const StoredResult& result, const Course& course, ArrayPool& pool
   return lines;
 }
 
-constexpr std::string_view kNoCourse =
-    "This result does not say how its numbers settled with the number of samples: it comes from an older poesy, or "
-    "from a "
-    "Monte Carlo study with a fixed number of samples. Run the study again for its indices; for means, set samples = { "
-    "min = .., max = .., relative_error = .. }.";
+/// Why there is no course, and what gives one.
+constexpr std::string_view kNoCourseOfIndices =
+    "An older poesy wrote this result, which did not keep how its indices settled with the number of samples. Run the "
+    "study again, and its report shows it.";
+constexpr std::string_view kNoCourseOfMeans =
+    "With a fixed number of samples a Monte Carlo study does not keep how its means settled. One with adaptive samples "
+    "does: samples = { min = .., max = .., relative_error = .. } under [analysis].";
 
 }  // namespace
 
@@ -98,7 +100,7 @@ void add_certainty(const StoredResult& result, std::vector<Table>& tables, Page&
                indices ? "The effect of each error over the number of samples, with its interval."
                        : "The overall mean over the number of samples, with its interval.");
   } else {
-    section.paragraph(kNoCourse);
+    section.paragraph(indices ? kNoCourseOfIndices : kNoCourseOfMeans);
   }
   for (const Table& table : take_tables(tables, std::vector<std::string_view>{"convergence"})) section.table(table);
   page.sections.push_back(std::move(section));

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
@@ -43,7 +43,8 @@ class Curves {
   bool has_subsets() const { return found_.subsets > sources(); }
 
  private:
-  std::size_t sources() const { return result_.coupling.sources.size(); }
+  /// The first subsets are the sources one by one.
+  std::size_t sources() const { return std::min(result_.coupling.sources.size(), found_.subsets); }
   std::size_t last() const { return found_.subsets - 1; }
   const std::string& subset(std::size_t k) const { return result_.coupling.subsets[k]; }
   std::string panel_label(std::size_t r, std::size_t z) const {
@@ -66,7 +67,7 @@ class Curves {
                   std::size_t k) const {
     const std::size_t at = (r * found_.sizes + z) * found_.subsets + k;
     const double unit = what == "cancellation" ? 0.01 : display(result_.responses[r]).si;
-    return pool_.add(fmt::format("{}_{}_{}_{}", what, result_.responses[r].name, z, subset(k)),
+    return pool_.add(fmt::format("{}/{}/{}/{}", what, r, z, k),
                      shown_.at_poses(std::span(values).subspan(at * found_.poses, found_.poses)), unit);
   }
 
@@ -108,9 +109,20 @@ class Curves {
   ArrayPool& pool_;
 };
 
+/// The tables of the last size, and those of the others to be unfolded.
+void add_tables(const StoredResult& result, Section& section) {
+  std::vector<Table> others = result_tables(result, default_ranking(result));
+  const std::size_t last = std::min(others.size(), result.signed_headline.size());
+  const std::vector<Table> shown(others.end() - static_cast<std::ptrdiff_t>(last), others.end());
+  others.resize(others.size() - last);
+  section.folded("The tables of the other sizes", others);
+  for (const Table& table : shown) section.table(table);
+}
+
 }  // namespace
 
 void add_coupling(const StoredResult& result, Page& page) {
+  if (result.coupling.found.subsets == 0) return;
   ArrayPool& pool = page.figures.pool;
   const ShownCells shown = shown_cells(result);
   const Curves curves(result, shown, pool);
@@ -123,7 +135,7 @@ void add_coupling(const StoredResult& result, Page& page) {
   if (!shown.note().empty()) section.paragraph(shown.note());
   add_figure(page, section, "sources", curves.effects(),
              result.time.empty() ? "The effect at each pose." : "The effect along the trajectory.");
-  for (const Table& table : result_tables(result, default_ranking(result))) section.table(table);
+  add_tables(result, section);
   page.sections.push_back(std::move(section));
   Section cancels("where", "Where they cancel, and where they add up");
   cancels.paragraph(

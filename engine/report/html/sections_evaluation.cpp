@@ -41,9 +41,7 @@ double quantile(const std::vector<double>& sorted, double level) {
   return sorted[static_cast<std::size_t>(std::lround(level * static_cast<double>(sorted.size() - 1)))];
 }
 
-std::string array_of(std::string_view what, const NamedUnit& response) {
-  return fmt::format("{}_{}", what, response.name);
-}
+std::string array_of(std::string_view what, std::size_t response) { return fmt::format("{}/{}", what, response); }
 
 /// A curve over the poses for each case, and the same as fields of the workspace.
 void add_cases(const StoredResult& result, const ShownCells& shown, Page& page, Section& section) {
@@ -54,7 +52,7 @@ void add_cases(const StoredResult& result, const ShownCells& shown, Page& page, 
     const NamedUnit& response = result.responses[r];
     Panel panel{response.name, unit_text(response), {}};
     for (std::size_t c = 0; c < result.cases.size(); ++c) {
-      const std::string array = fmt::format("case_{}_{}", c, response.name);
+      const std::string array = fmt::format("case/{}/{}", c, r);
       const std::vector<double> values = shown.at_poses(response_to(result.evaluation, r, c));
       panel.series.push_back({result.cases[c], pool.add(array, values, display(response).si)});
       fields.push_back({fmt::format("{}, {}", response.name, result.cases[c]), unit_text(response), array});
@@ -102,8 +100,7 @@ Series distribution(const StoredResult& result, std::size_t r, std::span<const d
   std::ranges::sort(values);
   std::vector<double> at_levels;
   for (const double level : levels) at_levels.push_back(quantile(values, level));
-  return {"all poses and rows",
-          pool.add(array_of("distribution", result.responses[r]), at_levels, display(result.responses[r]).si)};
+  return {"all poses and rows", pool.add(array_of("distribution", r), at_levels, display(result.responses[r]).si)};
 }
 
 void add_distribution(const StoredResult& result, Page& page, Section& section) {
@@ -127,7 +124,7 @@ void add_rows(const StoredResult& result, const ShownCells& shown, Page& page, S
     const NamedUnit& response = result.responses[r];
     const PoseQuantiles found = quantiles_at_poses(result.evaluation, r);
     const auto add = [&](std::string_view what, const std::vector<double>& values) {
-      return pool.add(array_of(what, response), shown.at_poses(values), display(response).si);
+      return pool.add(array_of(what, r), shown.at_poses(values), display(response).si);
     };
     const ArrayName median = add("median", found.median);
     const ArrayName max = add("max", found.max);
@@ -146,6 +143,12 @@ void add_rows(const StoredResult& result, const ShownCells& shown, Page& page, S
              "Each dot is a pose, coloured by what is chosen.");
 }
 
+std::string rows_text(const StoredResult& result) {
+  const std::string poses = counted(result.poses.size(), "pose", "poses");
+  if (result.pairing == Pairing::row_by_row) return fmt::format("{}, each with a row of errors of its own.", poses);
+  return fmt::format("{} of errors, each at {}.", counted(result.evaluation.samples, "row", "rows"), poses);
+}
+
 }  // namespace
 
 void add_evaluation(const StoredResult& result, Page& page) {
@@ -153,10 +156,7 @@ void add_evaluation(const StoredResult& result, Page& page) {
   const ShownCells shown = shown_cells(result);
   Section section("responses", cases ? "What each case does" : "What the errors do");
   section.paragraph(cases ? "Each case is a fixed set of errors. Poses where it was not solved are left out."
-                          : fmt::format("{} of errors at {}, {}. Samples that were not solved are left out.",
-                                        counted(result.evaluation.samples, "row", "rows"),
-                                        counted(result.poses.size(), "pose", "poses"),
-                                        result.pairing == Pairing::row_by_row ? "row by row" : "each at every pose"));
+                          : rows_text(result) + " Samples that were not solved are left out.");
   if (!cases) add_distribution(result, page, section);
   for (const Table& table : result_tables(result, default_ranking(result))) section.table(table);
   page.sections.push_back(std::move(section));

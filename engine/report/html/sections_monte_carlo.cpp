@@ -56,11 +56,11 @@ Panel distribution_panel(const StoredResult& result, std::size_t r, ArrayPool& p
   const double unit = display(response).si;
   Panel panel{response.name, unit_text(response), {}};
   panel.series.push_back(
-      {"samples of all poses", pool.add("distribution_" + response.name, distribution(found, r), unit)});
+      {"samples of all poses", pool.add(fmt::format("distribution/{}", r), distribution(found, r), unit)});
   if (const auto worst = worst_pose(found, r)) {
     panel.series.push_back(
         {.label = fmt::format("pose {}, the largest mean", *worst),
-         .value = pool.add("distribution_worst_" + response.name, distribution_at(found, r, *worst), unit),
+         .value = pool.add(fmt::format("distribution_worst/{}", r), distribution_at(found, r, *worst), unit),
          .style = "dashed"});
   }
   return panel;
@@ -98,11 +98,10 @@ class PoseArrays {
       : result_(result), shown_(shown), pool_(pool) {}
 
   ArrayName of(std::string_view what, std::size_t r, std::span<const double> at_poses) const {
-    return pool_.add(fmt::format("{}_{}", what, result_.responses[r].name), shown_.at_poses(at_poses),
-                     display(result_.responses[r]).si);
+    return pool_.add(fmt::format("{}/{}", what, r), shown_.at_poses(at_poses), display(result_.responses[r]).si);
   }
   ArrayName quantile(std::size_t r, std::size_t q) const {
-    return of("quantile_" + shortest(result_.monte_carlo.levels[q]), r, quantile_at_poses(result_.monte_carlo, r, q));
+    return of(fmt::format("quantile/{}", q), r, quantile_at_poses(result_.monte_carlo, r, q));
   }
   ArrayName mean(std::size_t r) const {
     const std::size_t poses = result_.monte_carlo.poses;

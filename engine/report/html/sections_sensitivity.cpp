@@ -92,7 +92,7 @@ std::vector<HeatLayer> layers(const StoredResult& result, const ShownCells& show
     const NamedUnit& response = result.responses[r];
     const std::vector<double> effects = shown.at_poses(local_effects(result, r));
     list.push_back({"effect on " + response.name, unit_text(response),
-                    pool.add("effect_" + response.name, effects, display(response).si)});
+                    pool.add(fmt::format("effect/{}", r), effects, display(response).si)});
   }
   list.push_back({"not converged", "%", pool.add("not_converged", shown.at_poses(tally_of(result).shares()), 0.01)});
   return list;
@@ -118,7 +118,7 @@ Lines along_trajectory(const StoredResult& result, const ShownCells& shown, Arra
     const std::vector<double> effects = local_effects(result, r);
     for (const std::size_t p : ranked_errors(result, response.name).rows) {
       const std::vector<double> curve = shown.at_poses(std::span(effects).subspan(p * poses, poses));
-      const std::string array = fmt::format("curve_{}_{}", response.name, result.factors[p].name);
+      const std::string array = fmt::format("curve/{}/{}", r, p);
       panel.series.push_back({result.factors[p].name, pool.add(array, curve, display(response).si)});
     }
     lines.panels.push_back(std::move(panel));
