@@ -37,7 +37,7 @@ std::string html_table(const Table& table) {
   const std::string name = escaped(table.name);
   const std::string caption = escaped(table.caption);
   std::string html = fmt::format(
-      "<div class=\"table-wrap\" tabindex=\"0\" role=\"region\" aria-label=\"{1}\" data-table=\"{0}\"><table>"
+      "<div class=\"table-wrap\" tabindex=\"0\" role=\"group\" aria-label=\"{1}\" data-table=\"{0}\"><table>"
       "<caption>{1}</caption>\n<thead><tr>",
       name, caption);
   for (const Column& column : table.columns) html += heading(column);

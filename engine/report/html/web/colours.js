@@ -28,7 +28,7 @@ function fieldColours(array, label, unit, log = false) {
       marginBottom: 20,
       marginLeft: 14,
       marginRight: 26,
-      ...(logarithmic ? { ticks: logTicks(ends, 6), tickFormat: logTick } : { ticks: 5 }),
+      ...(logarithmic ? { ticks: logTicks(ends, 6), tickFormat: logTick } : { ticks: 4 }),
       style: FIGURE_STYLE,
     });
     const [low, high] = domain.map((v) => withUnit(number(v), unit));

@@ -21,7 +21,7 @@ function lines(figure, data) {
   if (data.panels.length > MOST_PANELS)
     place.controls.append(
       select(
-        "Panel",
+        "Show",
         data.panels.map(({ label }) => label),
         (i) => {
           panel = i;

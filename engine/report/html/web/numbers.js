@@ -38,9 +38,9 @@ function withInterval({ value, low, high }, unit) {
   return Number.isFinite(low) ? `${text}\ninterval ${number(low)} to ${withUnit(number(high), unit)}` : text;
 }
 
-/// "label (unit)"
+/// "label [unit]", as the tables write it.
 function labelled(label, unit) {
-  return isUnit(unit) ? `${label} (${unit})` : label;
+  return isUnit(unit) ? `${label} [${unit}]` : label;
 }
 
 /// What an axis is divided by so that its ticks are short numbers, and the unit that then stands beside it.

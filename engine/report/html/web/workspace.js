@@ -7,6 +7,7 @@ const DOT_EDGE = { stroke: "var(--ink)", strokeOpacity: 0.4, strokeWidth: 0.6 };
 
 function workspace(figure, data) {
   const count = values(data.coordinates[0].value).length;
+  const numberOf = (m) => (data.numbers ? values(data.numbers)[m] : m);
   let field = data.fields[0];
   let item = 0;
   const axes = data.coordinates.slice(0, 3).map((_, k) => k);
@@ -80,7 +81,7 @@ function workspace(figure, data) {
     const pairs = d3.cross(d3.range(axes.length), d3.range(axes.length)).filter(([a, b]) => a < b);
     const text = ({ m, value, at }) =>
       [
-        `pose ${m + 1}`,
+        `pose ${numberOf(m)}`,
         ...chosen.map(({ name, unit }, k) => `${name} ${withUnit(plain(at[k]), unit)}`),
         withUnit(number(value), field.unit),
       ].join("\n");
@@ -193,7 +194,7 @@ function turned(poses, chosen, size, { yaw, pitch }, sentence) {
     axis: from.every((v, j) => v === AXIS_STARTS[k][j]),
   }));
   const names = chosen.map(({ name, unit }, k) => ({
-    ...project(AXIS_STARTS[k].with(k, 0.64)),
+    ...project(AXIS_STARTS[k].with(k, 0.6)),
     text: labelled(name, unit),
   }));
   return draw(`Dots in three dimensions, turned by ${Math.round(yaw)} and ${Math.round(pitch)} degrees: ${sentence}`, {
@@ -213,15 +214,12 @@ function turned(poses, chosen, size, { yaw, pitch }, sentence) {
         strokeWidth: (d) => (d.axis ? 1.5 : 1),
       }),
       Plot.dot(dots, { x: "x", y: "y", fill: "colour", r: dotSize(poses.length), ...DOT_EDGE }),
-      Plot.text(names, {
-        x: "x",
-        y: "y",
-        text: "text",
-        fill: "currentColor",
-        stroke: "var(--paper)",
-        strokeWidth: 4,
-        lineAnchor: "middle",
-      }),
+      ["end", "middle", "start"].map((textAnchor, side) =>
+        Plot.text(
+          names.filter(({ x }) => (x < -0.1 ? 0 : x < 0.1 ? 1 : 2) === side),
+          { x: "x", y: "y", text: "text", textAnchor, fill: "currentColor", stroke: "var(--paper)", strokeWidth: 4 },
+        ),
+      ),
     ],
   });
 }
