@@ -21,5 +21,7 @@ void add_verify(CLI::App& program, Action& action);
 void add_models(CLI::App& program, Action& action);
 void add_template(CLI::App& program, Action& action);
 void add_tolerances(CLI::App& program, Action& action);
+void add_completion(CLI::App& program, Action& action);
+void add_man(CLI::App& program, Action& action);
 
 }  // namespace poesy::app

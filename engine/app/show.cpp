@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/output_width.h"
 #include "engine/base/error.h"
@@ -20,6 +22,8 @@
 
 namespace poesy::app {
 namespace {
+
+constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --json";
 
 struct Options {
   std::string result;
@@ -79,7 +83,7 @@ int show(const Options& options) {
   if (options.top) keep_first(*options.top, tables);
   const std::string text = options.json ? json_of(result, tables)
                                         : summary_text(result) + failures_text(result, options.result) + "\n" +
-                                              text_of(tables, options.width.value_or(output_width()));
+                                              text_of(tables, options.width.value_or(output_width()), kRemedy);
   std::fputs(text.c_str(), stdout);
   return kDone;
 }
@@ -107,7 +111,9 @@ void add_show(CLI::App& program, Action& action) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
   command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
-  command->footer("Example: poesy show result.h5 --response angular_deformation --top 10");
+  command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
+                              {"the ten errors that matter most to another response",
+                               "poesy show result.h5 --response angular_deformation --top 10"}}));
   command->callback([options, &action] { action = [options] { return show(*options); }; });
 }
 

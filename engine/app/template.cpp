@@ -1,21 +1,24 @@
 #include <cstdio>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/find_model.h"
 #include "engine/base/error.h"
 #include "engine/io/study_file.h"
+#include "engine/io/study_keys.h"
+#include "engine/io/wording.h"
 
 namespace poesy::app {
 namespace {
 
 Analysis::Kind kind_named(const std::string& word) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const Analysis::Kind kind : kKinds) {
     if (name(kind) == word) return kind;
-    known += (known.empty() ? "" : ", ") + std::string(name(kind));
+    known.push_back(name(kind));
   }
-  throw InputError({}, "no template of kind '" + word + "'", "there are: " + known);
+  throw InputError({}, "no template of kind '" + printable(word) + "'", suggestion(word, known));
 }
 
 int print_template(const std::string& model, const std::string& kind) {
@@ -33,17 +36,33 @@ int print_template(const std::string& model, const std::string& kind) {
   return kDone;
 }
 
+int print_reference() {
+  std::fputs(study_reference().c_str(), stdout);
+  return kDone;
+}
+
 }  // namespace
 
 void add_template(CLI::App& program, Action& action) {
   auto model = std::make_shared<std::string>();
   auto kind = std::make_shared<std::string>("sensitivity");
+  auto reference = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("template", "print a complete, commented study file");
-  command->add_option("model", *model, "mechanism")->required()->type_name("MODEL");
+  CLI::Option* named = command->add_option("model", *model, "mechanism")->type_name("MODEL");
   command->add_option("kind", *kind, "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling")
       ->type_name("KIND");
-  command->footer("Example: poesy template 2upr-rpu > study.toml");
-  command->callback([model, kind, &action] { action = [model, kind] { return print_template(*model, *kind); }; });
+  command->add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
+      ->excludes(named);
+  command->footer(footer("", {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
+                              {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"}}));
+  command->callback([=, &action] {
+    if (*reference) {
+      action = print_reference;
+      return;
+    }
+    if (named->count() == 0) throw CLI::RequiredError(named->get_name());
+    action = [model, kind] { return print_template(*model, *kind); };
+  });
 }
 
 }  // namespace poesy::app

@@ -20,14 +20,18 @@ std::string number_text(double value, int digits = 4);
 /// A share to three digits, "1.25 %"; "-" for NaN.
 std::string percent_text(double share);
 
+/// A column of texts. dispensable: as of Column.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
+/// A column of numbers, in this unit.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
 /// A share, in percent.
 Column percent_column(std::string name, std::string heading, int dispensable = 0);
 
 /// "-" for an empty text.
 Cell text_cell(std::string_view text);
+/// As number_text, with the number itself.
 Cell number_cell(double value, int digits = 4);
+/// As count_text, with the count itself.
 Cell count_cell(std::uint64_t count);
 /// For a percent_column, of a share.
 Cell percent_cell(double share);

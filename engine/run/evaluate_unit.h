@@ -16,12 +16,13 @@ namespace poesy {
 /// What one work unit contributes.
 struct UnitStats {
   std::vector<Moments> responses;  ///< [R], over the samples that count
-  SolveCounts solves;
-  FailedSamples failed;
+  SolveCounts solves;              ///< how its solves ended
+  FailedSamples failed;            ///< the first of them
 
   /// Precondition: the samples of `other` come after those of this.
   void merge(const UnitStats& other);
 
+  /// Moments, counts and failures, for a state or a message.
   void write(ByteWriter& to) const;
   /// Of samples from `first` on.
   static UnitStats read(ByteReader& from, std::size_t responses, std::uint64_t first);
@@ -31,6 +32,7 @@ struct UnitStats {
 struct SensitivityUnit : UnitStats {
   std::vector<LocalIndex> within;  ///< [K x R] of the unit's first samples, up to each of points_within()
 
+  /// As UnitStats, then `within`.
   void write(ByteWriter& to) const;
   /// points: K
   static SensitivityUnit read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points);
@@ -42,17 +44,19 @@ std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const
 
 /// What the samples of one work unit came to. Refers to the scratch of who solved them, until it solves others.
 struct UnitOutcomes {
-  std::span<const double> values;     ///< [V x B] errors that vary, SI
-  std::span<const double> responses;  ///< [R x B]
-  std::span<const SolveStatus> status;
-  std::span<const std::uint32_t> iterations;
+  std::span<const double> values;             ///< [V x B] errors that vary, SI
+  std::span<const double> responses;          ///< [R x B]
+  std::span<const SolveStatus> status;        ///< [B] how each ended
+  std::span<const std::uint32_t> iterations;  ///< [B] that each took
 };
 
 /// Solves work units serially. Owns the scratch of one thread; stats depend on the plan and the unit alone.
 class UnitEvaluator {
  public:
+  /// Refers to both.
   UnitEvaluator(const Plan& plan, const Model& model);
 
+  /// Solves the whole unit.
   SensitivityUnit operator()(const WorkUnit& unit);
   /// Any samples of a cell, at most Plan::kUnitSamples of them: what they come to is the same whatever the unit.
   UnitOutcomes solve(const WorkUnit& unit);

@@ -58,7 +58,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   ArrayPool& pool = page.figures.pool;
   const ShownCells shown = shown_cells(a);
   const Common factors = common(names_of(a.factors), names_of(b.factors));
-  HeatMap map{{}, {}, "pose", column_coordinates(a, shown, pool)};
+  HeatMap map{{}, {}, "pose", column_coordinates(a, shown, pool), pose_numbers(shown, pool)};
   for (const auto& both : factors) map.rows.push_back(a.factors[both.first].name);
   std::vector<Field> fields;
   for (const auto& both : common(names_of(a.responses, shown.responses), names_of(b.responses))) {
@@ -72,7 +72,8 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   section.paragraph("The effect of each error at each pose in B, less that in A.");
   if (!shown.note().empty()) section.paragraph(shown.note());
   add_figure(page, section, "heat", std::move(map), "A row for each error that both have, a column for each pose.");
-  add_figure(page, section, "workspace", Workspace{pose_coordinates(a, shown, pool), std::move(fields)},
+  add_figure(page, section, "workspace",
+             Workspace{pose_coordinates(a, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Each dot is a pose, coloured by what is chosen.");
   page.sections.push_back(std::move(section));
 }

@@ -71,6 +71,7 @@ struct HeatMap {
   std::vector<std::string> rows;
   std::string column_label;
   std::vector<Coordinate> coordinates;  ///< of the columns
+  ArrayName numbers = {};               ///< [M] of the columns; none: they count from 0
   bool log = false;
 };
 
@@ -86,6 +87,7 @@ struct Field {
 struct Workspace {
   std::vector<Coordinate> coordinates;
   std::vector<Field> fields;
+  ArrayName numbers = {};  ///< [M] of the poses; none: they count from 0
 };
 
 /// A line over the K values of x.

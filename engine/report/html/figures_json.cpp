@@ -73,15 +73,19 @@ Json json(const Bars& bars) {
 }
 
 Json json(const HeatMap& map) {
+  Json columns{{"label", map.column_label}, {"coordinates", list(map.coordinates)}};
+  if (!map.numbers.empty()) columns["numbers"] = map.numbers;
   return {{"type", "heatmap"},
           {"layers", list(map.layers)},
           {"rows", map.rows},
-          {"columns", {{"label", map.column_label}, {"coordinates", list(map.coordinates)}}},
+          {"columns", std::move(columns)},
           {"log", map.log}};
 }
 
 Json json(const Workspace& workspace) {
-  return {{"type", "workspace"}, {"coordinates", list(workspace.coordinates)}, {"fields", list(workspace.fields)}};
+  Json all{{"type", "workspace"}, {"coordinates", list(workspace.coordinates)}, {"fields", list(workspace.fields)}};
+  if (!workspace.numbers.empty()) all["numbers"] = workspace.numbers;
+  return all;
 }
 
 Json json(const Lines& lines) {

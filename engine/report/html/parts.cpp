@@ -7,6 +7,7 @@
 
 #include "engine/base/units.h"
 #include "engine/report/display.h"
+#include "engine/report/tables.h"
 
 namespace poesy {
 namespace {
@@ -47,6 +48,21 @@ std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::spa
   std::vector<std::string> list;
   for (const std::size_t at : positions) list.push_back(things[at].name);
   return list;
+}
+
+std::vector<std::size_t> headline_order(const StoredResult& result) {
+  std::vector<std::size_t> order = result.headline;
+  const auto first = std::ranges::find(order, response_named(result, default_ranking(result)));
+  if (first != order.end()) std::rotate(order.begin(), first, first + 1);
+  return order;
+}
+
+std::vector<std::size_t> response_order(const StoredResult& result) {
+  std::vector<std::size_t> order = headline_order(result);
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    if (std::ranges::find(result.headline, r) == result.headline.end()) order.push_back(r);
+  }
+  return order;
 }
 
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
@@ -102,17 +118,15 @@ std::string ShownCells::note() const {
 }
 
 ShownCells shown_cells(const StoredResult& result) {
-  const std::vector<std::size_t>& headline = result.kind == "coupling" ? result.signed_headline : result.headline;
+  // Norms have no sign and cannot tell what cancels, so of a coupling they are no loss.
+  const bool coupling = result.kind == "coupling";
   const std::size_t rows = rows_of_cells(result);
   ShownCells shown;
-  // Norms have no sign and cannot tell what cancels, so of a coupling they are no loss.
-  shown.all_responses = result.kind == "coupling" ? headline.size() : result.responses.size();
+  shown.responses = coupling ? result.signed_headline : response_order(result);
+  shown.all_responses = shown.responses.size();
   shown.all_poses = result.poses.size();
-  shown.responses = headline;
   const bool all = rows * shown.all_poses * shown.all_responses <= ShownCells::kMostWithAllResponses;
-  for (std::size_t r = 0; all && shown.responses.size() < shown.all_responses; ++r) {
-    if (std::ranges::find(headline, r) == headline.end()) shown.responses.push_back(r);
-  }
+  if (!all && !coupling) shown.responses = headline_order(result);
   const std::size_t layers = std::max<std::size_t>(shown.responses.size(), 1);
   const std::size_t most =
       std::max<std::size_t>(1, std::min(ShownCells::kMostInLayer / rows, ShownCells::kMost / (rows * layers)));
@@ -135,8 +149,11 @@ std::vector<Coordinate> pose_coordinates(const StoredResult& result, const Shown
 std::vector<Coordinate> column_coordinates(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
   std::vector<Coordinate> coordinates = pose_coordinates(result, shown, pool);
   if (!result.time.empty()) coordinates.push_back(time_axis(result, shown, pool));
-  if (shown.thinned()) coordinates.push_back(number_axis(shown, pool));
   return coordinates;
+}
+
+ArrayName pose_numbers(const ShownCells& shown, ArrayPool& pool) {
+  return shown.thinned() ? number_axis(shown, pool).value : ArrayName();
 }
 
 Coordinate pose_axis(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {

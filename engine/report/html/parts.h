@@ -18,6 +18,10 @@ namespace poesy {
 std::string unit_text(const NamedUnit& named);
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things);
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
+/// The headline's responses, the one that ranks errors first (default_ranking).
+std::vector<std::size_t> headline_order(const StoredResult& result);
+/// The same, then all others.
+std::vector<std::size_t> response_order(const StoredResult& result);
 /// "1 pose", "3 poses".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 
@@ -54,9 +58,11 @@ ShownCells shown_cells(const StoredResult& result);
 /// The poses' coordinates.
 std::vector<Coordinate> pose_coordinates(const StoredResult& result, const ShownCells& shown, ArrayPool& pool);
 
-/// By what the columns of a heat map may be ordered: the coordinates; on a trajectory the time; where poses are
-/// thinned, their numbers.
+/// By what the columns of a heat map may be ordered: the coordinates; on a trajectory the time.
 std::vector<Coordinate> column_coordinates(const StoredResult& result, const ShownCells& shown, ArrayPool& pool);
+
+/// The numbers of the poses where they are thinned; else none, for they count from 0.
+ArrayName pose_numbers(const ShownCells& shown, ArrayPool& pool);
 
 /// What curves over poses have as their x: the time on a trajectory, else the number of the pose.
 Coordinate pose_axis(const StoredResult& result, const ShownCells& shown, ArrayPool& pool);

@@ -70,7 +70,7 @@ Panel panel_of(const StoredResult& result, const Course& course, std::size_t r, 
 Lines lines_of(const StoredResult& result, const Course& course, ArrayPool& pool) {
   const std::vector<double> samples(course.samples.begin(), course.samples.end());
   Lines lines{.x = {"samples at each pose", "", pool.add("axis_samples", samples)}, .panels = {}, .log = true};
-  for (const std::size_t r : result.headline) lines.panels.push_back(panel_of(result, course, r, pool));
+  for (const std::size_t r : headline_order(result)) lines.panels.push_back(panel_of(result, course, r, pool));
   return lines;
 }
 

@@ -145,7 +145,8 @@ void add_coupling(const StoredResult& result, Page& page) {
   if (curves.has_subsets()) {
     add_figure(page, cancels, "cancellation", curves.cancellations(), "How much the sources cancel each other.");
   }
-  add_figure(page, cancels, "workspace", Workspace{pose_coordinates(result, shown, pool), curves.fields()},
+  add_figure(page, cancels, "workspace",
+             Workspace{pose_coordinates(result, shown, pool), curves.fields(), pose_numbers(shown, pool)},
              "Each dot is a pose of the study, coloured by what is chosen.");
   page.sections.push_back(std::move(cancels));
 }

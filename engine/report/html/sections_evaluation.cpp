@@ -62,7 +62,8 @@ void add_cases(const StoredResult& result, const ShownCells& shown, Page& page, 
   for (Field& field : condition_field(result, shown, pool)) fields.push_back(std::move(field));
   add_figure(page, section, "cases", std::move(lines),
              result.time.empty() ? "Each case at each pose." : "Each case along the trajectory.");
-  add_figure(page, section, "workspace", Workspace{pose_coordinates(result, shown, pool), std::move(fields)},
+  add_figure(page, section, "workspace",
+             Workspace{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Each dot is a pose of the study, coloured by what is chosen.");
 }
 
@@ -109,7 +110,7 @@ void add_distribution(const StoredResult& result, Page& page, Section& section) 
   for (std::size_t n = 0; n < kLevels; ++n) levels.push_back(static_cast<double>(n) / (kLevels - 1.0));
   ArrayPool& pool = page.figures.pool;
   Lines lines{.x = {"share of the samples below", "%", pool.add("axis_levels", levels, 0.01)}, .panels = {}};
-  for (const std::size_t r : result.headline) {
+  for (const std::size_t r : headline_order(result)) {
     const NamedUnit& response = result.responses[r];
     lines.panels.push_back({response.name, unit_text(response), {distribution(result, r, levels, pool)}});
   }
@@ -139,7 +140,8 @@ void add_rows(const StoredResult& result, const ShownCells& shown, Page& page, S
   add_figure(
       page, section, "rows", std::move(lines),
       "At each pose the median over the rows, in a band from the 5 % to the 95 % quantile, and the largest value.");
-  add_figure(page, section, "workspace", Workspace{pose_coordinates(result, shown, pool), std::move(fields)},
+  add_figure(page, section, "workspace",
+             Workspace{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Each dot is a pose, coloured by what is chosen.");
 }
 

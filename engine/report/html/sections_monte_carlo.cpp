@@ -75,7 +75,7 @@ Section how_large(const StoredResult& result, std::vector<Table>& tables, Page& 
   ArrayPool& pool = page.figures.pool;
   Lines lines{.x = {"share of the samples below", "%", pool.add("axis_levels", all_levels(result.monte_carlo), 0.01)},
               .panels = {}};
-  for (const std::size_t r : result.headline) lines.panels.push_back(distribution_panel(result, r, pool));
+  for (const std::size_t r : headline_order(result)) lines.panels.push_back(distribution_panel(result, r, pool));
   add_figure(page, section, "distribution", std::move(lines), "The distribution of each response by its quantiles.");
   for (const Table& table : take_tables(tables, std::vector<std::string_view>{"overall", "poses"}))
     section.table(table);
@@ -161,9 +161,10 @@ Section where(const StoredResult& result, Page& page) {
   if (!shown.note().empty()) section.paragraph(shown.note());
   add_figure(page, section, "poses", bands(result, shown, arrays, pool),
              "The mean at each pose, in a band from the lowest to the highest quantile.");
-  add_figure(page, section, "workspace",
-             Workspace{pose_coordinates(result, shown, pool), fields(result, shown, arrays, pool)},
-             "Each dot is a pose of the study, coloured by what is chosen.");
+  add_figure(
+      page, section, "workspace",
+      Workspace{pose_coordinates(result, shown, pool), fields(result, shown, arrays, pool), pose_numbers(shown, pool)},
+      "Each dot is a pose of the study, coloured by what is chosen.");
   return section;
 }
 

@@ -15,14 +15,15 @@ namespace {
 
 double without_rounding(double index) { return std::abs(index) < kIndexRounding ? 0.0 : index; }
 
-/// Indices [R x P] in the units shown: as effects, index x sigma, or as they are.
+/// Indices [R x P] in the units shown and the order of response_order: as effects, index x sigma, or as they are.
 std::vector<double> shown_indices(const StoredResult& result, const std::vector<double>& indices, bool as_effect) {
-  std::vector<double> list(indices.size());
+  std::vector<double> list;
   const std::size_t factors = result.factors.size();
-  for (std::size_t at = 0; at < indices.size(); ++at) {
-    const std::size_t p = at % factors;
-    const double scale = as_effect ? result.factor_sigma[p] : display(result.factors[p]).si;
-    list[at] = without_rounding(indices[at]) * scale / display(result.responses[at / factors]).si;
+  for (const std::size_t r : response_order(result)) {
+    for (std::size_t p = 0; p < factors; ++p) {
+      const double scale = as_effect ? result.factor_sigma[p] : display(result.factors[p]).si;
+      list.push_back(without_rounding(indices[r * factors + p]) * scale / display(result.responses[r]).si);
+    }
   }
   return list;
 }
@@ -30,10 +31,10 @@ std::vector<double> shown_indices(const StoredResult& result, const std::vector<
 /// "mm/deg", for each response and error.
 std::vector<std::vector<std::string>> index_units(const StoredResult& result) {
   std::vector<std::vector<std::string>> units;
-  for (const NamedUnit& response : result.responses) {
+  for (const std::size_t r : response_order(result)) {
     std::vector<std::string> of_items;
     for (const NamedUnit& factor : result.factors) {
-      of_items.push_back(fmt::format("{}/{}", display(response).name, display(factor).name));
+      of_items.push_back(fmt::format("{}/{}", display(result.responses[r]).name, display(factor).name));
     }
     units.push_back(std::move(of_items));
   }
@@ -42,7 +43,7 @@ std::vector<std::vector<std::string>> index_units(const StoredResult& result) {
 
 std::vector<std::vector<std::string>> response_units(const StoredResult& result) {
   std::vector<std::vector<std::string>> units;
-  for (const NamedUnit& response : result.responses) units.push_back({unit_text(response)});
+  for (const std::size_t r : response_order(result)) units.push_back({unit_text(result.responses[r])});
   return units;
 }
 
@@ -66,7 +67,7 @@ Section which_errors_matter(const StoredResult& result, std::vector<Table>& tabl
       "the {} plus its spread between them. Times the size that the study gives the error it is the effect, which "
       "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals.",
       counted(result.poses.size(), "pose", "poses"), 100.0 * result.sensitivity.conf_level));
-  Bars bars{{{"response", names_of(result.responses)}},
+  Bars bars{{{"response", names_of(result.responses, response_order(result))}},
             {bar_quantity(result, true, page.figures.pool), bar_quantity(result, false, page.figures.pool)},
             names_of(result.factors)};
   add_figure(page, section, "ranking", std::move(bars), "The errors, the one that matters most first.");
@@ -140,10 +141,12 @@ Section where(const StoredResult& result, Page& page) {
                "The effect of each error along the trajectory.");
   }
   add_figure(page, section, "heat",
-             HeatMap{shown_layers, names_of(result.factors), "pose", column_coordinates(result, shown, pool)},
+             HeatMap{shown_layers, names_of(result.factors), "pose", column_coordinates(result, shown, pool),
+                     pose_numbers(shown, pool)},
              "A row for each error, a column for each pose.");
   add_figure(page, section, "workspace",
-             Workspace{pose_coordinates(result, shown, pool), fields(result, shown_layers, shown, pool)},
+             Workspace{pose_coordinates(result, shown, pool), fields(result, shown_layers, shown, pool),
+                       pose_numbers(shown, pool)},
              "Each dot is a pose of the study, coloured by what is chosen.");
   return section;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "engine/report/display.h"
@@ -17,8 +16,6 @@ namespace poesy {
 namespace {
 
 using Warnings = std::vector<std::string>;
-
-std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
 void warn_of_changes(const ReportedResult& result, Warnings& list) {
   if (result.stored.changed) {
@@ -35,25 +32,16 @@ void warn_of_changes(const ReportedResult& result, Warnings& list) {
   }
 }
 
-/// Of cells, rows x M, the pose or row with the largest share of solves that did not converge.
+/// The row and the pose with the largest share of solves that did not converge.
 std::string worst_text(const SolveTally& outcomes) {
-  std::string text;
-  const auto worst = [](const std::vector<double>& shares) {
-    return std::ranges::max_element(shares, {}, [](double share) { return std::isnan(share) ? -1.0 : share; });
+  std::vector<std::string> places;
+  const auto add = [&](const std::vector<double>& shares, const auto& name) {
+    const auto at = std::ranges::max_element(shares, {}, [](double share) { return std::isnan(share) ? -1.0 : share; });
+    places.push_back(fmt::format("{} {}", name(static_cast<std::size_t>(at - shares.begin())), percent_text(*at)));
   };
-  if (outcomes.names.size() > 1) {
-    const std::vector<double> shares = outcomes.shares_by_row();
-    const auto at = worst(shares);
-    const auto& name = outcomes.names[static_cast<std::size_t>(at - shares.begin())];
-    text += fmt::format(" Most of them: {} ({})", name, percent(*at));
-  }
-  if (outcomes.poses > 1) {
-    const std::vector<double> shares = outcomes.shares_by_pose();
-    const auto at = worst(shares);
-    text +=
-        fmt::format("{} pose {} ({})", text.empty() ? " Most of them at" : ", at", at - shares.begin(), percent(*at));
-  }
-  return text.empty() ? text : text + ".";
+  if (outcomes.names.size() > 1) add(outcomes.shares_by_row(), [&](std::size_t row) { return outcomes.names[row]; });
+  if (outcomes.poses > 1) add(outcomes.shares_by_pose(), [](std::size_t m) { return fmt::format("pose {}", m); });
+  return places.empty() ? std::string() : fmt::format(" The largest shares: {}.", fmt::join(places, "; "));
 }
 
 void warn_of_unsolved(const StoredResult& result, Warnings& list) {
@@ -62,7 +50,7 @@ void warn_of_unsolved(const StoredResult& result, Warnings& list) {
   if (total.not_converged() == 0) return;
   const double share = share_not_converged(total);
   std::string text = fmt::format("{} of {} solves ({}) did not converge.", count_text(total.not_converged()),
-                                 count_text(total.total()), percent(share));
+                                 count_text(total.total()), percent_text(share));
   if (share > kManyNotConverged) {
     text +=
         " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where "
@@ -133,7 +121,7 @@ void warn_of_wide_intervals(const StoredResult& result, Warnings& list) {
                   "widest is that of "
                   "{} on {}, {}. More samples make them narrower.",
                   wide, all, 100.0 * found.conf_level, result.factors[widest->second % found.factors].name,
-                  result.responses[widest->second / found.factors].name, percent(widest->first)));
+                  result.responses[widest->second / found.factors].name, percent_text(widest->first)));
 }
 
 void warn_of_convergence(const ConvergenceResult& found, std::span<const std::size_t> responses, std::string_view what,
@@ -147,7 +135,7 @@ void warn_of_convergence(const ConvergenceResult& found, std::span<const std::si
   if (missing == 0) return;
   list.push_back(fmt::format(
       "{} of {} {} did not reach the interval of +-{} that the study asks for, with at most {} samples at each pose.",
-      missing, responses.size() * slots, what, percent(found.relative_error), count_text(found.max)));
+      missing, responses.size() * slots, what, percent_text(found.relative_error), count_text(found.max)));
 }
 
 void warn_of_poses(const StoredResult& result, Warnings& list) {

@@ -95,6 +95,7 @@ void check_heat_map(const Json& report, const Json& figure) {
 
 void check_workspace(const Json& report, const Json& figure) {
   const std::size_t poses = array(report, figure["coordinates"][0]["value"]).size();
+  if (figure.contains("numbers")) expect_size(report, figure["numbers"], poses);
   for (const Json& coordinate : figure["coordinates"]) expect_size(report, coordinate["value"], poses);
   for (const Json& field : figure["fields"]) {
     expect_size(report, field["value"], (field.contains("rows") ? field["rows"].size() : 1) * poses);
@@ -144,6 +145,14 @@ void check_page(const std::string& html) {
   for (const char* tag : {"section", "table", "tr", "figure", "details", "ul", "p"}) {
     const std::string name = tag;
     EXPECT_EQ(all(page, "<(" + name + ")[ >]").size(), all(page, "</(" + name + ")>").size()) << tag;
+  }
+}
+
+/// That a number went into a figure: to 32 bits, or as one that is not known.
+void expect_shown(float shown, double value) {
+  EXPECT_EQ(std::isnan(shown), std::isnan(value));
+  if (!std::isnan(value)) {
+    EXPECT_FLOAT_EQ(shown, static_cast<float>(value));
   }
 }
 
@@ -220,23 +229,17 @@ TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
   const Json page = data(report(result));
   const Json& ranking = page["figures"]["ranking"]["quantities"][0];
   const Json& heat = page["figures"]["heat"];
-  for (std::size_t r = 0; r < 2; ++r) {
+  const std::vector<std::string> order = page["figures"]["ranking"]["choices"][0]["options"];
+  for (std::size_t shown = 0; shown < 2; ++shown) {
+    const std::size_t r = order[shown] == result.stored.responses[0].name ? 0 : 1;
+    EXPECT_EQ(heat["layers"][shown]["label"], "effect on " + result.stored.responses[r].name);
     const double unit = display(result.stored.responses[r]).si;
-    const std::vector<float> local = array(page, heat["layers"][r]["value"]);
+    const std::vector<float> local = array(page, heat["layers"][shown]["value"]);
     for (std::size_t p = 0; p < 2; ++p) {
       const double scale = result.stored.factor_sigma[p] / unit;
       const std::vector<float> global = array(page, ranking["value"]);
-      const double expected = found.global[r * 2 + p] * scale;
-      if (!std::isnan(expected)) {
-        EXPECT_FLOAT_EQ(global[r * 2 + p], static_cast<float>(expected));
-      }
-      for (std::size_t m = 0; m < 4; ++m) {
-        const double cell = found.local[(r * 2 + p) * 4 + m] * scale;
-        EXPECT_EQ(std::isnan(local[p * 4 + m]), std::isnan(cell));
-        if (!std::isnan(cell)) {
-          EXPECT_FLOAT_EQ(local[p * 4 + m], static_cast<float>(cell));
-        }
-      }
+      expect_shown(global[shown * 2 + p], found.global[r * 2 + p] * scale);
+      for (std::size_t m = 0; m < 4; ++m) expect_shown(local[p * 4 + m], found.local[(r * 2 + p) * 4 + m] * scale);
     }
   }
   for (std::size_t c = 0; c < 3; ++c) {
@@ -253,11 +256,11 @@ TEST_F(HtmlReport, ShowsQuantilesAndWorstPoseOfAMonteCarloResult) {
   const MonteCarloResult& found = result.stored.monte_carlo;
   const Json page = data(report(result));
   const Json& panel = page["figures"]["distribution"]["panels"][0];
-  const std::size_t r = result.stored.headline[0];
+  const std::size_t r = panel["label"] == result.stored.responses[0].name ? 0 : 1;
   const std::vector<float> shown = array(page, panel["series"][0]["value"]);
   const double unit = display(result.stored.responses[r]).si;
-  EXPECT_FLOAT_EQ(shown[0], static_cast<float>(found.overall_min[r] / unit));
-  EXPECT_FLOAT_EQ(shown[1], static_cast<float>(found.overall_quantiles[2 * r] / unit));
+  expect_shown(shown[0], found.overall_min[r] / unit);
+  expect_shown(shown[1], found.overall_quantiles[2 * r] / unit);
   EXPECT_EQ(array(page, page["figures"]["distribution"]["x"]["value"]),
             (std::vector<float>{0.0F, 5.0F, 99.5F, 100.0F}));
 }
@@ -340,6 +343,12 @@ TEST_F(HtmlReport, ThinsPosesOfALargeResultAndSaysSo) {
   check_page(html);
   EXPECT_NE(html.find("of the 400 000 poses, evenly spread"), std::string::npos);
   EXPECT_LT(html.size(), 12'000'000U);
+  const Json page = data(html);
+  const std::vector<float> numbers = array(page, page["figures"]["heat"]["columns"]["numbers"]);
+  EXPECT_LT(numbers.size(), kPoses / 2);
+  EXPECT_EQ(numbers[0], 0.0F);
+  EXPECT_GT(numbers.back(), 0.99 * kPoses);
+  EXPECT_EQ(array(page, page["figures"]["workspace"]["numbers"]), numbers);
 }
 
 TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {

@@ -10,6 +10,7 @@ function heatmap(figure, data) {
   let orderedBy = null; // a coordinate, or null: the number of the pose
   const cursor = { row: 0, column: 0 };
   const count = values(layer.value).length / rows.length;
+  const numberOf = (m) => (data.columns.numbers ? values(data.columns.numbers)[m] : m);
 
   const place = new Place(figure, (width) => (known(values(layer.value)).length ? drawMap(width) : nothing()));
   const noun = data.columns.label;
@@ -94,14 +95,14 @@ function heatmap(figure, data) {
       return d3
         .ticks(0, count - 1, Math.min(count, width / 70))
         .filter(Number.isInteger)
-        .map((v) => ({ at: v + 0.5, text: plain(v) }));
+        .map((v) => ({ at: v + 0.5, text: plain(numberOf(v)) }));
     const step = Math.max(1, Math.ceil(count / Math.max(2, Math.floor(width / 70))));
     return d3.range(0, count, step).map((c) => ({ at: c + 0.5, text: plain(Number(by[poses[c]].toPrecision(3))) }));
   }
 
   function sentence(array) {
     const i = d3.maxIndex(array);
-    const largest = `${rows[Math.floor(i / count)]} at ${noun} ${i % count} with ${withUnit(number(array[i]), layer.unit)}`;
+    const largest = `${rows[Math.floor(i / count)]} at ${noun} ${numberOf(i % count)} with ${withUnit(number(array[i]), layer.unit)}`;
     return `Heat map: ${layer.label} for ${rows.length} rows and ${count} ${noun}s. The largest value is that of ${largest}.`;
   }
 
@@ -128,7 +129,7 @@ function heatmap(figure, data) {
         box.setAttribute(name, value);
       const pose = poses[cursor.column];
       const where = coordinates.map(({ name, unit, value }) => `${name} ${withUnit(plain(values(value)[pose]), unit)}`);
-      said.textContent = `${rows[cursor.row]}, ${noun} ${pose}${where.length ? ` (${where.join(", ")})` : ""}: ${withUnit(number(array[cursor.row * count + pose]), layer.unit)}`;
+      said.textContent = `${rows[cursor.row]}, ${noun} ${numberOf(pose)}${where.length ? ` (${where.join(", ")})` : ""}: ${withUnit(number(array[cursor.row * count + pose]), layer.unit)}`;
     };
     map.addEventListener("pointermove", (event) => {
       const scale = svg.viewBox.baseVal.width / svg.getBoundingClientRect().width;

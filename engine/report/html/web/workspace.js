@@ -7,6 +7,7 @@ const DOT_EDGE = { stroke: "var(--ink)", strokeOpacity: 0.4, strokeWidth: 0.6 };
 
 function workspace(figure, data) {
   const count = values(data.coordinates[0].value).length;
+  const numberOf = (m) => (data.numbers ? values(data.numbers)[m] : m);
   let field = data.fields[0];
   let item = 0;
   const axes = data.coordinates.slice(0, 3).map((_, k) => k);
@@ -80,7 +81,7 @@ function workspace(figure, data) {
     const pairs = d3.cross(d3.range(axes.length), d3.range(axes.length)).filter(([a, b]) => a < b);
     const text = ({ m, value, at }) =>
       [
-        `pose ${m}`,
+        `pose ${numberOf(m)}`,
         ...chosen.map(({ name, unit }, k) => `${name} ${withUnit(plain(at[k]), unit)}`),
         withUnit(number(value), field.unit),
       ].join("\n");
