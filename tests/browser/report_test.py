@@ -81,6 +81,29 @@ class Figures(PageTest):
         page.write_text(figures_page(WEB))
         self.check_page(page)
 
+    def test_faults_are_found(self):
+        """The checks themselves: a page with one fault of each kind."""
+        page = self.folder / "faults.html"
+        whole = figures_page(WEB)
+        figure = '<figure data-figure="{}"><div class="plot"></div>'
+        faults = {
+            figure.format("ranking"): figure.format("ranking").replace("plot", "plot\" style=\"display:none"),
+            "<h1>Figures</h1>": '<h1 style="color:#eee">Figures</h1><img src="https://example.org/a.png">',
+            "<footer>": '<footer style="width:3000px">',
+        }
+        for sound, faulty in faults.items():
+            self.assertIn(sound, whole)
+            whole = whole.replace(sound, faulty)
+        page.write_text(whole)
+        self.browser.open(page, 400)
+        checks = FigureChecks(self, self.browser)
+        found = " ".join(self.browser.violations())
+        self.assertIn("color-contrast", found)
+        self.assertIn("image-alt", found)
+        for check in (checks.not_empty, lambda: self.check_fits(400), lambda: self.check_silent(page)):
+            with self.assertRaises(AssertionError):
+                check()
+
 
 class Reports(PageTest):
     def poesy(self, *arguments):
