@@ -13,6 +13,7 @@
 #include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/output_width.h"
+#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/wording.h"
@@ -24,6 +25,8 @@ namespace poesy::app {
 namespace {
 
 constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --json";
+
+constexpr std::size_t kMostNumber = 1'000'000;
 
 struct Options {
   std::string result;
@@ -102,13 +105,11 @@ void add_show(CLI::App& program, Action& action) {
                                "effect",
                                fmt::join(kRowOrders, ", ")))
       ->type_name("KEY");
-  command->add_option("--top", options->top, "only the first N errors of a sensitivity result")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+  add_whole_number(*command, "--top", "--top", options->top, "only the first N errors of a sensitivity result", 1,
+                   kMostNumber)
       ->type_name("N");
-  command
-      ->add_option("--width", options->width,
-                   "characters of a line; default: the terminal's, and where there is none, no limit")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+  add_whole_number(*command, "--width", "--width", options->width,
+                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostNumber)
       ->type_name("N");
   command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
   command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
