@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/app/shells.h"
+#include "engine/report/ranking.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 
@@ -23,6 +24,8 @@ std::vector<std::string> words_for(const std::string& value) {
     for (const Analysis::Kind kind : kKinds) words.emplace_back(name(kind));
   } else if (value == "SHELL") {
     words.assign(kShells.begin(), kShells.end());
+  } else if (value == "KEY") {
+    words.assign(kRowOrders.begin(), kRowOrders.end());
   }
   return words;
 }

@@ -24,8 +24,9 @@
 namespace poesy::app {
 namespace {
 
-constexpr std::uint64_t kMostAsked = 1000000;  ///< rows, characters
 constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --json";
+
+constexpr std::size_t kMostNumber = 1'000'000;
 
 struct Options {
   std::string result;
@@ -105,10 +106,10 @@ void add_show(CLI::App& program, Action& action) {
                                fmt::join(kRowOrders, ", ")))
       ->type_name("KEY");
   add_whole_number(*command, "--top", "--top", options->top, "only the first N errors of a sensitivity result", 1,
-                   kMostAsked)
+                   kMostNumber)
       ->type_name("N");
   add_whole_number(*command, "--width", "--width", options->width,
-                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostAsked)
+                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostNumber)
       ->type_name("N");
   command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
   command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},

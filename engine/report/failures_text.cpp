@@ -17,7 +17,7 @@ std::string failures_text(const StoredResult& result, std::string_view path) {
   const std::string address =
       fmt::format("{} {} {}", varied_name(result, first.slot), first.pose.value, first.failed.sample.value);
   return text + fmt::format(
-                    "the first of them (error, pose, sample): {}, {}; {} are listed in failures.csv of 'poesy export'\n"
+                    "the first of them (error, pose, sample): {}, {}; failures.csv of 'poesy export' lists {}\n"
                     "replay it: poesy replay {} {}\n",
                     address, kStatusNames[static_cast<std::size_t>(first.failed.status)], failures.size(), path,
                     address);

@@ -81,8 +81,8 @@ TEST(FailuresText, CountsTheSolvesOfAllPosesOnce) {
   result.monte_carlo.failures = {{0, PoseIndex{2}, {SampleIndex{7}, SolveStatus::iteration_cap}}};
   EXPECT_EQ(failures_text(result, "r.h5"),
             "360 of 36 360 solves (0.99 %) did not converge\n"
-            "the first of them (error, pose, sample): all 2 7, iteration_cap; 1 are listed in failures.csv of 'poesy "
-            "export'\n"
+            "the first of them (error, pose, sample): all 2 7, iteration_cap; failures.csv of 'poesy export' lists "
+            "1\n"
             "replay it: poesy replay r.h5 all 2 7\n");
 }
 
