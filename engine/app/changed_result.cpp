@@ -1,15 +1,12 @@
 #include "engine/app/changed_result.h"
 
-#include <cstdio>
+#include "engine/app/message.h"
 
 namespace poesy::app {
 
 StoredResult read_result_warily(const std::string& path) {
   StoredResult result = read_result(path);
-  if (result.changed) {
-    const std::string text = "poesy: warning: " + path + " was changed since it was written; see poesy verify\n";
-    std::fputs(text.c_str(), stderr);
-  }
+  if (result.changed) say(Message::warning, path + " was changed since it was written; see poesy verify");
   return result;
 }
 

@@ -6,6 +6,8 @@
 #include <cstdio>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
+#include "engine/app/duration.h"
 #include "engine/app/exit_code.h"
 #include "engine/io/study_file.h"
 #include "engine/run/cases.h"
@@ -185,17 +187,11 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
   return text + "\n";
 }
 
-/// "2.3 s", "14 min", "3.5 h"
-std::string readable_time(double seconds) {
-  if (seconds < 9.95) return fmt::format("{:.2g} s", seconds);
-  if (seconds < 120.0) return fmt::format("{:.0f} s", seconds);
-  return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
 /// seconds: of all solves that there may be.
 std::string time_text(const Outlook& expected, double seconds) {
-  if (expected.least == 1.0) return "about " + readable_time(seconds);
-  return "at least about " + readable_time(expected.least * seconds) + ", at most about " + readable_time(seconds);
+  if (expected.least == 1.0) return "about " + readable_duration(seconds);
+  return "at least about " + readable_duration(expected.least * seconds) + ", at most about " +
+         readable_duration(seconds);
 }
 
 int check(const std::string& path) {
@@ -226,7 +222,7 @@ void add_check(CLI::App& program, Action& action) {
   CLI::App* command =
       program.add_subcommand("check", "validate a study; print it resolved, with its solves, memory and time");
   command->add_option("study", *study, "study file (TOML)")->required()->type_name("STUDY.toml");
-  command->footer("Example: poesy check study.toml");
+  command->footer(footer("", {{"is it valid, and how long will it take?", "poesy check study.toml"}}));
   command->callback([study, &action] { action = [study] { return check(*study); }; });
 }
 

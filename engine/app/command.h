@@ -13,6 +13,7 @@ void add_run(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_evaluate(CLI::App& program, Action& action);
 void add_show(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_merge(CLI::App& program, Action& action);
@@ -20,5 +21,7 @@ void add_verify(CLI::App& program, Action& action);
 void add_models(CLI::App& program, Action& action);
 void add_template(CLI::App& program, Action& action);
 void add_tolerances(CLI::App& program, Action& action);
+void add_completion(CLI::App& program, Action& action);
+void add_man(CLI::App& program, Action& action);
 
 }  // namespace poesy::app

@@ -6,12 +6,15 @@
 #include <utility>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/facts.h"
 #include "engine/app/failure_limit.h"
 #include "engine/app/interrupt.h"
+#include "engine/app/message.h"
 #include "engine/app/output_width.h"
 #include "engine/app/progress.h"
+#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
@@ -38,10 +41,8 @@ struct Options {
 void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses, double max_condition) {
   for (std::size_t m = 0; m < poses.condition.size(); ++m) {
     if (poses.condition[m] <= max_condition) continue;
-    std::fputs(fmt::format("poesy: warning: {}:{}: pose {} is singular or nearly so (condition number {:.3g})\n", path,
-                           m + 2, m + 1, poses.condition[m])
-                   .c_str(),
-               stderr);
+    say(Message::warning, fmt::format("{}:{}: pose {} is singular or nearly so (condition number {:.3g})", path, m + 2,
+                                      m + 1, poses.condition[m]));
   }
 }
 
@@ -84,7 +85,7 @@ int evaluate(const Options& options) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!result) {
-    std::fputs("poesy: interrupted; nothing was written\n", stderr);
+    say(Message::note, "interrupted; nothing was written");
     return kInterrupted;
   }
   const SolveCounts total = result->total();
@@ -123,11 +124,14 @@ void add_evaluate(CLI::App& program, Action& action) {
       ->type_name("E.csv");
   command->add_flag("--paired", options->paired, "row by row, instead of every pose with every row");
   command->add_option("-o,--output", options->result, "result file; default: only the summary")->type_name("RESULT.h5");
-  command->add_option("--threads", options->threads, "number of threads; default: one per processor")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1024}))
+  add_whole_number(*command, "--threads", "--threads", options->threads,
+                   "number of threads; default: one per processor", 1, 1024)
       ->type_name("N");
   command->add_flag("--quiet", options->quiet, "no progress");
-  command->footer("Example: poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o result.h5");
+  command->footer(footer("", {{"every pose with every row of errors; prints the summary",
+                               "poesy evaluate study.toml --poses p.csv --errors e.csv"},
+                              {"the first pose with the first row, and so on; keeps every outcome",
+                               "poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o r.h5"}}));
   command->callback([options, &action] { action = [options] { return evaluate(*options); }; });
 }
 

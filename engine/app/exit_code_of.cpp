@@ -1,15 +1,15 @@
 #include "engine/app/exit_code_of.h"
 
-#include <cstdio>
 #include <exception>
 
 #include "engine/app/launch.h"
+#include "engine/app/message.h"
 #include "engine/base/error.h"
 
 namespace poesy::app {
 
 int complain(const std::string& problem, ExitCode code) {
-  if (find_launch().value_or(Launch()).rank == 0) std::fputs(("poesy: " + problem + "\n").c_str(), stderr);
+  if (find_launch().value_or(Launch()).rank == 0) say(Message::error, problem);
   return code;
 }
 

@@ -2,6 +2,7 @@
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/io/result_file.h"
 
@@ -28,7 +29,7 @@ void add_export(CLI::App& program, Action& action) {
   command->add_option("-d,--directory", options->folder, "folder for the tables, made if missing")
       ->required()
       ->type_name("DIR");
-  command->footer("Example: poesy export result.h5 -d tables");
+  command->footer(footer("", {{"tables/global.csv and others", "poesy export result.h5 -d tables"}}));
   command->callback([options, &action] { action = [options] { return export_result(*options); }; });
 }
 

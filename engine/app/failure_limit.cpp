@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
+#include "engine/app/message.h"
 #include "engine/base/units.h"
 
 namespace poesy::app {
@@ -20,22 +19,18 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
   if (failed == 0) return kDone;
   const double share = static_cast<double>(failed) / static_cast<double>(solves.total());
   if (share > kNoticeable && study.not_converged == NotConverged::exclude) {
-    std::fputs(
-        fmt::format("poesy: warning: {:.3g} % of the samples did not converge and are left out; these are mostly "
+    say(Message::warning,
+        fmt::format("{:.3g} % of the samples did not converge and are left out; these are mostly "
                     "large errors, so what is left may say far too little: raise solver.max_iterations, or take "
-                    "method = \"newton\"\n",
-                    100.0 * share)
-            .c_str(),
-        stderr);
+                    "method = \"newton\"",
+                    100.0 * share));
   }
   if (share <= study.max_not_converged) return kDone;
-  std::fputs(
-      fmt::format("poesy: {}: {} of {} samples did not converge, a share of {:.3g}, and solver.max_not_converged "
-                  "is {}{}; {}\n",
+  say(Message::error,
+      fmt::format("{}: {} of {} samples did not converge, a share of {:.3g}, and solver.max_not_converged "
+                  "is {}{}; {}",
                   study_path, failed, solves.total(), share, shortest(study.max_not_converged),
-                  study.max_not_converged == 0.0 ? " (not_converged = \"fail\" is the same)" : "", remedy)
-          .c_str(),
-      stderr);
+                  study.max_not_converged == 0.0 ? " (not_converged = \"fail\" is the same)" : "", remedy));
   return kTooManyNotConverged;
 }
 

@@ -3,8 +3,12 @@
 #include <string>
 
 #include "engine/app/command.h"
+#include "engine/app/command_line_problem.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code_of.h"
+#include "engine/app/help_text.h"
 #include "engine/app/launch.h"
+#include "engine/app/message.h"
 #include "engine/io/version.h"
 
 namespace {
@@ -15,22 +19,47 @@ std::string version_text() {
   return "poesy " + std::string(poesy::poesy_version()) + " (" + std::string(poesy::git_commit()) + ")";
 }
 
-int parse_and_run(int argc, char** argv) {
-  CLI::App program("poesy: which manufacturing and assembly errors of a parallel robot matter, how much, and where");
-  program.set_version_flag("--version", version_text());
+void describe_program(CLI::App& program) {
+  program.formatter_fn(
+      [](const CLI::App* app, const std::string&, CLI::AppFormatMode) { return help_text(*app, help_width()); });
+  program.set_help_flag("-h,--help", "print this help");
+  program.set_version_flag("--version", version_text(), "print the version");
   program.require_subcommand(1);
-  program.footer("Start with: poesy models; poesy template 2upr-rpu > study.toml; poesy run study.toml");
+  program.footer(
+      footer("A study file says which mechanism, errors and poses are looked at, and how. poesy draws the errors, "
+             "solves the mechanism for every pose and draw, and writes what it found to a result file.\n",
+             {{"which mechanisms are there?", "poesy models"},
+              {"a study to start from, every key explained", "poesy template 2upr-rpu > study.toml"},
+              {"gives study.h5", "poesy run study.toml"},
+              {"the errors that matter most", "poesy show study.h5"}}));
+}
+
+/// In the groups of the program's help.
+void add_commands(CLI::App& program, Action& action) {
+  const auto group = [&](const char* title, std::initializer_list<void (*)(CLI::App&, Action&)> commands) {
+    for (const auto add : commands) {
+      add(program, action);
+      program.get_subcommands([](const CLI::App*) { return true; }).back()->group(title);
+    }
+  };
+  group("Prepare a study", {add_models, add_template, add_check});
+  group("Compute", {add_run, add_merge, add_evaluate});
+  group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
+  group("About the program", {add_completion, add_man});
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App program("which manufacturing and assembly errors of a parallel robot matter, how much, and where");
   Action action;
-  for (const auto add : {add_run, add_check, add_evaluate, add_show, add_replay, add_merge, add_export, add_verify,
-                         add_models, add_template, add_tolerances}) {
-    add(program, action);
-  }
+  describe_program(program);
+  add_commands(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return program.exit(help);
+    if (!has_unknown_command(program)) return program.exit(help);
+    return complain(command_line_problem(program, help), kBadInput);
   } catch (const CLI::ParseError& error) {
-    return complain(std::string(error.what()) + "; see poesy --help", kBadInput);
+    return complain(command_line_problem(program, error), kBadInput);
   }
   // Nothing else knows how to share its work; under a launcher the first process does it.
   if (!program.got_subcommand("run") && find_launch().value_or(Launch()).rank != 0) return kDone;
@@ -40,7 +69,7 @@ int parse_and_run(int argc, char** argv) {
 /// The exit code, unless what was printed did not arrive.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  std::fputs("poesy: what was to be printed cannot be written; see whether there is room where it goes\n", stderr);
+  say(Message::error, "what was to be printed cannot be written; see whether there is room where it goes");
   return kFileTrouble;
 }
 

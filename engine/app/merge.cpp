@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/run_study.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
@@ -67,11 +68,12 @@ void add_merge(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("merge", "put the shards of a study together (poesy run --shard)");
   command->add_option("shards", options->shards, "all shards of one study, in any order")
       ->required()
-      ->type_name("SHARD.h5 ...");
+      ->type_name("SHARD.h5");
   command->add_option("-o,--output", options->result, "result file, the same as that of one run")
       ->required()
       ->type_name("RESULT.h5");
-  command->footer("Example: poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5");
+  command->footer(footer("", {{"two shards", "poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5"},
+                              {"all that there are", "poesy merge study.*-of-*.h5 -o study.h5"}}));
   command->callback([options, &action] { action = [options] { return merge(*options); }; });
 }
 

@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/find_model.h"
 #include "engine/report/tables.h"
@@ -12,7 +13,8 @@ void add_models(CLI::App& program, Action& action) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("models", "list the mechanisms, or describe one");
   command->add_option("model", *name, "mechanism")->type_name("MODEL");
-  command->footer("Example: poesy models 2upr-rpu");
+  command->footer(footer("", {{"which mechanisms are there?", "poesy models"},
+                              {"errors, poses and responses of one", "poesy models 2upr-rpu"}}));
   command->callback([name, &action] {
     action = [name] {
       std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name).description)).c_str(), stdout);

@@ -1,10 +1,10 @@
 #include "engine/app/output_width.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdlib>
 
+#include "engine/app/terminal.h"
 #include "engine/base/units.h"
 #include "engine/report/text_table.h"
 
@@ -17,8 +17,7 @@ constexpr std::size_t kUsualWidth = 80;
 
 std::size_t output_width() {
   if (::isatty(STDOUT_FILENO) == 0) return kUnlimitedWidth;
-  winsize size{};
-  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  if (const std::size_t columns = terminal_width(STDOUT_FILENO); columns > 0) return columns;
   const char* columns = std::getenv("COLUMNS");
   const auto width = columns != nullptr ? parse_number(columns) : std::nullopt;
   return width && *width >= 1.0 && *width < 1e6 ? static_cast<std::size_t>(*width) : kUsualWidth;

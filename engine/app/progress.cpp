@@ -1,25 +1,35 @@
 #include "engine/app/progress.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
+
+#include "engine/app/progress_line.h"
+#include "engine/app/terminal.h"
 
 namespace poesy::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLive{100};
 constexpr std::chrono::seconds kPlain{5};
+constexpr std::size_t kUsualWidth = 80;  ///< of a terminal that does not say
+
+/// Columns that a line may take. A line as wide as the terminal would wrap on some.
+std::size_t room() {
+  const std::size_t width = terminal_width(STDERR_FILENO);
+  return (width != 0 ? width : kUsualWidth) - 1;
+}
 
 }  // namespace
 
 ProgressPrinter::ProgressPrinter(bool quiet)
-    : quiet_(quiet),
-      terminal_(isatty(STDERR_FILENO) != 0),
-      start_(Clock::now()),
-      next_(start_ + (terminal_ ? Clock::duration(kLive) : Clock::duration(kPlain))) {}
+    : quiet_(quiet), live_(shows_live_lines(STDERR_FILENO)), next_(Clock::now() + interval()), rate_(Clock::now()) {}
 
 ProgressPrinter::~ProgressPrinter() { finish(); }
+
+ProgressPrinter::Clock::duration ProgressPrinter::interval() const {
+  return live_ ? Clock::duration(kLive) : Clock::duration(kPlain);
+}
 
 void ProgressPrinter::finish() {
   if (line_open_) std::fputs("\r\033[K", stderr);
@@ -29,18 +39,19 @@ void ProgressPrinter::finish() {
 void ProgressPrinter::operator()(const Progress& progress) {
   if (quiet_) return;
   const Clock::time_point now = Clock::now();
+  const std::uint64_t done = progress.solves - progress.before;
+  if (done < done_) {  // counted from the beginning again
+    rate_ = RecentRate(now);
+    ++stage_;
+  }
+  done_ = done;
+  rate_.add(now, done);
   if (now < next_) return;
-  next_ = now + (terminal_ ? Clock::duration(kLive) : Clock::duration(kPlain));
-  const double seconds = std::chrono::duration<double>(now - start_).count();
-  const auto solves = static_cast<double>(progress.solves - progress.before);
-  const auto left = static_cast<double>(progress.total - progress.solves);
-  const std::string text =
-      fmt::format("{:5.1f} % done, {:.3g} solves/s, {} not converged, {:.0f} s left",
-                  100.0 * static_cast<double>(progress.solves) / static_cast<double>(progress.total), solves / seconds,
-                  progress.not_converged, solves > 0.0 ? left * seconds / solves : 0.0);
-  std::fputs((terminal_ ? "\r" + text + "\033[K" : text + "\n").c_str(), stderr);
+  next_ = now + interval();
+  const ProgressFacts facts{progress, rate_.per_second(), stage_};
+  std::fputs((live_ ? "\r" + live_line(facts, room()) + "\033[K" : plain_line(facts) + "\n").c_str(), stderr);
   std::fflush(stderr);
-  line_open_ = terminal_;
+  line_open_ = live_;
 }
 
 }  // namespace poesy::app

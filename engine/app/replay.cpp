@@ -8,7 +8,10 @@
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
+#include "engine/app/message.h"
+#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/stored_study.h"
 #include "engine/io/trial_read.h"
@@ -19,6 +22,8 @@
 
 namespace poesy::app {
 namespace {
+
+constexpr std::uint64_t kMostNumber = 0x7fffffffffffffff;  ///< of poses and samples, on the command line
 
 struct Options {
   std::string result;
@@ -108,11 +113,10 @@ ReplayedSample replay_of(const Options& options, const StoredResult& result, con
 
 void warn_of_other_program(const Options& options, const StoredResult& result) {
   if (result.poesy_version == poesy_version() && result.git_commit == git_commit()) return;
-  std::fputs(fmt::format("poesy: warning: {} was written by poesy {} ({}), and this is {} ({}): draws and solves may "
-                         "differ\n",
-                         options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit())
-                 .c_str(),
-             stderr);
+  say(Message::warning,
+      fmt::format("{} was written by poesy {} ({}), and this is {} ({}): draws and solves may "
+                  "differ",
+                  options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit()));
 }
 
 /// Where the result lists this sample as a failure of another kind, or solved where it was not.
@@ -122,10 +126,8 @@ void warn_of_difference(const Options& options, const StoredResult& result, cons
         failure.failed.sample.value != options.sample || failure.failed.status == replayed.status) {
       continue;
     }
-    std::fputs(fmt::format("poesy: warning: the result lists this sample as {}\n",
-                           kStatusNames[static_cast<std::size_t>(failure.failed.status)])
-                   .c_str(),
-               stderr);
+    say(Message::warning, fmt::format("the result lists this sample as {}",
+                                      kStatusNames[static_cast<std::size_t>(failure.failed.status)]));
   }
 }
 
@@ -234,16 +236,16 @@ void add_replay(CLI::App& program, Action& action) {
   command->add_option("factor", options->factor, "error that varied; all: a Monte Carlo result; or the name of a case")
       ->required()
       ->type_name("FACTOR");
-  command->add_option("pose", options->pose, "number of the pose, from 0")
+  add_whole_number(*command, "pose", "POSE", options->pose, "number of the pose, from 0", 0, kMostNumber)
       ->required()
-      ->check(CLI::NonNegativeNumber)
       ->type_name("POSE");
-  command->add_option("sample", options->sample, "number of the sample, from 0; not of a case")
-      ->check(CLI::NonNegativeNumber)
+  add_whole_number(*command, "sample", "SAMPLE", options->sample, "number of the sample, from 0; not of a case", 0,
+                   kMostNumber)
       ->type_name("SAMPLE");
-  command->footer(
-      "'poesy show' names a sample that failed, failures.csv of 'poesy export' and /solver/failed_* the first ones.\n"
-      "Example: poesy replay result.h5 epsilon_1_4_z 12 345");
+  command->footer(footer(
+      "'poesy show' names a sample that failed, failures.csv of 'poesy export' and /solver/failed_* the first ones.\n",
+      {{"sample 345 of one error at pose 12", "poesy replay result.h5 epsilon_1_4_z 12 345"},
+       {"of a Monte Carlo result, where all errors vary", "poesy replay result.h5 all 12 345"}}));
   command->callback([options, &action] { action = [options] { return replay(*options); }; });
 }
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "engine/app/duration.h"
 #include "engine/app/interrupt.h"
+#include "engine/app/message.h"
 #include "engine/base/error.h"
 
 namespace poesy::app {
@@ -19,8 +19,6 @@ namespace {
 /// A checkpoint that took a time to write is followed by another after so many of these at the earliest: under 1 %,
 /// also when the last one is much the longest.
 constexpr double kLeastRatio = 200.0;
-
-void say(const std::string& text) { std::fputs(("poesy: " + text + "\n").c_str(), stderr); }
 
 /// A time that no run lasts stands for all that are longer, and for "never".
 std::chrono::steady_clock::duration duration_of(double seconds) {
@@ -39,12 +37,16 @@ bool is_plain(const std::string& word) {
 }  // namespace
 
 void ResumeOptions::add_to(CLI::App& command) {
-  command.add_flag("--resume", resume, "continue the run that was stopped, from RESULT.h5.part");
+  constexpr const char* kGroup = "Long runs";
+  command.add_flag("--resume", resume, "continue the run that was stopped, from RESULT.h5.part")->group(kGroup);
   command.add_option("--checkpoint-every", every, "time between checkpoints of the run; default: 10 s")
-      ->type_name("TIME");
+      ->type_name("TIME")
+      ->group(kGroup);
   command.add_option("--max-wall", max_wall, "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\"")
-      ->type_name("TIME");
-  command.add_flag("--keep-checkpoint", keep, "keep RESULT.h5.part when done, so that --resume can add samples");
+      ->type_name("TIME")
+      ->group(kGroup);
+  command.add_flag("--keep-checkpoint", keep, "keep RESULT.h5.part when done, so that --resume can add samples")
+      ->group(kGroup);
 }
 
 std::string shell_command(const std::vector<std::string>& words) {
@@ -90,9 +92,10 @@ void ResumableRun::start(const CheckpointIdentity& run, bool quiet) {
   if (auto found = files_.find()) {
     check_continues(run, found->checkpoint.identity, found->path);
     if (!found->passed_over.empty()) {
-      say(files_.newer() + " " + found->passed_over + "; continuing from the one before, " + found->path);
+      say(Message::note,
+          files_.newer() + " " + found->passed_over + "; continuing from the one before, " + found->path);
     } else if (!quiet) {
-      say("continuing from " + found->path);
+      say(Message::note, "continuing from " + found->path);
     }
     taken_ = found->path;
     before_ = found->checkpoint.time;
@@ -145,13 +148,13 @@ void ResumableRun::rescue() {
     // The message of the first trouble counts.
   }
   if (files_.exist()) {
-    say("the work up to the last checkpoint is kept in " + files_.newer() +
-        "; when this is mended, continue with: " + command_);
+    say(Message::note, "the work up to the last checkpoint is kept in " + files_.newer() +
+                           "; when this is mended, continue with: " + command_);
   }
 }
 
 void ResumableRun::explain_interruption() const {
-  say("interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_);
+  say(Message::note, "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_);
 }
 
 void ResumableRun::refuse_state(const BytesError& error) const {

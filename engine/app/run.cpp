@@ -5,12 +5,14 @@
 #include <optional>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/interrupt.h"
 #include "engine/app/progress.h"
 #include "engine/app/resumable.h"
 #include "engine/app/run_on_ranks.h"
 #include "engine/app/run_study.h"
+#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
@@ -212,25 +214,26 @@ void add_run(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("run", "run a study and write its result");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY.toml");
-  command->add_option("-o,--output", options->result, "result file; default: the study's name with .h5, here")
+  command->add_option("-o,--output", options->result, "result file; default: the study's name with .h5, in this folder")
       ->type_name("RESULT.h5");
-  command->add_option("--threads", options->threads, "number of threads, of each rank; default: one per processor")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1024}))
+  add_whole_number(*command, "--threads", "--threads", options->threads,
+                   "number of threads, of each rank; default: one per processor", 1, 1024)
       ->type_name("N");
-  command->add_option("--seed", options->seed, "seed, instead of the study's")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7fffffffffffffff}))
+  add_whole_number(*command, "--seed", "--seed", options->seed, "seed, instead of the study's", 0, 0x7fffffffffffffff)
       ->type_name("S");
+  options->resume.add_to(*command);
   command
       ->add_option_function<std::string>(
           "--shard", [options](const std::string& text) { options->shard = parse_shard(text); },
           "run this one of N shards only, to be put together by poesy merge")
-      ->type_name("K/N");
+      ->type_name("K/N")
+      ->group("On a cluster");
   command->add_flag("--quiet", options->quiet, "no progress");
-  options->resume.add_to(*command);
-  command->footer(
-      "Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once.\n"
-      "Example: poesy run study.toml -o result.h5 --threads 2\n"
-      "On several ranks: mpirun -n 4 poesy run study.toml -o result.h5");
+  command->footer(footer("Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once.\n",
+                         {{"gives study.h5", "poesy run study.toml"},
+                          {"stops after two hours, exit code 4; the same with --resume goes on",
+                           "poesy run study.toml --max-wall \"2 h\""},
+                          {"on several ranks, over MPI", "mpirun -n 4 poesy run study.toml -o result.h5"}}));
   command->callback([options, &program, &action] {
     options->program = program.get_name();
     action = [options] { return run_alone_or_on_ranks(*options); };

@@ -4,13 +4,16 @@
 #include <array>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/output_width.h"
+#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/wording.h"
@@ -20,6 +23,9 @@
 
 namespace poesy::app {
 namespace {
+
+constexpr std::uint64_t kMostAsked = 1000000;  ///< rows, characters
+constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --json";
 
 struct Options {
   std::string result;
@@ -79,7 +85,7 @@ int show(const Options& options) {
   if (options.top) keep_first(*options.top, tables);
   const std::string text = options.json ? json_of(result, tables)
                                         : summary_text(result) + failures_text(result, options.result) + "\n" +
-                                              text_of(tables, options.width.value_or(output_width()));
+                                              text_of(tables, options.width.value_or(output_width()), kRemedy);
   std::fputs(text.c_str(), stdout);
   return kDone;
 }
@@ -98,16 +104,16 @@ void add_show(CLI::App& program, Action& action) {
                                "effect",
                                fmt::join(kRowOrders, ", ")))
       ->type_name("KEY");
-  command->add_option("--top", options->top, "only the first N errors of a sensitivity result")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+  add_whole_number(*command, "--top", "--top", options->top, "only the first N errors of a sensitivity result", 1,
+                   kMostAsked)
       ->type_name("N");
-  command
-      ->add_option("--width", options->width,
-                   "characters of a line; default: the terminal's, and where there is none, no limit")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+  add_whole_number(*command, "--width", "--width", options->width,
+                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostAsked)
       ->type_name("N");
   command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
-  command->footer("Example: poesy show result.h5 --response angular_deformation --top 10");
+  command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
+                              {"the ten errors that matter most to another response",
+                               "poesy show result.h5 --response angular_deformation --top 10"}}));
   command->callback([options, &action] { action = [options] { return show(*options); }; });
 }
 

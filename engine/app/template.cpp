@@ -1,22 +1,24 @@
 #include <cstdio>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/find_model.h"
 #include "engine/base/error.h"
 #include "engine/io/study_file.h"
 #include "engine/io/study_keys.h"
+#include "engine/io/wording.h"
 
 namespace poesy::app {
 namespace {
 
 Analysis::Kind kind_named(const std::string& word) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const Analysis::Kind kind : kKinds) {
     if (name(kind) == word) return kind;
-    known += (known.empty() ? "" : ", ") + std::string(name(kind));
+    known.push_back(name(kind));
   }
-  throw InputError({}, "no template of kind '" + word + "'", "there are: " + known);
+  throw InputError({}, "no template of kind '" + printable(word) + "'", suggestion(word, known));
 }
 
 int print_template(const std::string& model, const std::string& kind) {
@@ -51,7 +53,8 @@ void add_template(CLI::App& program, Action& action) {
       ->type_name("KIND");
   command->add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
-  command->footer("Example: poesy template 2upr-rpu > study.toml");
+  command->footer(footer("", {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
+                              {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"}}));
   command->callback([=, &action] {
     if (*reference) {
       action = print_reference;

@@ -8,6 +8,7 @@
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/output_width.h"
 #include "engine/base/error.h"
@@ -197,7 +198,9 @@ void add_tolerances(CLI::App& program, Action& action) {
                    "folder for tolerances.csv and the studies that confirm it; default: RESULT_tolerances, here")
       ->type_name("DIR");
   command->footer(
-      "Example: poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\" -d tolerances");
+      footer("", {{"tolerances of equal effect", "poesy tolerances result.h5 --response linear_deformation"},
+                  {"that keep the response within a limit",
+                   "poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\""}}));
   command->callback([options, &action] { action = [options] { return set_tolerances(*options); }; });
 }
 

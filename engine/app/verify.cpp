@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "engine/app/command.h"
+#include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
@@ -24,7 +25,7 @@ void add_verify(CLI::App& program, Action& action) {
   auto result = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("verify", "recompute a result's content hash; exit 3 if it differs");
   command->add_option("result", *result, "result file")->required()->type_name("RESULT.h5");
-  command->footer("Example: poesy verify result.h5");
+  command->footer(footer("", {{"unchanged since it was written?", "poesy verify result.h5"}}));
   command->callback([result, &action] { action = [result] { return verify(*result); }; });
 }
 

@@ -60,7 +60,7 @@ std::string printable(std::string_view text, std::size_t most) {
   return shown;
 }
 
-std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
   const std::size_t allowed = std::max<std::size_t>(1, (word.size() + 2) / 3);
   std::string_view best;
   std::size_t best_distance = allowed + 1;
@@ -73,7 +73,13 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
       best_distance = distance;
     }
   }
-  if (!best.empty()) return "did you mean '" + std::string(best) + "'?";
+  return best;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+  if (const std::string_view best = nearest(word, known); !best.empty()) {
+    return "did you mean '" + std::string(best) + "'?";
+  }
   std::string list = "known: ";
   for (std::size_t k = 0; k < std::min(known.size(), kMostWords); ++k) {
     list += (k > 0 ? ", " : "") + std::string(known[k]);

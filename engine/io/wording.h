@@ -13,6 +13,9 @@ namespace poesy {
 /// about `most` bytes.
 std::string printable(std::string_view text, std::size_t most = 60);
 
+/// The known word that is close to this one, as after a slip of the pen; empty when none is.
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
+
 /// "did you mean 'sigma'?" when a known word is close to this one, else the known words: "known: sigma, half_width".
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);
 

@@ -143,15 +143,15 @@ void add_headings(std::string& text, const std::vector<TextColumn>& columns, con
   if (units) add_row(text, columns, shown, [](const TextColumn& column) { return column.unit; });
 }
 
-std::string left_out_text(const std::vector<std::string>& headings) {
+std::string left_out_text(const std::vector<std::string>& headings, std::string_view remedy) {
   std::string list;
   for (const std::string& heading : headings) list += (list.empty() ? "" : ", ") + heading;
-  return "(no room for " + list + ": a wider terminal, --response NAME or --json shows more)";
+  return "(no room for " + list + ": " + std::string(remedy) + " shows more)";
 }
 
 }  // namespace
 
-std::string text_of(const Table& table, std::size_t width) {
+std::string text_of(const Table& table, std::size_t width, std::string_view remedy) {
   std::string text;
   add_prose(text, table.caption, width);
   std::vector<std::string> left_out;
@@ -165,13 +165,13 @@ std::string text_of(const Table& table, std::size_t width) {
     }
   }
   for (const std::string& note : table.notes) add_prose(text, note, width);
-  if (!left_out.empty()) add_prose(text, left_out_text(left_out), width);
+  if (!left_out.empty()) add_prose(text, left_out_text(left_out, remedy), width);
   return text;
 }
 
-std::string text_of(std::span<const Table> tables, std::size_t width) {
+std::string text_of(std::span<const Table> tables, std::size_t width, std::string_view remedy) {
   std::string text;
-  for (const Table& table : tables) text += (text.empty() ? "" : "\n") + text_of(table, width);
+  for (const Table& table : tables) text += (text.empty() ? "" : "\n") + text_of(table, width, remedy);
   return text;
 }
 

@@ -12,6 +12,13 @@ if(leaked)
   message(FATAL_ERROR "installed, but not part of the public interface: ${leaked}")
 endif()
 
+foreach(file bash-completion/completions/poesy zsh/site-functions/_poesy man/man1/poesy.1)
+  file(SIZE ${prefix}/share/${file} size)
+  if(size EQUAL 0)
+    message(FATAL_ERROR "empty: ${file}")
+  endif()
+endforeach()
+
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}
     -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_EXE_LINKER_FLAGS=${LINK_FLAGS}
     -D POESY_EXPECTED_VERSION=${VERSION})

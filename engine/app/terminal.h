@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+
+namespace poesy::app {
+
+/// Columns of the terminal behind a file descriptor, now; 0 when it is none, or does not say.
+std::size_t terminal_width(int descriptor);
+
+/// Whether a line there can be written over: a terminal, and not one that TERM calls "dumb" or says nothing of.
+bool shows_live_lines(int descriptor);
+
+/// Whether colour may be written there: as above, and NO_COLOR is unset or empty (https://no-color.org).
+bool shows_colour(int descriptor);
+
+}  // namespace poesy::app
