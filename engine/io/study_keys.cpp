@@ -38,11 +38,13 @@ std::string plain(std::string_view text) {
   return out;
 }
 
-/// "required for interior, boundary, grid".
-std::string condition(const StudyKey& key) {
+/// "required where select is interior, boundary or grid".
+std::string condition(const StudyTable& table, const StudyKey& key) {
   std::string text(key.required ? "required" : "");
   for (std::size_t w = 0; w < key.only_for.size(); ++w) {
-    text += (w > 0 ? ", " : text.empty() ? "for " : " for ") + std::string(key.only_for[w]);
+    const std::string_view joint = w == 0 ? "" : w + 1 < key.only_for.size() ? ", " : " or ";
+    if (w == 0) text += (text.empty() ? "where " : " where ") + std::string(table.chooser) + " is ";
+    text += std::string(joint) + std::string(key.only_for[w]);
   }
   return text;
 }
@@ -89,10 +91,10 @@ bool holds_for(const StudyKey& key, std::string_view word) {
   return key.only_for.empty() || std::ranges::find(key.only_for, word) != key.only_for.end();
 }
 
-std::string explanation(const StudyKey& key) {
+std::string explanation(const StudyTable& table, const StudyKey& key) {
   std::string text(key.meaning);
   if (!key.bounds.empty()) text += " " + as_sentence(key.bounds);
-  if (key.required || !(key.only_for.empty() || key.may_stay)) text += " " + as_sentence(condition(key));
+  if (key.required || !(key.only_for.empty() || key.may_stay)) text += " " + as_sentence(condition(table, key));
   if (!key.usual.empty()) text += " Default: " + plain(key.usual) + ".";
   return text;
 }

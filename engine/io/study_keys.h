@@ -59,7 +59,7 @@ bool is_name_of_model(const StudyKey& key);
 bool holds_for(const StudyKey& key, std::string_view word);
 
 /// The key in plain text: its meaning and bounds, where it holds or is required, and its default.
-std::string explanation(const StudyKey& key);
+std::string explanation(const StudyTable& table, const StudyKey& key);
 
 /// The whole reference of study files, as Markdown.
 std::string study_reference();

@@ -32,9 +32,15 @@ std::string wrapped(std::string_view text, std::size_t indent) {
   return out + line + "\n";
 }
 
+const StudyTable& described(std::string_view path) {
+  const StudyTable* table = find_study_table(path);
+  POESY_EXPECTS(table != nullptr);
+  return *table;
+}
+
 /// The key, and one step further in its words.
-std::string key_lines(const StudyKey& key, std::size_t depth) {
-  std::string text = wrapped(fmt::format("{}: {}", key.name, explanation(key)), 2 * depth);
+std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t depth) {
+  std::string text = wrapped(fmt::format("{}: {}", key.name, explanation(table, key)), 2 * depth);
   for (const StudyWord& word : key.words) {
     text += wrapped(fmt::format("{}: {}", word.name, word.meaning), 2 * depth + 2);
   }
@@ -54,27 +60,21 @@ std::string comment(std::string_view text) {
 
 std::string explained(std::string_view table, std::string_view key, std::string_view line) {
   const StudyKey& found = study_key(table, key);
-  const std::string one_line = fmt::format("{}  # {}\n", line, explanation(found));
+  const std::string one_line = fmt::format("{}  # {}\n", line, explanation(described(table), found));
   if (found.words.empty() && one_line.size() <= kColumns + 1) return one_line;
-  return fmt::format("{}{}\n", key_lines(found, 0), line);
+  return fmt::format("{}{}\n", explanation_lines(table, key), line);
 }
 
 std::string explanation_lines(std::string_view table, std::string_view key) {
-  return key_lines(study_key(table, key), 0);
+  return key_lines(described(table), study_key(table, key), 0);
 }
 
 std::string keys_lines(std::string_view table, std::size_t depth) {
-  const StudyTable* found = find_study_table(table);
-  POESY_EXPECTS(found != nullptr);
   std::string text;
-  for (const StudyKey& key : found->keys) text += key_lines(key, depth);
+  for (const StudyKey& key : described(table).keys) text += key_lines(described(table), key, depth);
   return text;
 }
 
-std::string_view table_meaning(std::string_view table) {
-  const StudyTable* found = find_study_table(table);
-  POESY_EXPECTS(found != nullptr);
-  return found->meaning;
-}
+std::string_view table_meaning(std::string_view table) { return described(table).meaning; }
 
 }  // namespace poesy

@@ -13,6 +13,7 @@ namespace poesy {
 /// Positions in both of what A and B have in common, in the order of A.
 using Common = std::vector<std::pair<std::size_t, std::size_t>>;
 
+/// Names that both have, and those of one alone.
 Common common(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
 /// The names that `these` has and `others` has not.
@@ -20,18 +21,18 @@ std::vector<std::string> only_in(const std::vector<std::string>& these, const st
 
 /// The numbers of one result, [R x P] in the units shown; without intervals low and high are empty.
 struct ComparedValues {
-  std::vector<double> value;
-  std::vector<double> low = {};
-  std::vector<double> high = {};
+  std::vector<double> value;      ///< one for each thing that is compared
+  std::vector<double> low = {};   ///< lower ends of their intervals; empty where there are none
+  std::vector<double> high = {};  ///< upper ends, likewise
 };
 
 /// One quantity of both results.
 struct ComparedQuantity {
-  std::string label;
+  std::string label;                            ///< for people
   std::string array;                            ///< how its arrays are named
   std::vector<std::vector<std::string>> units;  ///< [R] of one for all items, or of P
-  ComparedValues a;
-  ComparedValues b;
+  ComparedValues a;                             ///< of the first result
+  ComparedValues b;                             ///< of the second
 };
 
 /// What two results say about the same R options and P items.
@@ -41,7 +42,7 @@ struct Comparison {
   std::vector<std::string> options;  ///< [R]
   std::vector<std::string> items;    ///< [P]
   std::vector<std::string> only_a;   ///< items of A alone
-  std::vector<std::string> only_b;
+  std::vector<std::string> only_b;   ///< what the second alone has
   /// Bars show all of them; the first gives ranks and the points against each other, the last the table.
   std::vector<ComparedQuantity> quantities;
   bool ranked = true;  ///< whether items have an order by size

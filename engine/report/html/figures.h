@@ -22,6 +22,7 @@ class ArrayPool {
   /// name stands for one array. Returns the name.
   ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0);
 
+  /// By their names.
   const std::map<std::string, std::vector<float>>& arrays() const { return arrays_; }
 
  private:
@@ -30,103 +31,107 @@ class ArrayPool {
 
 /// Something that the reader may choose, with its options.
 struct Choice {
-  std::string label;
-  std::vector<std::string> options;
+  std::string label;                 ///< what is chosen
+  std::vector<std::string> options;  ///< what there is to choose from
 };
 
 /// What bars may show: S series, R options of the choice, P items.
 struct BarQuantity {
-  std::string label;
+  std::string label;                            ///< for people
   std::vector<std::vector<std::string>> units;  ///< [R] of one for all items, or of P
   ArrayName value;                              ///< [S x R x P]
   ArrayName low = {};                           ///< likewise; none: without intervals
-  ArrayName high = {};
+  ArrayName high = {};                          ///< upper ends of the intervals; empty where there are none
 };
 
 /// Horizontal bars, the largest first where they are sorted.
 struct Bars {
-  std::vector<Choice> choices;
-  std::vector<BarQuantity> quantities;
+  std::vector<Choice> choices;           ///< what the reader may choose between
+  std::vector<BarQuantity> quantities;   ///< what a bar may show
   std::vector<std::string> items;        ///< [P]
   std::vector<std::string> series = {};  ///< [S]; empty where S = 1
-  bool sorted = true;
-  bool log = false;
+  bool sorted = true;                    ///< largest first
+  bool log = false;                      ///< whether the scale is logarithmic
 };
 
+/// An axis of a figure.
 struct Coordinate {
-  std::string name;
-  std::string unit;
-  ArrayName value;  ///< [M]
+  std::string name;  ///< for people
+  std::string unit;  ///< of its numbers
+  ArrayName value;   ///< [M]
 };
 
+/// One of the quantities that a map may show.
 struct HeatLayer {
-  std::string label;
-  std::string unit;
-  ArrayName value;  ///< [P x M]
+  std::string label;  ///< for people
+  std::string unit;   ///< of its numbers
+  ArrayName value;    ///< [P x M]
 };
 
 /// P rows, M columns.
 struct HeatMap {
-  std::vector<HeatLayer> layers;
-  std::vector<std::string> rows;
-  std::string column_label;
+  std::vector<HeatLayer> layers;        ///< what the reader may choose between
+  std::vector<std::string> rows;        ///< names, from above
+  std::string column_label;             ///< what stands from left to right
   std::vector<Coordinate> coordinates;  ///< of the columns
   ArrayName numbers = {};               ///< [M] of the columns; none: they count from 0
-  bool log = false;
+  bool log = false;                     ///< whether the colours follow the logarithm
 };
 
 /// What may colour M poses; with rows, one of P may be chosen.
 struct Field {
-  std::string label;
-  std::string unit;
+  std::string label;                   ///< for people
+  std::string unit;                    ///< of its numbers
   ArrayName value;                     ///< [M], or [P x M]
   std::vector<std::string> rows = {};  ///< [P]
 };
 
 /// Poses as dots in their coordinates.
 struct Workspace {
-  std::vector<Coordinate> coordinates;
-  std::vector<Field> fields;
-  ArrayName numbers = {};  ///< [M] of the poses; none: they count from 0
+  std::vector<Coordinate> coordinates;  ///< of the poses
+  std::vector<Field> fields;            ///< what may be shown at them
+  ArrayName numbers = {};               ///< [M] of the poses; none: they count from 0
 };
 
 /// A line over the K values of x.
 struct Series {
-  std::string label;
-  ArrayName value;  ///< [K]
-  ArrayName low = {};
-  ArrayName high = {};
+  std::string label;            ///< for people
+  ArrayName value;              ///< [K]
+  ArrayName low = {};           ///< lower ends of the intervals; empty where there are none
+  ArrayName high = {};          ///< upper ends, likewise
   std::string style = "solid";  ///< "solid", "dashed" or "dotted"
 };
 
+/// Curves over one axis.
 struct Panel {
-  std::string label;
-  std::string unit;
-  std::vector<Series> series;
+  std::string label;           ///< for people
+  std::string unit;            ///< of its numbers
+  std::vector<Series> series;  ///< the curves
 };
 
+/// Panels below one another, over the same axis.
 struct Lines {
-  Coordinate x;
-  std::vector<Panel> panels;
-  bool log = false;      ///< of x
-  std::size_t most = 8;  ///< series that are shown until the reader asks for more
+  Coordinate x;               ///< of all panels
+  std::vector<Panel> panels;  ///< from above
+  bool log = false;           ///< of x
+  std::size_t most = 8;       ///< series that are shown until the reader asks for more
 };
 
 /// Points with names: R options of the choice, P points.
 struct Scatter {
-  std::vector<Choice> choices;
+  std::vector<Choice> choices;          ///< what the reader may choose between
   std::pair<std::string, ArrayName> x;  ///< label, [R x P]
-  std::pair<std::string, ArrayName> y;
-  std::vector<std::string> units;  ///< [R]
-  std::vector<std::string> names;  ///< [P]
+  std::pair<std::string, ArrayName> y;  ///< label and values of the axis upwards
+  std::vector<std::string> units;       ///< [R]
+  std::vector<std::string> names;       ///< [P]
 };
 
-using Figure = std::variant<Bars, HeatMap, Workspace, Lines, Scatter>;
+using Figure = std::variant<Bars, HeatMap, Workspace, Lines, Scatter>;  ///< Any of them.
 
 /// The figures of a document by their keys, and the numbers that they show.
 struct FigureSet {
-  std::map<std::string, Figure> figures;
-  ArrayPool pool;
+  std::map<std::string, Figure> figures;  ///< by their names in the page
+  ArrayPool pool;                         ///< the numbers behind them
 };
 
 /// All of it as JSON that may stand in a script element of HTML: no "<" is in it. Arrays are little-endian 32-bit

@@ -24,6 +24,7 @@ struct SolveTally {
   std::vector<double> shares_by_pose() const;  ///< [M]
 };
 
+/// Of all solves of the result.
 SolveTally tally_of(const StoredResult& result);
 
 /// The section that tells what was not solved: how solves ended, which rows and poses have how many that did not

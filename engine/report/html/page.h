@@ -12,20 +12,27 @@ namespace poesy {
 /// A section of the report under a heading. All texts are plain ones, escaped here.
 class Section {
  public:
+  /// Id: as an anchor; heading: for people.
   Section(std::string id, std::string heading) : id_(std::move(id)), heading_(std::move(heading)) {}
 
+  /// Adds one.
   Section& paragraph(std::string_view text);
+  /// Adds one.
   Section& subheading(std::string_view text);
   /// The place of a figure of the page, which is drawn by its script.
   Section& figure(std::string_view key, std::string_view caption);
+  /// Adds it, open.
   Section& table(const Table& table);
   /// Tables that are open only when the reader asks for them.
   Section& folded(std::string_view summary, const std::vector<Table>& tables);
+  /// Adds one that the reader may unfold.
   Section& folded(std::string_view summary, const Table& table) { return folded(summary, std::vector{table}); }
   /// A long text as it stands, open only when the reader asks for it.
   Section& folded_text(std::string_view summary, std::string_view text);
 
+  /// As an anchor.
   const std::string& id() const { return id_; }
+  /// For people.
   const std::string& heading() const { return heading_; }
   const std::string& body() const { return body_; }  ///< HTML
 
@@ -37,11 +44,11 @@ class Section {
 
 /// What a report consists of.
 struct Page {
-  std::string title;
-  std::string subtitle;
-  std::vector<std::string> warnings;
-  std::vector<Section> sections;
-  FigureSet figures;
+  std::string title;                  ///< of the study, or of the result
+  std::string subtitle;               ///< what stands below the title
+  std::vector<std::string> warnings;  ///< what a reader must know first
+  std::vector<Section> sections;      ///< in order
+  FigureSet figures;                  ///< of all sections
 };
 
 /// The page as one HTML document that needs no other file.

@@ -16,7 +16,9 @@ namespace poesy {
 
 /// The unit in which people read it, "mm"; empty for a pure number.
 std::string unit_text(const NamedUnit& named);
+/// The names, in order.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things);
+/// The names at these positions.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
 /// The headline's responses, the one that ranks errors first (default_ranking).
 std::vector<std::size_t> headline_order(const StoredResult& result);
@@ -37,16 +39,17 @@ std::vector<Table> take_tables(std::vector<Table>& tables, std::span<const std::
 struct ShownCells {
   /// Numbers of one figure: with more of them in all, responses that are not of the headline are left out, then poses.
   static constexpr std::size_t kMostWithAllResponses = 300'000;
-  static constexpr std::size_t kMost = 600'000;
-  static constexpr std::size_t kMostInLayer = 400'000;
+  static constexpr std::size_t kMost = 600'000;         ///< Numbers that a page may hold.
+  static constexpr std::size_t kMostInLayer = 400'000;  ///< Numbers that one layer may hold.
 
   std::vector<std::size_t> responses;  ///< positions
   std::vector<std::size_t> poses;      ///< ascending
-  std::size_t all_responses = 0;
-  std::size_t all_poses = 0;
+  std::size_t all_responses = 0;       ///< of the result, shown or not
+  std::size_t all_poses = 0;           ///< of the result, shown or not
 
   /// Of numbers at all poses, [rows x M], those at the poses that are shown.
   std::vector<double> at_poses(std::span<const double> values) const;
+  /// Whether not every pose is shown.
   bool thinned() const { return poses.size() < all_poses; }
   /// What is left out, in a sentence; empty where nothing is.
   std::string note() const;

@@ -9,8 +9,8 @@ namespace poesy {
 
 /// A result and the file where it was found, as the reader may name it.
 struct ReportedResult {
-  StoredResult stored;
-  std::string path;
+  StoredResult stored;  ///< what it says
+  std::string path;     ///< where it was read from
 };
 
 /// The report of one result, or the comparison of two, as one HTML document that needs no other file: what was run,

@@ -11,10 +11,11 @@ namespace poesy {
 
 /// A fact about a run with its label: the same labels in the same order for every result.
 struct RunFact {
-  std::string label;
-  std::string text;  ///< "-" where it is not known or does not apply
+  std::string label;  ///< for people
+  std::string text;   ///< "-" where it is not known or does not apply
 };
 
+/// How and where the result came into being.
 std::vector<RunFact> run_facts(const ReportedResult& result);
 
 /// The section that tells what was run, of one result, or of two side by side with what differs marked.

@@ -324,7 +324,8 @@ TEST(Template, ExplainsEveryKeyInTheWordsOfItsDescription) {
   for (const StudyTable& table : study_tables()) {
     for (const StudyKey& key : table.keys) {
       if (!in_templates(table, key)) continue;
-      EXPECT_NE(all.find(words_of(explanation(key))), std::string::npos) << table.paths.front() << " " << key.name;
+      EXPECT_NE(all.find(words_of(explanation(table, key))), std::string::npos)
+          << table.paths.front() << " " << key.name;
     }
   }
 }
