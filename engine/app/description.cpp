@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/app/shells.h"
+#include "engine/report/tables.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 
@@ -21,6 +22,8 @@ std::vector<std::string> words_for(const std::string& value) {
     for (const CatalogEntry& entry : registry()) words.push_back(entry.description.name);
   } else if (value == "KIND") {
     for (const Analysis::Kind kind : kKinds) words.emplace_back(name(kind));
+  } else if (value == "KEY") {
+    words.assign(kRowOrders.begin(), kRowOrders.end());
   } else if (value == "SHELL") {
     words.assign(kShells.begin(), kShells.end());
   }

@@ -12,6 +12,7 @@
 #include "engine/app/failure_limit.h"
 #include "engine/app/interrupt.h"
 #include "engine/app/message.h"
+#include "engine/app/output_width.h"
 #include "engine/app/progress.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
@@ -19,6 +20,7 @@
 #include "engine/io/study_file.h"
 #include "engine/io/table_file.h"
 #include "engine/report/tables.h"
+#include "engine/report/text_table.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"
 
@@ -97,10 +99,10 @@ int evaluate(const Options& options) {
                      run_facts(seconds, threads, total.total()));
   }
   shown.evaluation = std::move(*result);
-  std::fputs(
-      fmt::format("{} solves, {} not converged\n{}", total.total(), total.not_converged(), evaluation_table(shown))
-          .c_str(),
-      stdout);
+  std::fputs(fmt::format("{} solves, {} not converged\n\n{}", total.total(), total.not_converged(),
+                         text_of(evaluation_table(shown), output_width()))
+                 .c_str(),
+             stdout);
   return judge_failures(study, total, options.study,
                         options.result.empty() ? "run it again with -o RESULT.h5 to see which failed"
                                                : "the result is kept: see /evaluate/status in " + options.result);

@@ -1,22 +1,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/description.h"
 #include "engine/app/exit_code.h"
+#include "engine/app/output_width.h"
+#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
+#include "engine/io/wording.h"
+#include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
+#include "engine/report/text_table.h"
 
 namespace poesy::app {
 namespace {
 
+constexpr std::uint64_t kMostNumber = 1000000;  ///< of lines and characters
+constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --json";
+
 struct Options {
   std::string result;
   std::string response;
+  std::optional<std::string> sort;
+  std::optional<std::size_t> top;
+  std::optional<std::size_t> width;
+  bool json = false;
 };
 
 std::string response_of(const Options& options, const StoredResult& result) {
@@ -26,8 +43,30 @@ std::string response_of(const Options& options, const StoredResult& result) {
     if (response.name == options.response) return response.name;
     known += (known.empty() ? "" : ", ") + response.name;
   }
-  throw InputError({options.result}, fmt::format("--response: no response '{}' in this result", options.response),
+  throw InputError({options.result},
+                   fmt::format("--response: no response '{}' in this result", printable(options.response)),
                    "it has " + known);
+}
+
+RowOrder order_of(const Options& options) {
+  if (!options.sort) return RowOrder::effect;
+  const auto at = std::ranges::find(kRowOrders, *options.sort);
+  if (at != kRowOrders.end()) return static_cast<RowOrder>(at - kRowOrders.begin());
+  throw InputError({}, fmt::format("--sort: '{}' is no order of errors", printable(*options.sort)),
+                   suggestion(*options.sort, kRowOrders));
+}
+
+/// Options that speak of ranked errors need some.
+void check_ranks(const Options& options, const StoredResult& result) {
+  if (result.kind == "sensitivity") return;
+  for (const auto& [given, option] :
+       {std::pair(options.sort.has_value(), "--sort"), {options.top.has_value(), "--top"}}) {
+    if (!given) continue;
+    throw InputError({options.result},
+                     fmt::format("{}: this is a result of kind '{}', and only those of kind 'sensitivity' rank errors",
+                                 option, result.kind),
+                     fmt::format("leave out {}", option));
+  }
 }
 
 /// Lets the tables show this response and no other.
@@ -37,13 +76,17 @@ void show_alone(const std::string& response, StoredResult& result) {
 }
 
 int show(const Options& options) {
+  const RowOrder order = order_of(options);
   StoredResult result = read_result_warily(options.result);
+  check_ranks(options, result);
   const std::string response = response_of(options, result);
   if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
-  std::fputs(summary_text(result).c_str(), stdout);
-  std::fputs(failures_text(result, options.result).c_str(), stdout);
-  std::fputs("\n", stdout);
-  std::fputs(result_tables(result, response).c_str(), stdout);
+  std::vector<Table> tables = result_tables(result, response, order);
+  if (options.top) keep_first(*options.top, tables);
+  const std::string text = options.json ? json_of(result, tables)
+                                        : summary_text(result) + failures_text(result, options.result) + "\n" +
+                                              text_of(tables, options.width.value_or(output_width()), kRemedy);
+  std::fputs(text.c_str(), stdout);
   return kDone;
 }
 
@@ -55,8 +98,22 @@ void add_show(CLI::App& program, Action& action) {
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
   command->add_option("--response", options->response, "response to rank by, or to show alone where nothing is ranked")
       ->type_name("NAME");
+  command
+      ->add_option("--sort", options->sort,
+                   fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "
+                               "effect",
+                               fmt::join(kRowOrders, ", ")))
+      ->type_name("KEY");
+  add_whole_number(*command, "--top", "--top", options->top, "only the first N errors of a sensitivity result", 1,
+                   kMostNumber)
+      ->type_name("N");
+  add_whole_number(*command, "--width", "--width", options->width,
+                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostNumber)
+      ->type_name("N");
+  command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
   command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
-                              {"ranked by another response", "poesy show result.h5 --response angular_deformation"}}));
+                              {"the ten errors that another response ranks first",
+                               "poesy show result.h5 --response angular_deformation --top 10"}}));
   command->callback([options, &action] { action = [options] { return show(*options); }; });
 }
 

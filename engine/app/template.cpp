@@ -6,6 +6,7 @@
 #include "engine/app/find_model.h"
 #include "engine/base/error.h"
 #include "engine/io/study_file.h"
+#include "engine/io/study_keys.h"
 #include "engine/io/wording.h"
 
 namespace poesy::app {
@@ -35,18 +36,34 @@ int print_template(const std::string& model, const std::string& kind) {
   return kDone;
 }
 
+int print_reference() {
+  std::fputs(study_reference().c_str(), stdout);
+  return kDone;
+}
+
 }  // namespace
 
 void add_template(CLI::App& program, Action& action) {
   auto model = std::make_shared<std::string>();
   auto kind = std::make_shared<std::string>("sensitivity");
+  auto reference = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("template", "print a complete, commented study file");
-  command->add_option("model", *model, "mechanism")->required()->type_name("MODEL");
+  CLI::Option* named = command->add_option("model", *model, "mechanism")->type_name("MODEL");
   command->add_option("kind", *kind, "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling")
       ->type_name("KIND");
+  command->add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
+      ->excludes(named);
   command->footer(footer("", {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
-                              {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"}}));
-  command->callback([model, kind, &action] { action = [model, kind] { return print_template(*model, *kind); }; });
+                              {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
+                              {"every key of a study file, as text", "poesy template --reference"}}));
+  command->callback([=, &action] {
+    if (*reference) {
+      action = print_reference;
+      return;
+    }
+    if (named->count() == 0) throw CLI::RequiredError(named->get_type_name());
+    action = [model, kind] { return print_template(*model, *kind); };
+  });
 }
 
 }  // namespace poesy::app

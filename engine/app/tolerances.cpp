@@ -10,11 +10,12 @@
 #include "engine/app/command.h"
 #include "engine/app/description.h"
 #include "engine/app/exit_code.h"
+#include "engine/app/output_width.h"
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/io/tolerance_files.h"
 #include "engine/io/wording.h"
-#include "engine/report/display.h"
+#include "engine/report/text_table.h"
 #include "engine/report/tolerance_table.h"
 #include "engine/run/sensitivity.h"
 #include "models/registry.h"
@@ -168,7 +169,8 @@ int set_tolerances(const Options& options) {
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
   if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
-  std::string text = tolerance_table(result, found) + "\n" + write_files(options, result, found);
+  std::string text =
+      text_of(tolerance_table(result, found), output_width()) + "\n" + write_files(options, result, found);
   if (found.limit) text += explanation(result, found);
   std::fputs(text.c_str(), stdout);
   return kDone;

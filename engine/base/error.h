@@ -9,9 +9,9 @@ namespace poesy {
 
 /// Where in a text file something stands. Line and column count from 1; 0 means unknown.
 struct Place {
-  std::string file;
-  std::size_t line = 0;
-  std::size_t column = 0;
+  std::string file;        ///< as the user named it; empty where there is none
+  std::size_t line = 0;    ///< counts from 1; 0 where there is none
+  std::size_t column = 0;  ///< counts from 1, in bytes; 0 where there is none
 };
 
 /// "FILE", "FILE:LINE" or "FILE:LINE:COL", as much as is known; empty for an empty place.
@@ -21,6 +21,7 @@ std::string to_string(const Place& place);
 /// what() reads "FILE:LINE:COL: problem; remedy".
 class InputError : public std::runtime_error {
  public:
+  /// One line: the place, what is wrong, and what to do.
   InputError(const Place& place, std::string_view problem, std::string_view remedy);
 };
 
@@ -28,6 +29,7 @@ class InputError : public std::runtime_error {
 /// what() reads "PATH: problem; remedy".
 class FileError : public std::runtime_error {
  public:
+  /// One line: the file, what is wrong, and what to do.
   FileError(std::string_view path, std::string_view problem, std::string_view remedy);
 };
 

@@ -8,10 +8,12 @@ namespace poesy {
 /// A position in one particular list. Positions of different lists do not mix.
 template <class List>
 struct Index {
-  std::size_t value = 0;
+  std::size_t value = 0;  ///< counts from 0
 
   constexpr Index() = default;
+  /// Explicit, so that positions of different lists do not mix.
   constexpr explicit Index(std::size_t position) : value(position) {}
+  /// By position.
   friend constexpr auto operator<=>(const Index&, const Index&) = default;
 };
 

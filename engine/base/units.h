@@ -8,13 +8,14 @@
 
 namespace poesy {
 
+/// What a value measures; a number has no unit.
 enum class Dimension { length, angle, time, number };
 
 /// A unit that may stand in a study file: its name and its size in SI (m, rad, s).
 struct Unit {
-  std::string_view name;
-  Dimension dimension;
-  double si;
+  std::string_view name;  ///< as a study file has it: "mm"
+  Dimension dimension;    ///< what it measures
+  double si;              ///< its size
 };
 
 /// m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.
@@ -35,9 +36,10 @@ const Unit& display_unit(Dimension dimension);
 /// "length", "angle", "time" or "number".
 std::string_view name(Dimension dimension);
 
+/// A value with its dimension.
 struct Quantity {
-  double si = 0.0;
-  Dimension dimension = Dimension::number;
+  double si = 0.0;                          ///< the value, in m, rad, s or without unit
+  Dimension dimension = Dimension::number;  ///< what it measures
 };
 
 /// A quantity's text does not follow "NUMBER UNIT". what() is a clause without a place.

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
 
 bool draws_samples(const Study& study) {

@@ -19,15 +19,16 @@ inline constexpr std::string_view kCheckpointMagic = "poesy-checkpoint";
 
 /// What a run must have in common with the checkpoint that it takes up.
 struct CheckpointIdentity {
-  std::string poesy_version;
-  std::string git_commit;
-  std::string model;
-  std::uint64_t seed = 0;
+  std::string poesy_version;  ///< exact: bytes of a state are for the program that wrote them
+  std::string git_commit;     ///< of that program
+  std::string model;          ///< its name
+  std::uint64_t seed = 0;     ///< of the draws
   std::uint64_t samples = 0;  ///< 0 where the kind of study draws none; a run may have more than its checkpoint
   std::string study;          ///< the resolved study, without title, seed, samples and max_not_converged
   std::string poses;          ///< SHA-256 of the poses, hexadecimal
   std::string shard = {};     ///< "2/5"; empty for the whole study
 
+  /// Whether nothing differs.
   bool operator==(const CheckpointIdentity&) const = default;
 };
 
@@ -37,15 +38,15 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses,
 
 /// Seconds that a run took.
 struct RunTime {
-  double wall = 0.0;
+  double wall = 0.0;         ///< of the whole run
   double checkpoints = 0.0;  ///< of these, for checkpoints
 };
 
 /// An unfinished run.
 struct Checkpoint {
-  CheckpointIdentity identity;
-  RunTime time;               ///< that it took so far
-  std::vector<Bytes> stages;  ///< states of its stages (engine/run/checkpoints.h)
+  CheckpointIdentity identity;  ///< what a run that takes it up must have
+  RunTime time;                 ///< that it took so far
+  std::vector<Bytes> stages;    ///< states of its stages (engine/run/checkpoints.h)
 };
 
 /// Throws InputError that names the first difference, unless a run of this identity may take up the checkpoint of that
@@ -55,7 +56,7 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 /// The bytes of a checkpoint file, piece by piece, for states may be large. In the notation of engine/base/bytes.h:
 ///
 ///     16 bytes "poesy-checkpoint"
-///     number   version of the format, 1
+///     number   version of the format, 2
 ///     text     poesy_version, git_commit, model
 ///     number   seed, samples
 ///     text     study, poses, shard
@@ -69,6 +70,7 @@ class CheckpointPieces {
   /// Refers to the stages.
   CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
 
+  /// Bytes of the whole file.
   std::size_t size() const;
   /// Calls write(bytes) with each piece in order.
   template <class Write>

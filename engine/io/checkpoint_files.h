@@ -10,8 +10,8 @@ namespace poesy {
 
 /// A checkpoint that was found.
 struct FoundCheckpoint {
-  Checkpoint checkpoint;
-  std::string path;
+  Checkpoint checkpoint;    ///< its content
+  std::string path;         ///< the file that it was read from
   std::string passed_over;  ///< why the newer one could not be taken; empty when this is the newer one
 };
 
@@ -20,8 +20,10 @@ struct FoundCheckpoint {
 /// newer one was renamed to be the older one. At any moment at least one of those that were there is there.
 class CheckpointFiles {
  public:
+  /// Beside this result.
   explicit CheckpointFiles(const std::string& result_path);
 
+  /// Path of the newer one, RESULT.h5.part.
   const std::string& newer() const { return newer_; }
   /// Whether there is a file, sound or not.
   bool exist() const;

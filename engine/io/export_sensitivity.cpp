@@ -96,6 +96,7 @@ void export_sensitivity(TableFolder& folder, const StoredResult& result) {
   export_separation(folder, result);
   export_fidelity(folder, result);
   export_convergence(folder, result);
+  export_history(folder, result);
 }
 
 }  // namespace poesy

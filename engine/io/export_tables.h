@@ -15,6 +15,7 @@ namespace poesy {
 /// One CSV file that is being written.
 class CsvTable {
  public:
+  /// Writes the line of names.
   CsvTable(const std::string& path, const std::vector<std::string>& columns);
 
   /// A line: its first cell (or cells, with their commas) as it stands, then numbers; NaN as "NaN".
@@ -32,6 +33,7 @@ class CsvTable {
 /// The folder of a result's tables.
 class TableFolder {
  public:
+  /// The folder must exist.
   explicit TableFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Writes NAME.csv with these columns; fill(table) gives its rows.
@@ -44,6 +46,7 @@ class TableFolder {
     files_.push_back(path);
   }
 
+  /// Paths of the tables, in the order in which they were written.
   const std::vector<std::string>& files() const { return files_; }
 
  private:
@@ -70,7 +73,9 @@ std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_
   return text;
 }
 
+/// Names of units for units_of: as stored, in SI.
 inline const auto kSi = [](const std::string& unit) { return unit; };
+/// Names of units for units_of: as people read them.
 inline const auto kDisplay = [](const std::string& unit) { return std::string(display_unit(dimension_of(unit)).name); };
 
 /// The columns of append_solves.
@@ -88,16 +93,25 @@ void write_factors(TableFolder& folder, const StoredResult& result);
 void write_cells(TableFolder& folder, const StoredResult& result, const std::string& name,
                  std::span<const double> values, const std::string& unit);
 
+/// global.csv, and tables with a row for each factor and a column for each pose.
 void export_sensitivity(TableFolder& folder, const StoredResult& result);
 /// tolerances_RESPONSE.csv for every response; none for a file of an older version.
 void export_tolerances(TableFolder& folder, const StoredResult& result);
 /// Nothing where the result has no such part.
 void export_separation(TableFolder& folder, const StoredResult& result);
+/// fidelity.csv; nothing where the study does not compare two.
 void export_fidelity(TableFolder& folder, const StoredResult& result);
+/// convergence.csv, and convergence_RESPONSE.csv for every response; nothing where the number of samples was fixed.
 void export_convergence(TableFolder& folder, const StoredResult& result);
+/// history.csv; nothing where the study has none.
+void export_history(TableFolder& folder, const StoredResult& result);
+/// evaluate.csv, errors.csv and, for named cases, cases.csv.
 void export_evaluation(TableFolder& folder, const StoredResult& result);
+/// groups.csv, identification.csv and couplings.csv.
 void export_identification(TableFolder& folder, const StoredResult& result);
+/// overall.csv, and monte_carlo_RESPONSE.csv for every response.
 void export_monte_carlo(TableFolder& folder, const StoredResult& result);
+/// coupling.csv and coupling_summary.csv.
 void export_coupling(TableFolder& folder, const StoredResult& result);
 
 }  // namespace poesy

@@ -21,7 +21,9 @@ class FileWriter {
 
   /// The size that the file is going to have, for the message when it finds no room.
   void expect(std::size_t bytes) { expected_ = bytes; }
+  /// Appends. Throws FileError.
   void write(std::span<const std::byte> bytes);
+  /// Appends. Throws FileError.
   void write(std::string_view text);
   /// Brings everything to the disk. Nothing may be written afterwards.
   void sync();

@@ -30,9 +30,10 @@ std::size_t size(const Shape& shape);
 
 /// The value of a dataset or attribute as it is stored, whatever its type.
 struct Value {
+  /// Kinds of numbers, and text.
   enum class Type { floating, signed_integer, unsigned_integer, text };
 
-  Type type = Type::text;
+  Type type = Type::text;            ///< decides which of the members below hold the elements
   std::size_t width = 0;             ///< bytes per number; 0 for text
   Shape shape;                       ///< row-major
   std::vector<std::byte> numbers;    ///< [size(shape) * width], little-endian
@@ -48,13 +49,16 @@ class File {
   /// An existing file, read-only.
   static File open(const std::string& path);
 
+  /// Leaves a file that may only be destroyed.
   File(File&& other) noexcept;
+  /// Closes the file that it had.
   File& operator=(File&& other) noexcept;
   ~File();
 
   /// The bytes of the whole file, ready to be written to disk.
   std::vector<std::byte> image() const;
 
+  /// Creates a group; those above it must exist.
   void make_group(const std::string& path);
   /// Creates a dataset. Precondition: values.size() == size(shape).
   template <Element T>
@@ -62,6 +66,7 @@ class File {
   /// Creates an attribute of the object at path: a scalar, or a list.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, const T& value);
+  /// A list of values.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, std::span<const T> values);
   /// Makes a one-dimensional dataset a dimension scale named after itself.
@@ -71,14 +76,18 @@ class File {
   /// Gives an object a second name (hard link).
   void link(const std::string& existing, const std::string& second);
 
+  /// Whether there is an object.
   bool exists(const std::string& path) const;
+  /// Whether there is an object, and it is a group.
   bool is_group(const std::string& path) const;
   /// Names of the links in a group, in the order of their bytes.
   std::vector<std::string> children(const std::string& path) const;
   /// Names of the attributes of an object, in the order of their bytes.
   std::vector<std::string> attributes(const std::string& path) const;
+  /// Whether the object at path has it.
   bool has_attribute(const std::string& path, const std::string& name) const;
 
+  /// Of a dataset; empty for a scalar.
   Shape shape(const std::string& path) const;
   /// All elements of a dataset, row-major; numbers are converted to T.
   template <Element T>
@@ -86,7 +95,9 @@ class File {
   /// All elements of an attribute.
   template <Element T>
   std::vector<T> attribute(const std::string& path, const std::string& name) const;
+  /// A dataset as it is stored.
   Value value(const std::string& path) const;
+  /// An attribute as it is stored.
   Value attribute_value(const std::string& path, const std::string& name) const;
 
  private:

@@ -11,8 +11,8 @@ namespace poesy {
 
 /// What a dataset says about itself.
 struct Label {
-  std::string unit;
-  std::string description;
+  std::string unit;         ///< "m", "rad,rad,rad,m,m,m" where components differ, or "1"
+  std::string description;  ///< a sentence for people
 };
 
 /// Composes an HDF5 file in memory in which every dataset has a unit, a description and named axes.
@@ -30,11 +30,13 @@ class ResultBuilder {
   template <h5::Element T>
   void add(const std::string& path, const std::vector<std::string>& axes, std::span<const T> values,
            const Label& label);
+  /// A dataset with one axis for each of its dimensions. Precondition: the axes were added.
   template <h5::Element T>
   void add(const std::string& path, const std::vector<std::string>& axes, const std::vector<T>& values,
            const Label& label) {
     add(path, axes, std::span<const T>(values), label);
   }
+  /// A single value.
   template <h5::Element T>
   void add_scalar(const std::string& path, const T& value, const Label& label) {
     add(path, {}, std::span<const T>(&value, 1), label);

@@ -16,9 +16,9 @@
 namespace poesy {
 
 /// Writes the result of a sensitivity study: /sensitivity, /tolerances and /solver, and with them /separation where the
-/// model separates its errors, /fidelity where the study compares two fidelities and /convergence where its samples are
-/// adaptive. The file appears whole or not at all under its name: written beside it under a temporary name, synced,
-/// renamed. Throws FileError and leaves an existing file as it was.
+/// model separates its errors, /fidelity where the study compares two fidelities, /convergence where its samples are
+/// adaptive and /sensitivity/history where they are not. The file appears whole or not at all under its name: written
+/// beside it under a temporary name, synced, renamed. Throws FileError and leaves an existing file as it was.
 void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts);
 
@@ -49,7 +49,7 @@ void check_result_path(const std::string& path, std::span<const std::string> inp
 
 /// A pose coordinate or response or factor as a result file names it.
 struct NamedUnit {
-  std::string name;
+  std::string name;  ///< as in the model's description
   std::string unit;  ///< "m", "rad" or "1"
 };
 
@@ -58,32 +58,32 @@ const Unit& display(const NamedUnit& named);
 
 /// What a coupling study found, with the names of its axes.
 struct StoredCoupling {
-  CouplingResult found;
+  CouplingResult found;                 ///< the numbers
   std::vector<std::string> size_names;  ///< [Z] "0.1 mm"
   std::vector<double> linear;           ///< [Z] m; NaN where no error is a length
   std::vector<double> angular;          ///< [Z] rad; NaN where no error is an angle
-  std::vector<std::string> sources;
-  std::vector<std::string> subsets;  ///< [K] "FS+T"
+  std::vector<std::string> sources;     ///< [S] names
+  std::vector<std::string> subsets;     ///< [K] "FS+T"
 };
 
 /// What a result file of any kind says, read back. Members that the file does not have are empty.
 /// Where a model has details, evaluation.detail holds their components in the order of `details`.
 struct StoredResult {
-  std::string kind;  ///< "sensitivity", "identification", "evaluate", "monte-carlo" or "coupling"
-  std::string title;
-  std::string model;
-  std::string study_text;
-  std::string poesy_version;
-  std::string git_commit;
-  std::string content_sha256;
-  bool changed = false;  ///< whether the content no longer has that hash
-  std::vector<NamedUnit> pose_coordinates;
-  PoseSet poses;
-  std::vector<double> condition;  ///< [M] of each pose; empty in files of older versions
-  std::vector<double> time;       ///< [M] s, ascending, of poses along a trajectory; else empty
-  std::vector<NamedUnit> factors;
-  std::vector<double> factor_sigma;  ///< [P] standard deviations, SI
-  std::vector<NamedUnit> responses;
+  std::string kind;            ///< "sensitivity", "identification", "evaluate", "monte-carlo" or "coupling"
+  std::string title;           ///< of the study
+  std::string model;           ///< name of the mechanism
+  std::string study_text;      ///< the study with every default filled in
+  std::string poesy_version;   ///< of the program that wrote it
+  std::string git_commit;      ///< of that program
+  std::string content_sha256;  ///< as the file states it
+  bool changed = false;        ///< whether the content no longer has that hash
+  std::vector<NamedUnit> pose_coordinates;  ///< names of a pose's columns
+  PoseSet poses;                            ///< [M]
+  std::vector<double> condition;            ///< [M] of each pose; empty in files of older versions
+  std::vector<double> time;                 ///< [M] s, ascending, of poses along a trajectory; else empty
+  std::vector<NamedUnit> factors;           ///< [P] errors that vary or are tried
+  std::vector<double> factor_sigma;         ///< [P] standard deviations, SI
+  std::vector<NamedUnit> responses;         ///< [R]
   std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows: all, unless the model chose
   std::vector<std::size_t> signed_headline;  ///< that a summary of coupled sources shows
   SensitivityResult sensitivity;             ///< `background` is empty in files of older versions
@@ -92,18 +92,18 @@ struct StoredResult {
   std::string separation_measure;                                  ///< what length sensitivity.separation speaks of
   std::vector<std::string> published_class;  ///< [P] the literature's class of each error, where that is separated
   std::vector<std::string> fidelities;       ///< the two that sensitivity.fidelity compares
-  EvaluationResult evaluation;
-  std::vector<Detail> details;
-  std::vector<std::string> joints;
-  Pairing pairing = Pairing::every_pose_with_every_row;
-  std::vector<double> errors;      ///< [S x P], or [M x P] row by row; SI
-  std::vector<std::string> cases;  ///< names of the evaluation's samples, where they are cases
-  CaseResult case_result;          ///< its sums over the poses; its `evaluation` is empty, see above
-  IdentificationResult identification;
-  std::vector<ErrorSize> groups;  ///< of the identification
-  MonteCarloResult monte_carlo;
-  StoredCoupling coupling;
-  RunFacts facts;
+  EvaluationResult evaluation;               ///< of an evaluation, and of cases
+  std::vector<Detail> details;               ///< of the evaluation
+  std::vector<std::string> joints;           ///< [joints] names
+  Pairing pairing = Pairing::every_pose_with_every_row;  ///< of poses with rows of errors, in an evaluation
+  std::vector<double> errors;                            ///< [S x P], or [M x P] row by row; SI
+  std::vector<std::string> cases;                        ///< names of the evaluation's samples, where they are cases
+  CaseResult case_result;               ///< its sums over the poses; its `evaluation` is empty, see above
+  IdentificationResult identification;  ///< of an identification result
+  std::vector<ErrorSize> groups;        ///< of the identification
+  MonteCarloResult monte_carlo;         ///< of a Monte Carlo result
+  StoredCoupling coupling;              ///< of a coupling result
+  RunFacts facts;                       ///< of the run, no part of the content
 };
 
 /// What a failure's address says where all errors vary together.
@@ -119,9 +119,11 @@ const std::vector<Failure>& listed_failures(const StoredResult& result);
 /// was written is read as it is, and says so.
 StoredResult read_result(const std::string& path);
 
+/// What a recomputed content hash is compared with.
 struct Verification {
   std::string stored;    ///< the hash that the file carries
   std::string computed;  ///< the hash of its content as it is now
+  /// Whether the content is what was written.
   bool matches() const { return stored == computed; }
 };
 
@@ -149,6 +151,8 @@ Verification verify_result(const std::string& path);
 ///                               discrepancy, nonlinearity, SI; where the study compares two, as the next:
 ///     fidelity_not_converged.csv   factor | one column a pose, samples that the second fidelity did not solve
 ///
+///     history_RESPONSE.csv      factor | samples, index and interval after so many, SI; where the study has a fixed
+///                               number of samples
 ///     convergence.csv           factor | samples, and for each response 1 or 0 for reached and the relative
 ///     half-width;
 ///                               where the study has adaptive samples, as the next:

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 /// How each kind of study is composed into a result file and read back: one source file for each kind.
 namespace poesy {
 
+/// Names of the axes of a dataset, slowest first.
 using Axes = std::vector<std::string>;
 
 /// 0 .. count - 1, the values of an axis that has no names.
@@ -28,6 +30,7 @@ std::vector<std::string> texts(const Things& things, const Member& member) {
   return list;
 }
 
+/// The SI unit of a thing with a dimension.
 template <class Thing>
 std::string unit_of(const Thing& thing) {
   return std::string(si_unit(thing.dimension));
@@ -40,13 +43,16 @@ std::vector<T> read_exactly(const h5::File& file, const std::string& path, std::
   return file.read<T>(path);
 }
 
+/// The number of positions on an axis at the root.
 inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
 /// The poses with all that was found when they were chosen: /poses.
 void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected);
+/// The coordinates' names and units.
 std::vector<NamedUnit> read_pose_coordinates(const h5::File& file);
+/// The poses, with what is stored beside them.
 SelectedPoses read_poses(const h5::File& file);
 /// What composing a file wrote to /run.
 RunFacts read_facts(const h5::File& file);
@@ -57,6 +63,7 @@ std::string stored_hash(const h5::File& file);
 void add_sigma(ResultBuilder& result, const Study& study);
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
+/// /solver: how the solves of each cell ended.
 std::vector<SolveCounts> read_solver(const h5::File& file, std::size_t cells);
 /// The first failures, as addresses, `total` in all; slots: the name of each. Follows add_solver.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
@@ -64,6 +71,7 @@ void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, c
 /// None in files of older versions. Reads `kind`, `poses` and `factors` of the result.
 std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result);
 
+/// /sensitivity: indices and what is behind them.
 void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found);
 /// Fills in `sensitivity` and `factor_sigma`.
 void read_sensitivity(const h5::File& file, StoredResult& result);
@@ -85,23 +93,34 @@ void read_fidelity(const h5::File& file, StoredResult& result);
 
 /// How adaptive samples came to their end: /convergence.
 void add_convergence(ResultBuilder& result, std::string_view kind, const ConvergenceResult& found);
+/// Of a result of this kind.
 ConvergenceResult read_convergence(const h5::File& file, std::string_view kind);
 
+/// What the indices were after fewer samples: /sensitivity/history.
+void add_history(ResultBuilder& result, const IndexHistory& found, double conf_level);
+/// Empty in files of older versions.
+std::optional<IndexHistory> read_history(const h5::File& file);
+
+/// /evaluate: what the model gives for each pose and row of errors.
 void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found);
+/// /evaluate: the errors themselves, and how they belong to poses.
 void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing);
 /// As add_evaluation and add_errors, with axes [case x pose] for [pose x sample], and the sums over the poses.
 void add_cases(ResultBuilder& result, const Study& study, const CaseResult& found);
 /// Fills in `evaluation`, `details`, `joints`, `pairing`, `errors`, `cases` and `case_result`.
 void read_evaluation(const h5::File& file, StoredResult& result);
 
+/// /identification: verdicts and the numbers behind them.
 void add_identification(ResultBuilder& result, const Study& study, const IdentificationResult& found);
 /// Fills in `identification` and `groups`.
 void read_identification(const h5::File& file, StoredResult& result);
 
+/// /monte_carlo: moments and quantiles, at each pose and over all poses.
 void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarloResult& found);
 /// Fills in `monte_carlo` and `factor_sigma`.
 void read_monte_carlo(const h5::File& file, StoredResult& result);
 
+/// /coupling: what sources do one by one and together.
 void add_coupling(ResultBuilder& result, const Study& study, const CouplingResult& found);
 /// Fills in `coupling`.
 void read_coupling(const h5::File& file, StoredResult& result);

@@ -76,6 +76,7 @@ SensitivityResult read_indices(const h5::File& file) {
 void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
   add_sigma(result, study);
   add_indices(result, found);
+  if (found.history) add_history(result, *found.history, found.conf_level);
   add_tolerances(result, study, found);
   if (found.separation) add_separation(result, study, *found.separation);
   if (found.fidelity) add_fidelity(result, study, *found.fidelity);
@@ -89,6 +90,7 @@ void add_sensitivity(ResultBuilder& result, const Study& study, const Sensitivit
 void read_sensitivity(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_exactly<double>(file, "/factors/sigma", result.factors.size());
   result.sensitivity = read_indices(file);
+  result.sensitivity.history = read_history(file);
   result.sensitivity.failures = read_failures(file, result);
   if (file.exists("/tolerances")) read_tolerances(file, result);
   if (file.exists("/separation")) read_separation(file, result);

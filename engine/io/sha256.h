@@ -14,9 +14,11 @@ namespace poesy {
 /// SHA-256 of bytes that come piece by piece.
 class Sha256 {
  public:
+  /// SHA-256 of some bytes.
   using Digest = std::array<std::byte, 32>;
 
   Sha256();
+  /// Appends.
   void bytes(std::span<const std::byte> data);
   /// Nothing may be added afterwards.
   Digest digest();

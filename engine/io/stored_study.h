@@ -10,8 +10,8 @@ namespace poesy {
 
 /// A study as it was run, with the poses that it was run at.
 struct StoredStudy {
-  Study study;
-  SelectedPoses poses;
+  Study study;          ///< as resolved when it was run
+  SelectedPoses poses;  ///< those of the result, whether the study's files still exist or not
 };
 
 /// Reads a resolved study that is kept beside its poses. Nothing else is opened: a file of poses or of a trajectory

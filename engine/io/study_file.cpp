@@ -172,7 +172,7 @@ void check_fidelities(const StudySection& root, const Study& study) {
 
 Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use) {
   check_format(root);
-  root.allow({"format", "version", "title", "mechanism", "poses", "errors", "analysis", "solver", "run"});
+  root.allow();
   Study study;
   if (const auto title = root.find("title")) study.title = title->text();
   study.mechanism = read_mechanism(root, catalog);
@@ -180,11 +180,11 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
   study.errors = read_error_model(root, study.model());
   study.analysis = read_analysis(root, study.model(), use);
   const StudySection solver = root.section("solver");
-  solver.allow({"method", "tolerance", "max_iterations", "not_converged", "max_not_converged"});
+  solver.allow();
   study.solver = read_solver(solver);
   read_not_converged(solver, study);
   const StudySection run = root.section("run");
-  run.allow({"seed"});
+  run.allow();
   if (const auto seed = run.find("seed")) study.seed = static_cast<std::uint64_t>(seed->whole_number(0));
   if (use == StudyUse::run) check_fidelities(root, study);
   check_size(root, study);

@@ -36,7 +36,7 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
 std::optional<Background> read_background(const StudySection& analysis, const ModelDescription& model) {
   if (!analysis.find("background")) return std::nullopt;
   const StudySection section = analysis.section("background");
-  section.allow({"factors", "linear", "angular"});
+  section.allow();
   Background background;
   background.factors = read_factors(section.require("factors", "write a factor set or a list of factors"), model);
   if (const auto value = section.find("linear")) background.linear = value->quantity(Dimension::length);
@@ -58,7 +58,7 @@ std::vector<double> read_quantiles(const StudyValue& value) {
 
 ToleranceReference read_reference(const StudyValue& value, const Analysis& analysis, const ModelDescription& model) {
   const StudySection section = value.section();
-  section.allow({"factor", "tolerance"});
+  section.allow();
   const StudyValue factor = section.require("factor", "name the error from which tolerances are counted");
   ToleranceReference reference{factor_named(factor, model), 0.0};
   if (std::ranges::find(analysis.factors, reference.factor) == analysis.factors.end()) {
@@ -81,32 +81,6 @@ Analysis::Kind read_kind(const StudySection& section, const ModelDescription& mo
                 "identification needs limbs that hold one platform against each other; choose another kind");
   }
   return kind;
-}
-
-/// Throws for a key that another kind of study has and that would mislead in this one. `factors`, `samples` and
-/// `conf_level` may stay in any study, so that a kind can be changed to and fro.
-void refuse_keys_of_other_kinds(const StudySection& section, Analysis::Kind kind) {
-  using Kind = Analysis::Kind;
-  struct Key {
-    std::string_view name;
-    std::vector<Kind> kinds;
-  };
-  static const std::array kKeys{Key{"background", {Kind::sensitivity, Kind::monte_carlo, Kind::evaluate}},
-                                Key{"reference", {Kind::sensitivity}},
-                                Key{"linearity", {Kind::sensitivity}},
-                                Key{"quantiles", {Kind::monte_carlo}},
-                                Key{"groups", {Kind::identification}},
-                                Key{"pose_share", {Kind::identification}},
-                                Key{"cases", {Kind::evaluate}},
-                                Key{"linear", {Kind::coupling}},
-                                Key{"angular", {Kind::coupling}},
-                                Key{"limbs", {Kind::coupling}},
-                                Key{"components", {Kind::coupling}},
-                                Key{"sources", {Kind::coupling}}};
-  for (const Key& key : kKeys) {
-    if (std::ranges::find(key.kinds, kind) != key.kinds.end()) continue;
-    section.refuse(key.name, "kind = \"" + std::string(name(kind)) + "\"");
-  }
 }
 
 /// The factor set that a study of this kind takes when it names none.
@@ -135,11 +109,10 @@ std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescri
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use) {
   using Kind = Analysis::Kind;
   const StudySection section = root.section("analysis");
-  section.allow({"kind", "factors", "samples", "conf_level", "background", "reference", "linearity", "quantiles",
-                 "groups", "pose_share", "cases", "linear", "angular", "limbs", "components", "sources"});
+  section.allow();
   Analysis analysis;
   analysis.kind = read_kind(section, model, use);
-  if (use == StudyUse::run) refuse_keys_of_other_kinds(section, analysis.kind);
+  if (use == StudyUse::run) section.refuse_all_but_those_for(name(analysis.kind));
   const auto factors = section.find("factors");
   analysis.factors = factors ? read_factors(*factors, model) : usual_factors(analysis.kind, model);
   if (analysis.kind == Kind::evaluate) analysis.factors.clear();

@@ -56,7 +56,7 @@ std::vector<double> read_case_errors(const StudySection& section, const ModelDes
   }
   for (const FactorSet* set : sets_in_case(section, model)) {
     const StudySection sizes = section.section(set->name);
-    sizes.allow({"linear", "angular"});
+    sizes.allow();
     if (sizes.empty()) section.find(set->name)->fail("gives no error", "write linear, angular, or both");
     std::vector<double> all = errors;
     for (const std::string& key : sizes.keys()) set_case_errors(*sizes.find(key), key, model, all);
@@ -88,7 +88,7 @@ std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescr
   if (const auto value = analysis.find("cases")) {
     for (const StudyValue& one : value->list()) {
       const StudySection section = one.section();
-      section.allow({"name", "errors"});
+      section.allow();
       const std::string name = read_name(section, names(cases), "case " + std::to_string(cases.size() + 1));
       const StudySection errors =
           section.require("errors", "write e.g. errors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }").section();
@@ -111,7 +111,7 @@ std::vector<ErrorSize> read_groups(const StudySection& analysis) {
   if (const auto value = analysis.find("groups")) {
     for (const StudyValue& one : value->list()) {
       const StudySection section = one.section();
-      section.allow({"name", "linear", "angular"});
+      section.allow();
       const std::string name = read_name(section, names(groups), "group " + std::to_string(groups.size() + 1));
       const auto size = [&](std::string_view key, Dimension dimension) {
         return section.require(key, "a group sets both").positive_quantity(dimension);

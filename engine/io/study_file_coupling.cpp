@@ -67,7 +67,7 @@ void require_own_factors(const StudyValue& factors, const ErrorSource& source, s
 
 ErrorSource read_source(const StudySection& section, std::span<const ErrorSource> others, const ErrorPattern& pattern,
                         const ModelDescription& model) {
-  section.allow({"name", "factors"});
+  section.allow();
   std::vector<std::string_view> taken;
   for (const ErrorSource& other : others) taken.push_back(other.name);
   ErrorSource source{read_name(section, taken, "source " + std::to_string(others.size() + 1)), {}};

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "engine/io/study_file_parts.h"
+#include "engine/io/study_keys.h"
 #include "engine/io/wording.h"
 
 namespace poesy {
@@ -24,10 +25,10 @@ Distribution make_distribution(Shape shape, double sigma, double half_width) {
 }
 
 /// A parameter of a distribution; 0 and not allowed where the shape has none of that name.
-double read_parameter(const StudySection& section, std::string_view key, bool belongs, Shape shape,
-                      Dimension dimension) {
+double read_parameter(const StudySection& section, std::string_view key, Shape shape, Dimension dimension) {
   const std::string owner = "the distribution \"" + std::string(name(shape)) + "\"";
-  if (belongs) return section.require(key, owner + " needs it").positive_quantity(dimension);
+  if (holds_for(study_key("errors.linear", key), name(shape)))
+    return section.require(key, owner + " needs it").positive_quantity(dimension);
   section.refuse(key, owner);
   return 0.0;
 }
@@ -35,13 +36,12 @@ double read_parameter(const StudySection& section, std::string_view key, bool be
 Distribution read_distribution(const StudyValue& value, Dimension dimension) {
   constexpr std::array kShapes{Shape::normal, Shape::truncated_normal, Shape::uniform, Shape::triangular};
   const StudySection section = value.section();
-  section.allow({"distribution", "sigma", "half_width"});
+  section.allow();
   std::vector<std::string_view> words;
   for (const Shape shape : kShapes) words.push_back(name(shape));
   const Shape shape = kShapes[section.require("distribution", "write e.g. distribution = \"normal\"").word(words)];
-  const bool has_sigma = shape == Shape::normal || shape == Shape::truncated_normal;
-  const double sigma = read_parameter(section, "sigma", has_sigma, shape, dimension);
-  const double half_width = read_parameter(section, "half_width", shape != Shape::normal, shape, dimension);
+  const double sigma = read_parameter(section, "sigma", shape, dimension);
+  const double half_width = read_parameter(section, "half_width", shape, dimension);
   try {
     return make_distribution(shape, sigma, half_width);
   } catch (const std::invalid_argument& reason) {
@@ -58,7 +58,7 @@ Distribution read_default(const StudySection& section, std::string_view key, Dim
 
 ErrorModel read_error_model(const StudySection& root, const ModelDescription& model) {
   const StudySection section = root.section("errors");
-  section.allow({"linear", "angular", "override"});
+  section.allow();
   const Distribution linear = read_default(section, "linear", Dimension::length);
   const Distribution angular = read_default(section, "angular", Dimension::angle);
   const StudySection overrides = section.section("override");

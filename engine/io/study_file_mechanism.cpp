@@ -70,7 +70,6 @@ std::vector<Range> default_workspace(const ModelDescription& model) {
 
 void read_pose_file(const StudySection& section, const ModelDescription& model, StudyUse use,
                     PoseSelection& selection) {
-  for (const char* key : {"count", "workspace", "limits", "max_condition"}) section.refuse(key, "select = \"file\"");
   selection.file = section.require("file", "write file = \"poses.csv\"").text();
   if (use == StudyUse::evaluate) return;
   const std::string path = beside_study(section, selection.file);
@@ -111,7 +110,6 @@ void read_count(const StudyValue& value, const ModelDescription& model, PoseSele
 }
 
 void read_box(const StudySection& section, const ModelDescription& model, StudyUse use, PoseSelection& selection) {
-  section.refuse("file", "select = \"" + std::string(name(selection.select)) + "\"");
   const auto workspace = section.find("workspace");
   selection.workspace = workspace ? read_workspace(workspace->section(), model) : default_workspace(model);
   if (workspace) selection.place = workspace->place();
@@ -145,7 +143,7 @@ double read_max_condition(const StudyValue& value) {
 
 MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog) {
   const StudySection section = root.require("mechanism", "add the section [mechanism] with the key model").section();
-  section.allow({"model", "geometry", "fidelity"});
+  section.allow();
   const StudyValue model = section.require("model", "write model = \"NAME\"; 'poesy models' lists the names");
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : catalog) known.push_back(entry.description.name);
@@ -161,13 +159,11 @@ MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog)
 PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use) {
   if (use == StudyUse::run) static_cast<void>(root.require("poses", "add the section [poses] with the key count"));
   const StudySection section = root.section("poses");
-  section.allow({"select", "count", "workspace", "limits", "max_condition", "file", "trajectory"});
+  section.allow();
   PoseSelection selection;
   selection.place = section.place();
   selection.select = read_select(section);
-  if (selection.select != PoseSelection::Select::trajectory) {
-    section.refuse("trajectory", "select = \"" + std::string(name(selection.select)) + "\"");
-  }
+  section.refuse_all_but_those_for(name(selection.select));
   if (selection.select == PoseSelection::Select::file) {
     read_pose_file(section, model, use, selection);
   } else if (selection.select == PoseSelection::Select::trajectory) {

@@ -12,8 +12,8 @@ namespace poesy {
 
 /// Limits of what a study may ask for: far above any use, far below what breaks memory or arithmetic.
 inline constexpr std::int64_t kMostPoses = 10'000'000;
-inline constexpr std::int64_t kMostCells = 10'000'000;  ///< (factor, pose) pairs of a result
-inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;
+inline constexpr std::int64_t kMostCells = 10'000'000;              ///< (factor, pose) pairs of a result
+inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;  ///< of a run
 
 /// Each reads one part of a study file and throws InputError for the first thing that is wrong with it.
 MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog);
@@ -21,11 +21,13 @@ MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog)
 PoseSelection read_pose_selection(const StudySection& root, const ModelDescription& model, StudyUse use);
 /// A file named by the study, relative to the study's folder.
 std::string beside_study(const StudySection& section, const std::string& file);
+/// Poses.max_condition.
 double read_max_condition(const StudyValue& value);
 /// What select = "trajectory" has besides; fills in `trajectory`, `count` and `place`. For StudyUse::evaluate the
 /// trajectory may be absent and its file is not opened.
 void read_trajectory_section(const StudySection& poses, const ModelDescription& model, StudyUse use,
                              PoseSelection& selection);
+/// [errors].
 ErrorModel read_error_model(const StudySection& root, const ModelDescription& model);
 /// The cases of kind = "evaluate"; what a case does not set has the background's value.
 std::vector<ErrorCase> read_cases(const StudySection& analysis, const ModelDescription& model,
@@ -42,6 +44,7 @@ void read_samples(const StudySection& analysis_section, Analysis& analysis);
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The keys of kind = "coupling". For StudyUse::evaluate sizes and sources may be missing.
 CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription& model, StudyUse use);
+/// [analysis].
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
 
 /// Throws InputError at its place for an error of the study that makes no sense on this model (Model::error_bound): the

@@ -4,7 +4,7 @@ namespace poesy {
 namespace {
 
 AdaptiveSamples read_adaptive(const StudySection& section, Analysis& analysis) {
-  section.allow({"min", "max", "relative_error", "conf_level"});
+  section.allow();
   AdaptiveSamples adaptive;
   const StudyValue max = section.require("max", "write the most samples to take at each pose, e.g. max = 1000000");
   analysis.samples = static_cast<std::size_t>(max.whole_number(2, kMostSolves));

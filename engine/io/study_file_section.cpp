@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/contract.h"
+#include "engine/io/study_keys.h"
 #include "engine/io/wording.h"
 
 namespace poesy {
@@ -127,12 +129,17 @@ std::vector<StudyValue> StudyValue::list() const {
 }
 
 StudySection::StudySection(const toml::table& table, std::string name, Place place)
-    : table_(&table), name_(std::move(name)), place_(std::move(place)) {}
+    : table_(&table), described_(find_study_table(name)), name_(std::move(name)), place_(std::move(place)) {}
 
 std::vector<std::string> StudySection::keys() const {
   std::vector<std::string> list;
   for (const auto& [key, value] : *table_) list.emplace_back(key.str());
   return list;
+}
+
+void StudySection::allow() const {
+  POESY_EXPECTS(described_ != nullptr && !described_->has_names_of_model());
+  allow(described_->names(), "key");
 }
 
 void StudySection::allow(std::span<const std::string_view> known, std::string_view what) const {
@@ -143,12 +150,21 @@ void StudySection::allow(std::span<const std::string_view> known, std::string_vi
   }
 }
 
+void StudySection::refuse_all_but_those_for(std::string_view word) const {
+  POESY_EXPECTS(described_ != nullptr && !described_->chooser.empty());
+  for (const StudyKey& key : described_->keys) {
+    if (holds_for(key, word) || key.may_stay) continue;
+    refuse(key.name, std::string(described_->chooser) + " = \"" + std::string(word) + "\"");
+  }
+}
+
 void StudySection::refuse(std::string_view key, std::string_view owner) const {
   if (!find(key)) return;
   throw InputError(place_of_key(key), full_name(key) + " does not belong to " + std::string(owner), "remove it");
 }
 
 std::optional<StudyValue> StudySection::find(std::string_view key) const {
+  POESY_EXPECTS(described_ != nullptr && (described_->has_names_of_model() || described_->find(key) != nullptr));
   const toml::node* node = table_->get(key);
   if (node == nullptr) return std::nullopt;
   return StudyValue(*node, full_name(key), place_);

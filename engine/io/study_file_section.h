@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
@@ -18,6 +17,7 @@
 namespace poesy {
 
 class StudySection;
+struct StudyTable;
 
 /// One value of a study file. Every function throws InputError at the value's place when the value is not what is
 /// asked for. Refers to the parsed file, which must outlive it.
@@ -26,19 +26,28 @@ class StudyValue {
   /// `name` is the value's full name for messages: "errors.linear.sigma".
   StudyValue(const toml::node& node, std::string name, const Place& section);
 
+  /// Where it stands.
   const Place& place() const { return place_; }
+  /// Whether it is a text in quotes.
   bool is_text() const { return node_->is_string(); }
+  /// Whether it is a table.
   bool is_section() const { return node_->is_table(); }
 
+  /// A text in quotes.
   std::string text() const;
+  /// An integer within these bounds, both included.
   std::int64_t whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
+  /// A finite number without a unit.
   double number() const;
   /// SI.
   double quantity(Dimension dimension) const;
+  /// SI, above zero.
   double positive_quantity(Dimension dimension) const;
   /// The position among these words.
   std::size_t word(std::span<const std::string_view> words) const;
+  /// A table.
   StudySection section() const;
+  /// The elements of a list, named with their positions.
   std::vector<StudyValue> list() const;
 
   /// "NAME PROBLEM; REMEDY" at the value's place.
@@ -52,22 +61,29 @@ class StudyValue {
   Place place_;
 };
 
-/// A table of a study file, in the same way.
+/// A table of a study file, in the same way. A key must be described where it stands, or asking for it is a bug.
 class StudySection {
  public:
   /// `name` is empty for the file as a whole.
   StudySection(const toml::table& table, std::string name, Place place);
 
+  /// Where it begins.
   const Place& place() const { return place_; }
+  /// Whether it has no key.
   bool empty() const { return table_->empty(); }
+  /// The keys that the file gives, in the order of their bytes.
   std::vector<std::string> keys() const;
 
+  /// Throws for a key that is not described (engine/io/study_keys.h). For sections whose keys are all fixed.
+  void allow() const;
   /// Throws for a key that is not one of these; `what` says what the keys of this section are.
-  void allow(std::span<const std::string_view> known, std::string_view what = "key") const;
-  void allow(std::initializer_list<std::string_view> known) const { allow(std::span(known.begin(), known.size())); }
+  void allow(std::span<const std::string_view> known, std::string_view what) const;
+  /// Throws for a key that does not hold where the section's chooser is this word.
+  void refuse_all_but_those_for(std::string_view word) const;
   /// Throws when the key is there: it "does not belong to OWNER".
   void refuse(std::string_view key, std::string_view owner) const;
 
+  /// Empty when it is missing.
   std::optional<StudyValue> find(std::string_view key) const;
   /// Throws when it is missing; the remedy says what to write.
   StudyValue require(std::string_view key, std::string_view remedy) const;
@@ -80,6 +96,7 @@ class StudySection {
   std::string where() const;
 
   const toml::table* table_;
+  const StudyTable* described_;
   std::string name_;
   Place place_;
 };

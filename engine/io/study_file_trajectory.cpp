@@ -88,7 +88,7 @@ void read_file(const StudySection& section, const StudyValue& value, const Model
 /// Exactly one of curve and file.
 Trajectory read_trajectory_of(const StudyValue& value, const ModelDescription& model, StudyUse use) {
   const StudySection section = value.section();
-  section.allow({"curve", "file", "origin", "points", "time"});
+  section.allow();
   const auto curve = section.find("curve");
   const auto file = section.find("file");
   if (curve.has_value() == file.has_value()) {
@@ -108,7 +108,6 @@ Trajectory read_trajectory_of(const StudyValue& value, const ModelDescription& m
 
 void read_trajectory_section(const StudySection& poses, const ModelDescription& model, StudyUse use,
                              PoseSelection& selection) {
-  for (const char* key : {"count", "workspace", "limits", "file"}) poses.refuse(key, "select = \"trajectory\"");
   if (const auto value = poses.find("max_condition")) selection.max_condition = read_max_condition(*value);
   if (use == StudyUse::evaluate && !poses.find("trajectory")) return;
   const StudyValue value =

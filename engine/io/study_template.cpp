@@ -6,20 +6,11 @@
 
 #include "engine/base/contract.h"
 #include "engine/io/study_file.h"
+#include "engine/io/study_template_comment.h"
 #include "engine/io/study_text.h"
 
 namespace poesy {
 namespace {
-
-/// Text of any number of lines as comment lines.
-std::string comment(std::string_view text) {
-  std::string out = "# ";
-  for (const char character : text) {
-    out += character;
-    if (character == '\n') out += "# ";
-  }
-  return out + "\n";
-}
 
 std::string title(Analysis::Kind kind) {
   std::string text(name(kind));
@@ -31,24 +22,26 @@ std::string head(const ModelDescription& model, Analysis::Kind kind) {
   return comment(model.name + ": " + model.title) +
          "# Run this study with: poesy run STUDY.toml\n"
          "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.\n"
-         "# A key behind a '#' shows a default or an alternative.\n" +
-         fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}  # optional, free text\n",
-                     quoted(title(kind) + " of " + model.name));
+         "# A key behind a '#' shows a default or an alternative. All keys: poesy template --reference\n" +
+         explained("", "format", "format = \"poesy-study\"") + explained("", "version", "version = 1") +
+         explained("", "title", "title = " + quoted(title(kind) + " of " + model.name));
+}
+
+std::string fidelity_keys(const ModelDescription& model, Analysis::Kind kind) {
+  if (model.fidelities.empty()) return {};
+  std::string text = comment(fmt::format("fidelity: {}", fmt::join(model.fidelities, ", "))) +
+                     explained("mechanism", "fidelity", "fidelity = " + quoted(model.fidelities.front()));
+  if (model.fidelities.size() == 2 && kind == Analysis::Kind::sensitivity) {
+    text += fmt::format("# fidelity = {}\n", quoted(kBothFidelities));
+  }
+  return text;
 }
 
 std::string mechanism_section(const ModelDescription& model, Analysis::Kind kind) {
-  std::string text = fmt::format("\n[mechanism]\nmodel = {}  # 'poesy models' lists the models\n", quoted(model.name));
-  if (!model.fidelities.empty()) {
-    text += fmt::format("fidelity = {}  # of {}; the first is the default\n", quoted(model.fidelities.front()),
-                        fmt::join(model.fidelities, ", "));
-    if (model.fidelities.size() == 2 && kind == Analysis::Kind::sensitivity) {
-      text +=
-          fmt::format("# fidelity = {}  # both on the same draws: how much they differ, and which errors are linear\n",
-                      quoted(kBothFidelities));
-    }
-  }
+  std::string text =
+      "\n[mechanism]\n" + explained("mechanism", "model", "model = " + quoted(model.name)) + fidelity_keys(model, kind);
   if (model.geometry.empty()) return text;
-  text += "\n# Optional: what is left out keeps the published value, which is shown here.\n# [mechanism.geometry]\n";
+  text += "\n" + explained("mechanism", "geometry", "# [mechanism.geometry]");
   for (const GeometryParameter& parameter : model.geometry) {
     text += fmt::format("# {} = {}  # {}\n", parameter.name, readable_value(parameter.published, parameter.dimension),
                         parameter.description);
@@ -65,12 +58,17 @@ std::string grid_example(const ModelDescription& model) {
   return text + " }";
 }
 
-std::string joint_list(const ModelDescription& model) {
-  std::string text = " ";
+/// Optional ranges of joints, with an example.
+std::string limits_key(const ModelDescription& model) {
+  if (model.joints.empty()) return {};
+  std::string list = "Joints:";
   for (const JointDisplacement& joint : model.joints) {
-    text += fmt::format(" {} ({})", joint.name, name(joint.dimension));
+    list += fmt::format(" {} ({})", joint.name, name(joint.dimension));
   }
-  return text;
+  const JointDisplacement& joint = model.joints.front();
+  const std::string_view range =
+      joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]";
+  return comment(list) + explained("poses", "limits", fmt::format("# limits = {{ {} = {} }}", joint.name, range));
 }
 
 std::string name_list(const std::vector<PoseCoordinate>& coordinates) {
@@ -83,7 +81,8 @@ std::string name_list(const std::vector<PoseCoordinate>& coordinates) {
 std::string charts_comment(const ModelDescription& model) {
   std::string text;
   for (const PoseChart& chart : model.charts) {
-    text += comment(fmt::format("  or those of {}: {}", chart.name, name_list(chart.coordinates)));
+    text +=
+        comment(fmt::format("Chart {} in which a file may give poses: {}", chart.name, name_list(chart.coordinates)));
   }
   return text;
 }
@@ -99,74 +98,45 @@ std::string curve_example(const NamedCurve& curve, const ModelDescription& model
                      readable_value(curve.end, Dimension::time), curve.description);
 }
 
-std::string trajectory_comment(const ModelDescription& model) {
-  std::string text = "# trajectory: instead of count, workspace and limits, with select = \"trajectory\"\n";
-  if (!model.curves.empty())
-    text += "# a curve at times evenly spaced; all but its name may be left out, then as shown:\n";
+std::string trajectory_key(const ModelDescription& model) {
+  std::string text = explanation_lines("poses", "trajectory") + keys_lines("poses.trajectory");
   for (const NamedCurve& curve : model.curves) text += curve_example(curve, model);
-  return text +
-         "# a file beside this study: CSV with a column t (s) and pose coordinates, SI. Between its points it is read "
-         "by\n"
-         "# modified Akima splines (straight lines where it has two or three). Without points and time its own points "
-         "are\n"
-         "# the poses. What is left out of these two: 201 points, all of the file's time.\n"
-         "# trajectory = { file = \"curve.csv\", points = 201, time = [\"0 s\", \"2 s\"] }\n";
+  return text + "# trajectory = { file = \"curve.csv\", points = 201, time = [\"0 s\", \"2 s\"] }\n";
 }
 
-std::string poses_section(const ModelDescription& model) {
+std::string workspace_key(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     workspace.push_back({model.pose_lower[c], model.pose_upper[c]});
   }
-  std::string text = "\n[poses]\n";
-  text += "# interior: that many points of a Sobol' sequence in the workspace; more poses begin with the same ones\n";
-  text += "# boundary: that many points on the boundary of the feasible part of the workspace, uniform by area\n";
-  text += "# grid: that many points of a regular grid, or all of one with " + grid_example(model) + "\n";
-  text += "# file: poses from CSV, first line the names of all pose coordinates, SI units\n";
-  text += charts_comment(model);
-  text += "# trajectory: poses along a curve, in the order of time\n";
-  text += "select = \"interior\"  # the default\n";
-  text += "count = 158  # required for all but file and trajectory, at least 1\n";
-  text += "# A range [lower, upper] for every pose coordinate. Default: the model's own workspace, shown here.\n";
+  std::string text = explanation_lines("poses", "workspace");
   for (const PoseCoordinate& coordinate : model.pose_coordinates) {
-    text += comment(coordinate.name + ": " + coordinate.description);
+    text += comment("  " + coordinate.name + ": " + coordinate.description);
   }
   if (!model.workspace_note.empty()) text += comment(model.workspace_note);
-  text += "workspace = " + workspace_text(workspace, model, readable_value) + "\n";
-  if (!model.joints.empty()) {
-    const JointDisplacement& joint = model.joints.front();
-    text += "# Optional: ranges of joint displacements from home, [lower, upper]; other poses are rejected. Joints:\n";
-    text += comment(joint_list(model));
-    text += fmt::format("# limits = {{ {} = {} }}\n", joint.name,
-                        joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]");
-  }
-  text += "# max_condition = 1e8  # poses whose condition number is above it are rejected as singular; the default\n";
-  return text +
-         "# file = \"poses.csv\"  # instead of count, workspace, limits and max_condition, with select = \"file\"; "
-         "beside this study\n" +
-         trajectory_comment(model);
+  return text + "workspace = " + workspace_text(workspace, model, readable_value) + "\n";
 }
 
-std::string override_example(const ModelDescription& model) {
-  for (const Factor& factor : model.factors) {
-    return fmt::format("# override = {{ {} = {{ distribution = \"uniform\", half_width = {} }} }}\n", factor.name,
-                       factor.dimension == Dimension::length ? "\"0.5 mm\"" : "\"0.5 deg\"");
-  }
-  return {};
+std::string poses_section(const ModelDescription& model) {
+  return "\n[poses]\n" + charts_comment(model) + explained("poses", "select", "select = \"interior\"") +
+         explained("poses", "count", "count = 158") + "# " + grid_example(model) + "\n" + workspace_key(model) +
+         limits_key(model) + explained("poses", "max_condition", "# max_condition = 1e8") +
+         explained("poses", "file", "# file = \"poses.csv\"") + trajectory_key(model);
+}
+
+std::string override_key(const ModelDescription& model) {
+  if (model.factors.empty()) return {};
+  const Factor& factor = model.factors.front();
+  return explained("errors", "override",
+                   fmt::format("# override = {{ {} = {{ distribution = \"uniform\", half_width = {} }} }}", factor.name,
+                               factor.dimension == Dimension::length ? "\"0.5 mm\"" : "\"0.5 deg\""));
 }
 
 std::string errors_section(const ModelDescription& model) {
-  return "\n# How errors scatter about zero, by their dimension; the values shown are the defaults. Distributions:\n"
-         "#   { distribution = \"normal\", sigma = \"1 mm\" }\n"
-         "#   { distribution = \"truncated-normal\", sigma = \"1 mm\", half_width = \"2 mm\" }  cut off at "
-         "+-half_width\n"
-         "#   { distribution = \"uniform\", half_width = \"1 mm\" }\n"
-         "#   { distribution = \"triangular\", half_width = \"1 mm\" }\n"
-         "[errors]\n"
-         "linear = { distribution = \"normal\", sigma = \"1 mm\" }\n"
-         "angular = { distribution = \"normal\", sigma = \"1 deg\" }\n"
-         "# Optional: single errors with a distribution of their own.\n" +
-         override_example(model);
+  return "\n" + comment(table_meaning("errors")) + keys_lines("errors.linear") + "[errors]\n" +
+         explained("errors", "linear", "linear = { distribution = \"normal\", sigma = \"1 mm\" }") +
+         explained("errors", "angular", "angular = { distribution = \"normal\", sigma = \"1 deg\" }") +
+         override_key(model);
 }
 
 std::string sets_comment(const ModelDescription& model) {
@@ -178,59 +148,47 @@ std::string sets_comment(const ModelDescription& model) {
   return text;
 }
 
-std::string factors_text(const ModelDescription& model, std::string_view what, std::string_view usual) {
-  std::string text = fmt::format("# {}: a factor set, or a list of names such as [", what);
-  text += model.factors.empty() ? "]" : quoted(model.factors.front().name) + "]";
-  return text + ". Factor sets:\n" + sets_comment(model) + fmt::format("factors = \"{}\"  # the default\n", usual);
+std::string factors_key(const ModelDescription& model, std::string_view usual) {
+  return "# Factor sets:\n" + sets_comment(model) +
+         explained("analysis", "factors", fmt::format("factors = \"{}\"", usual));
 }
 
-/// quantity: what is sampled until its interval is narrow.
-std::string samples_text(std::string_view of_what, std::string_view quantity) {
-  return fmt::format(
-      "samples = 1000  # {}, at least 2; the default\n"
-      "# or as many as it takes: until half the width of every {}'s interval is at most relative_error of its value\n"
-      "# samples = {{ min = 1000, max = 1000000, relative_error = 0.01 }}  # min: the default; the other two are "
-      "required\n"
-      "conf_level = 0.95  # of the intervals, between 0 and 1; the default\n",
-      of_what, quantity);
+std::string samples_keys() {
+  return explained("analysis", "samples", "samples = 1000") + keys_lines("analysis.samples") +
+         "# samples = { min = 1000, max = 1000000, relative_error = 0.01 }\n" +
+         explained("analysis", "conf_level", "conf_level = 0.95");
 }
 
-std::string background_text(const ModelDescription& model) {
-  const bool has_benign = model.find_set("benign") != nullptr;
-  return fmt::format("{}background = {{ factors = \"{}\", linear = \"1 mm\", angular = \"1 deg\" }}\n",
-                     has_benign ? "" : "# ", has_benign ? "benign" : "all");
+std::string background_key(std::string_view line) {
+  return explanation_lines("analysis", "background") + keys_lines("analysis.background") + std::string(line) + "\n";
+}
+
+std::string reference_key(const ModelDescription& model) {
+  if (model.factors.empty()) return {};
+  const Factor& factor = model.factors.front();
+  return explanation_lines("analysis", "reference") + keys_lines("analysis.reference") +
+         fmt::format("# reference = {{ factor = {}, tolerance = {} }}\n", quoted(factor.name),
+                     factor.dimension == Dimension::length ? "\"1 mm\"" : "\"1 deg\"");
 }
 
 std::string sensitivity_keys(const ModelDescription& model) {
-  const std::string_view usual = model.find_set("deforming") != nullptr ? "deforming" : "all";
-  std::string text = factors_text(model, "The errors that vary, one at a time", usual);
-  text += samples_text("for each varied error at each pose", "global index");
-  text += "# Optional: errors held constant while others vary; what varies is not held. Default: none.\n";
-  text += background_text(model);
-  if (model.fidelities.size() == 2) {
-    text += "# linearity = 0.01  # with fidelity = \"both\": an error that differs by no more is linear; the default\n";
-  }
-  text += "# Optional: the error from which tolerances of equal effect are counted, and its own tolerance.\n";
-  text += "# Default: the error of smallest effect, at 1 mm or 1 deg.\n";
-  if (model.factors.empty()) return text;
-  const Factor& factor = model.factors.front();
-  return text + fmt::format("# reference = {{ factor = {}, tolerance = {} }}\n", quoted(factor.name),
-                            factor.dimension == Dimension::length ? "\"1 mm\"" : "\"1 deg\"");
+  const bool has_benign = model.find_set("benign") != nullptr;
+  std::string text = factors_key(model, model.find_set("deforming") != nullptr ? "deforming" : "all") + samples_keys();
+  text += background_key(fmt::format("{}background = {{ factors = \"{}\", linear = \"1 mm\", angular = \"1 deg\" }}",
+                                     has_benign ? "" : "# ", has_benign ? "benign" : "all"));
+  if (model.fidelities.size() == 2) text += explained("analysis", "linearity", "# linearity = 0.01");
+  return text + reference_key(model);
 }
 
 std::string monte_carlo_keys(const ModelDescription& model) {
-  return factors_text(model, "The errors that vary, all together", "all") +
-         samples_text("at each pose", "overall mean") +
-         "quantiles = [0.05, 0.5, 0.95]  # shares of the samples that lie below; the default\n"
-         "# Optional: errors held constant while the others vary. Default: none.\n"
-         "# background = { factors = \"all\", linear = \"1 mm\", angular = \"1 deg\" }\n";
+  return factors_key(model, "all") + samples_keys() +
+         explained("analysis", "quantiles", "quantiles = [0.05, 0.5, 0.95]") +
+         background_key("# background = { factors = \"all\", linear = \"1 mm\", angular = \"1 deg\" }");
 }
 
 std::string identification_keys(const ModelDescription& model) {
-  return factors_text(model, "The errors that are tried, each alone and with those of its frame", "all") +
-         "# A verdict asks for this share of the poses; the default.\n"
-         "pose_share = 0.95\n"
-         "# The sizes at which errors are set; each group gives verdicts of its own. Default: one group, 1 mm, 1 deg.\n"
+  return factors_key(model, "all") + explained("analysis", "pose_share", "pose_share = 0.95") +
+         explanation_lines("analysis", "groups") + keys_lines("analysis.groups") +
          "groups = [\n"
          "  { name = \"group 1\", linear = \"5 mm\", angular = \"0.005 rad\" },\n"
          "  { name = \"group 2\", linear = \"1 mm\", angular = \"1 deg\" },\n"
@@ -239,11 +197,10 @@ std::string identification_keys(const ModelDescription& model) {
 
 std::string evaluate_keys(const ModelDescription& model) {
   std::string text =
-      "# Optional: errors that every case has, unless it sets them. Default: none.\n"
-      "# background = { factors = \"all\", linear = \"0.1 mm\", angular = \"0.1 deg\" }\n"
-      "\n# Fixed errors, each case with a name. What is not set is zero. `linear` and `angular` set all lengths and "
-      "all\n"
-      "# angles; a factor set does so for its own, a factor for itself: the narrower wins.\n"
+      background_key("# background = { factors = \"all\", linear = \"0.1 mm\", angular = \"0.1 deg\" }") + "\n" +
+      explanation_lines("analysis", "cases") + keys_lines("analysis.cases") + keys_lines("analysis.cases.errors", 2) +
+      comment("    " + std::string(table_meaning("analysis.cases.errors"))) +
+      keys_lines("analysis.cases.errors.SET", 3) +
       "[[analysis.cases]]\nname = \"group 1\"\nerrors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }\n";
   if (model.factors.empty()) return text;
   const Factor& factor = model.factors.front();
@@ -263,27 +220,15 @@ bool has_source_of(const ModelDescription& model, Dimension dimension) {
 }
 
 std::string coupling_keys(const ModelDescription& model) {
-  const auto sizes = [&](Dimension dimension, const char* line) {
-    return fmt::format("{}{}\n", has_source_of(model, dimension) ? "" : "# ", line);
+  const auto sizes = [&](Dimension dimension, std::string_view key, std::string_view line) {
+    return explained("analysis", key, fmt::format("{}{}", has_source_of(model, dimension) ? "" : "# ", line));
   };
-  std::string text =
-      "# Sizes of the errors: each is a run of its own, in which every error is at once as large as that. linear for\n"
-      "# lengths, angular for angles: as many of both, or that alone which the sources have.\n";
-  text += sizes(Dimension::length, "linear = [\"0.1 mm\", \"0.3 mm\", \"0.5 mm\"]") +
-          sizes(Dimension::angle, "angular = [\"0.1 deg\", \"0.3 deg\", \"0.5 deg\"]");
-  text +=
-      "# all: the errors of every limb; a number: of that limb alone; independent: each limb on its own in the worst "
-      "case\n"
-      "# and the root sum square\n"
-      "limbs = \"all\"  # the default\n"
-      "# all: every component of an error; a list such as [\"x\", \"z\"]: those and scalars; independent: each "
-      "component of\n"
-      "# each error on its own, as for limbs\n"
-      "components = \"all\"  # the default\n"
-      "\n# 2 to 8 sources of errors: each alone, and every combination of them at once. A factor belongs to one "
-      "source.\n"
-      "# factors: a factor set, or a list of names. Default: the sources shown. Factor sets:\n" +
-      sets_comment(model);
+  std::string text = sizes(Dimension::length, "linear", "linear = [\"0.1 mm\", \"0.3 mm\", \"0.5 mm\"]") +
+                     sizes(Dimension::angle, "angular", "angular = [\"0.1 deg\", \"0.3 deg\", \"0.5 deg\"]") +
+                     explained("analysis", "limbs", "limbs = \"all\"") +
+                     explained("analysis", "components", "components = \"all\"") + "\n" +
+                     explanation_lines("analysis", "sources") + keys_lines("analysis.sources") + "# Factor sets:\n" +
+                     sets_comment(model);
   for (const CouplingSource& source : model.sources) {
     text += fmt::format("[[analysis.sources]]\nname = {}\nfactors = {}\n\n", quoted(source.name), quoted(source.set));
   }
@@ -292,8 +237,7 @@ std::string coupling_keys(const ModelDescription& model) {
 }
 
 std::string analysis_section(const ModelDescription& model, Analysis::Kind kind) {
-  std::string text = fmt::format("\n[analysis]\nkind = {}{}\n", quoted(name(kind)),
-                                 kind == Analysis::Kind::sensitivity ? "  # the default" : "");
+  const std::string text = "\n[analysis]\n" + explained("analysis", "kind", "kind = " + quoted(name(kind)));
   switch (kind) {
     case Analysis::Kind::sensitivity:
       return text + sensitivity_keys(model);
@@ -310,15 +254,12 @@ std::string analysis_section(const ModelDescription& model, Analysis::Kind kind)
 }
 
 std::string solver_and_run_sections() {
-  return "\n# All values shown are the defaults.\n"
-         "[solver]\n"
-         "method = \"newton\"  # or \"gauss-newton\", as published: slower, and more samples do not converge\n"
-         "tolerance = 1e-15  # converged: the residual's largest change (rad, m) in one iteration is below this\n"
-         "max_iterations = 50  # at least 1\n"
-         "not_converged = \"exclude\"  # from all statistics; include: keep the last iterate\n"
-         "max_not_converged = 1  # share of all samples; if more fail, exit code 5, the result kept\n"
-         "\n[run]\n"
-         "seed = 1  # a whole number from 0; the same seed gives the same bits on any number of threads\n";
+  return "\n[solver]\n" + explained("solver", "method", "method = \"newton\"") +
+         explained("solver", "tolerance", "tolerance = 1e-15") +
+         explained("solver", "max_iterations", "max_iterations = 50") +
+         explained("solver", "not_converged", "not_converged = \"exclude\"") +
+         explained("solver", "max_not_converged", "max_not_converged = 1") + "\n[run]\n" +
+         explained("run", "seed", "seed = 1");
 }
 
 }  // namespace

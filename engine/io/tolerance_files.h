@@ -12,9 +12,9 @@ namespace poesy {
 
 /// Tolerances for one response of a sensitivity result, within a limit on it if there is one.
 struct ResponseTolerances {
-  std::size_t response;  ///< position among the result's
-  Tolerances all;
-  std::optional<LimitTolerances> limit;
+  std::size_t response;                  ///< position among the result's
+  Tolerances all;                        ///< without regard to a limit
+  std::optional<LimitTolerances> limit;  ///< within the limit, if there is one
 };
 
 /// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
@@ -30,8 +30,8 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
 
 /// The studies that confirm tolerances.
 struct Confirmation {
-  std::vector<std::string> paths;
-  std::vector<std::string> cut;  ///< "delta_1_0_y to 15 mm", each once
+  std::vector<std::string> paths;  ///< the studies that were written
+  std::vector<std::string> cut;    ///< "delta_1_0_y to 15 mm", each once
 };
 
 /// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and

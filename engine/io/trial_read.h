@@ -8,8 +8,8 @@ namespace poesy {
 /// What to do about a damaged file.
 inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
 
-inline constexpr unsigned long kTrialSeconds = 5;
-inline constexpr unsigned long kTrialBytes = 1UL << 28U;
+inline constexpr unsigned long kTrialSeconds = 5;         ///< processor time that a child may take to read a file
+inline constexpr unsigned long kTrialBytes = 1UL << 28U;  ///< memory that it may take besides what the program has
 
 /// Calls read() in a child process, so that nothing that comes of it reaches this one; returns if it ended well there.
 ///

@@ -13,9 +13,10 @@ std::string poesy_version();
 /// differed from that commit; "unknown" when it was not built in a git checkout.
 std::string git_commit();
 
+/// A library that results depend on.
 struct LibraryVersion {
-  std::string_view name;  ///< "tbb"
-  std::string_view version;
+  std::string_view name;     ///< "tbb"
+  std::string_view version;  ///< as it names itself
 };
 
 /// The compiler and the libraries this program was built with.

@@ -12,13 +12,14 @@ namespace poesy {
 
 /// A mechanism that a study may name.
 struct CatalogEntry {
-  ModelDescription description;
+  ModelDescription description;  ///< with the published geometry
   /// Builds the mechanism from the values of description.geometry, in that order (SI), and the position of a fidelity
   /// among description.fidelities, 0 where there is no choice.
   /// Throws std::invalid_argument with a clause that names the parameter and the rule it breaks.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;
 };
 
+/// Mechanisms by name, in the order in which they are listed.
 using Catalog = std::vector<CatalogEntry>;
 
 /// The entry of that name, or nullptr.

@@ -19,57 +19,57 @@ namespace poesy {
 
 /// One scalar manufacturing or assembly error of a mechanism, zero when the part is perfect.
 struct Factor {
-  std::string name;     ///< "delta_1_0_x"
-  Dimension dimension;  ///< length (m) or angle (rad)
-  std::size_t limb;     ///< counts from 1, as in the literature
-  std::size_t frame;    ///< of the limb, to which the error belongs; those of one frame may work together
-  std::string description;
-  std::string axis = {};  ///< "x", "y" or "z" where the error is a component of a vector; empty for a scalar
+  std::string name;         ///< "delta_1_0_x"
+  Dimension dimension;      ///< length (m) or angle (rad)
+  std::size_t limb;         ///< counts from 1, as in the literature
+  std::size_t frame;        ///< of the limb, to which the error belongs; those of one frame may work together
+  std::string description;  ///< for people
+  std::string axis = {};    ///< "x", "y" or "z" where the error is a component of a vector; empty for a scalar
 };
 
 /// A named subset of a model's factors, in the order of the model's list.
 struct FactorSet {
-  std::string name;
-  std::string description;
-  std::vector<FactorIndex> factors;
+  std::string name;                  ///< as a study file has it
+  std::string description;           ///< for people
+  std::vector<FactorIndex> factors;  ///< positions, ascending
 };
 
 /// A scalar that is judged for every (pose, sample).
 struct Response {
-  std::string name;
-  Dimension dimension;
-  std::string description;
+  std::string name;         ///< as result files have it
+  Dimension dimension;      ///< length (m), angle (rad) or number
+  std::string description;  ///< for people
 };
 
 /// A vector behind the responses, given only where a caller asks for it.
 struct Detail {
-  std::string name;
-  std::vector<std::string> components;
-  std::string unit;  ///< "rad,rad,rad,m,m,m" where components differ
-  std::string description;
+  std::string name;                     ///< as result files have it
+  std::vector<std::string> components;  ///< their names
+  std::string unit;                     ///< "rad,rad,rad,m,m,m" where components differ
+  std::string description;              ///< for people
 };
 
 /// A coordinate of the platform's pose.
 struct PoseCoordinate {
-  std::string name;
-  Dimension dimension;
-  std::string description;
+  std::string name;         ///< as a study file has it
+  Dimension dimension;      ///< length (m), angle (rad) or number
+  std::string description;  ///< for people
 };
 
 /// Other coordinates in which a pose may be given, as many as it has: those of the tool tip, for instance.
 struct PoseChart {
-  std::string name;  ///< "tip"
-  std::vector<PoseCoordinate> coordinates;
-  std::string advice;  ///< what to do where no pose has such coordinates: "lengthen h, or ..."
+  std::string name;                         ///< "tip"
+  std::vector<PoseCoordinate> coordinates;  ///< in the order in which a pose's numbers stand
+  std::string advice;                       ///< what to do where no pose has such coordinates: "lengthen h, or ..."
 };
 
 /// A curve of the literature, run through in time.
 struct NamedCurve {
-  std::string name;
-  std::string description;
-  std::size_t chart;  ///< position among the charts
-  double start;       ///< s, of the whole curve
-  double end;         ///< s
+  std::string name;         ///< as a study file has it
+  std::string description;  ///< for people
+  std::size_t chart;        ///< position among the charts
+  double start;             ///< s, of the whole curve
+  double end;               ///< s
   /// Where the curve's zero stands unless the study says otherwise, [coordinates of the chart], SI.
   std::vector<double> origin;
   /// Chart coordinates at a time (s), SI, relative to an origin that the study chooses.
@@ -84,10 +84,10 @@ struct JointDisplacement {
 
 /// A structural parameter that a study may change.
 struct GeometryParameter {
-  std::string name;
-  Dimension dimension;
-  double published;  ///< SI
-  std::string description;
+  std::string name;         ///< as a study file has it
+  Dimension dimension;      ///< length (m), angle (rad) or number
+  double published;         ///< SI
+  std::string description;  ///< for people
 };
 
 /// The response that tells whether anything is deformed at all.
@@ -119,12 +119,13 @@ struct ErrorBound {
 
 /// How a per-sample solve is done.
 struct SolverOptions {
+  /// Which iteration solves a sample.
   enum class Method {
     newton,       ///< the model's own, fast and far-reaching
     gauss_newton  ///< as published
   };
 
-  Method method = Method::newton;
+  Method method = Method::newton;  ///< a model with one iteration takes it for both
   /// A solve has converged once the largest component of the change of the residual is below this (rad, m).
   /// Default 1e-15, Du et al. 2022, Section 5.1.
   double tolerance = 1e-15;
@@ -140,23 +141,23 @@ struct CouplingSource {
 
 /// Everything about a mechanism that can be read without solving it.
 struct ModelDescription {
-  std::string name;   ///< as written in a study file
-  std::string title;  ///< with the source
-  std::vector<GeometryParameter> geometry;
-  std::vector<PoseCoordinate> pose_coordinates;
-  std::vector<Factor> factors;
-  std::vector<FactorSet> factor_sets;
-  std::vector<Response> responses;
+  std::string name;                               ///< as written in a study file
+  std::string title;                              ///< with the source
+  std::vector<GeometryParameter> geometry;        ///< what a study may change
+  std::vector<PoseCoordinate> pose_coordinates;   ///< in the order of a pose's numbers
+  std::vector<Factor> factors;                    ///< [F] all errors, in the order that numbers draws
+  std::vector<FactorSet> factor_sets;             ///< what a study may name; a set called "all" has every factor
+  std::vector<Response> responses;                ///< [R]
   std::optional<DeformationMeasure> deformation;  ///< none where errors only move the platform
-  std::vector<Detail> details;
-  std::vector<JointDisplacement> joints;  ///< all, in the order of Model::joint_displacements
-  std::vector<double> pose_lower;         ///< a workspace inside reach, [pose coordinates], SI
-  std::vector<double> pose_upper;
-  std::string workspace_note;  ///< where that workspace comes from
+  std::vector<Detail> details;                    ///< in the order of OutcomeBlock::details
+  std::vector<JointDisplacement> joints;          ///< all, in the order of Model::joint_displacements
+  std::vector<double> pose_lower;                 ///< a workspace inside reach, [pose coordinates], SI
+  std::vector<double> pose_upper;                 ///< its upper ends, likewise
+  std::string workspace_note;                     ///< where that workspace comes from
   /// What a study may choose between, from "exact" to "first-order"; the first is the default. Empty: no choice.
   std::vector<std::string> fidelities;
-  std::vector<PoseChart> charts;
-  std::vector<NamedCurve> curves;
+  std::vector<PoseChart> charts;                    ///< other coordinates of poses
+  std::vector<NamedCurve> curves;                   ///< trajectories of the literature
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
   std::vector<CouplingSource> sources;  ///< those of a coupling study that names none; no factor in two of them
   std::vector<std::size_t> headline;    ///< positions of the responses that a summary shows; empty: all of them
@@ -164,7 +165,9 @@ struct ModelDescription {
   /// headline.
   std::vector<std::size_t> signed_headline;
 
+  /// Its position; empty where there is none of that name.
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
+  /// Null where there is none of that name.
   const FactorSet* find_set(std::string_view set_name) const;
 };
 
@@ -199,19 +202,19 @@ class Evaluator {
 
 /// A number by which a solver's iteration is judged.
 struct TraceColumn {
-  std::string name;
-  std::string unit;
+  std::string name;  ///< "largest change"
+  std::string unit;  ///< SI, or "1"
 };
 
 /// One solve by a mechanism's plain reference solver, iteration by iteration. An evaluator may come to the same
 /// solution in other steps, or start elsewhere.
 struct SolveTrace {
-  std::string solver;  ///< which it is, and where it starts: "Newton, from ..."
-  std::vector<TraceColumn> columns;
-  std::vector<double> rows;  ///< [iterations x columns], row-major; empty where nothing is iterated
-  SolveStatus status = SolveStatus::converged;
-  std::uint32_t iterations = 0;
-  std::vector<double> responses;  ///< [R], SI; the last iterate where not converged
+  std::string solver;                           ///< which it is, and where it starts: "Newton, from ..."
+  std::vector<TraceColumn> columns;             ///< what is shown of each iteration
+  std::vector<double> rows;                     ///< [iterations x columns], row-major; empty where nothing is iterated
+  SolveStatus status = SolveStatus::converged;  ///< how it ended
+  std::uint32_t iterations = 0;                 ///< that it took
+  std::vector<double> responses;                ///< [R], SI; the last iterate where not converged
 };
 
 /// A mechanism with its geometry: immutable, shared by all threads.
@@ -219,6 +222,7 @@ class Model {
  public:
   virtual ~Model() = default;
 
+  /// The same for as long as the model lives.
   virtual const ModelDescription& description() const = 0;
 
   /// Why the mechanism cannot take this pose (SI); empty when it can.
@@ -233,6 +237,7 @@ class Model {
   /// Precondition: the pose is reachable.
   virtual double condition(std::span<const double> pose) const = 0;
 
+  /// One for each thread. The model must outlive it.
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
 
   /// The solve of these errors [F] at a reachable pose, SI; none: the model does not show it.
@@ -252,8 +257,11 @@ class Model {
 
  protected:
   Model() = default;
+  /// For models that copy themselves.
+  /// @{
   Model(const Model&) = default;
   Model& operator=(const Model&) = default;
+  /// @}
 };
 
 }  // namespace poesy

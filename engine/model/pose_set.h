@@ -14,12 +14,16 @@ namespace poesy {
 class PoseSet {
  public:
   PoseSet() = default;
+  /// Values: [M x coordinates], row-major, SI.
   PoseSet(std::size_t coordinates, std::vector<double> values) : coordinates_(coordinates), values_(std::move(values)) {
     POESY_EXPECTS(coordinates_ > 0 && values_.size() % coordinates_ == 0);
   }
 
+  /// M.
   std::size_t size() const { return coordinates_ == 0 ? 0 : values_.size() / coordinates_; }
+  /// Numbers of a pose.
   std::size_t coordinates() const { return coordinates_; }
+  /// [coordinates], SI.
   std::span<const double> operator[](PoseIndex pose) const {
     return std::span(values_).subspan(pose.value * coordinates_, coordinates_);
   }

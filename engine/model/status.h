@@ -15,6 +15,7 @@ enum class SolveStatus : std::uint8_t {
   non_finite      ///< a value overflowed or became undefined
 };
 
+/// As result files have them, in the order of SolveStatus.
 inline constexpr std::array<std::string_view, 5> kStatusNames{"converged", "stagnated", "iteration_cap", "singular",
                                                               "non_finite"};
 

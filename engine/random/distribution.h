@@ -9,6 +9,7 @@ namespace poesy {
 /// A distribution of one error source, symmetric about zero: its quantile function and standard deviation.
 class Distribution {
  public:
+  /// Shapes of the density about zero.
   enum class Shape { normal, truncated_normal, uniform, triangular };
 
   /// sigma > 0. Each of these throws std::invalid_argument with a clause that names the parameter
@@ -21,6 +22,7 @@ class Distribution {
   /// Density falling linearly from zero error to +-half_width > 0.
   static Distribution triangular(double half_width);
 
+  /// Which it is.
   Shape shape() const { return shape_; }
   /// Parameter of the (parent) normal; 0 for other shapes.
   double sigma() const { return sigma_; }

@@ -8,9 +8,9 @@ namespace poesy {
 
 /// Counters (c0, c1, block, 0) and key of Philox4x64-10; the block varies.
 struct PhiloxRun {
-  std::uint64_t c0;
-  std::uint64_t c1;
-  std::array<std::uint64_t, 2> key;
+  std::uint64_t c0;                  ///< first word of the counter
+  std::uint64_t c1;                  ///< second word of the counter
+  std::array<std::uint64_t, 2> key;  ///< seed and purpose
 };
 
 /// Writes the words of blocks first, first + 1, ..., four each, as many of `count` blocks as come in whole groups of

@@ -12,10 +12,10 @@ enum class Purpose : std::uint64_t { error_samples = 1, sampling_design = 2 };
 
 /// The address of a run of draws: one factor at one pose. The sample index completes it.
 struct StreamAddress {
-  std::uint64_t seed = 0;
-  Purpose purpose = Purpose::error_samples;
-  FactorIndex factor;
-  PoseIndex pose;
+  std::uint64_t seed = 0;                    ///< of the study
+  Purpose purpose = Purpose::error_samples;  ///< draws for different purposes never meet
+  FactorIndex factor;                        ///< among all of the model's
+  PoseIndex pose;                            ///< among the study's
 };
 
 /// The 64 random bits at (address, sample): a pure function, Philox4x64-10 (Salmon et al. 2011)
@@ -33,14 +33,21 @@ double uniform_from_bits(std::uint64_t bits);
 /// distributions and shuffles that take an engine: call k returns random_bits(address, k).
 class StreamEngine {
  public:
+  /// Of a standard engine.
   using result_type = std::uint64_t;
 
+  /// Begins with the stream's first sample.
   explicit StreamEngine(const StreamAddress& address) : address_(address) {}
 
+  /// Of a standard engine.
+  /// @{
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return ~result_type{0}; }
+  /// @}
 
+  /// The next sample's bits.
   result_type operator()() { return random_bits(address_, SampleIndex(next_++)); }
+  /// Passes so many samples over.
   void discard(std::uint64_t count) { next_ += count; }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "engine/report/display.h"
@@ -36,51 +37,60 @@ std::string samples_text(const ConvergenceResult& found) {
 }
 
 /// The samples that would do, for half-widths fall with their root; to two digits, upwards.
-std::string needed_text(const ConvergenceResult& found, std::size_t at) {
+Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
   const double ratio = found.relative_half_width[at] / found.relative_error;
   const double needed = static_cast<double>(found.samples[at % found.samples.size()]) * ratio * ratio;
-  if (!(needed < 1e15)) return "more samples cannot be told";
+  if (!(needed < 1e15)) return text_cell("unknown");
   const double digit = std::pow(10.0, std::floor(std::log10(needed)) - 1.0);
-  return fmt::format("about {} samples would do",
-                     count_text(static_cast<std::uint64_t>(std::ceil(needed / digit) * digit)));
+  return count_cell(static_cast<std::uint64_t>(std::ceil(needed / digit) * digit));
 }
 
-std::string not_reached_rows(const StoredResult& result, const ConvergenceResult& found,
-                             const std::vector<std::size_t>& missing) {
+void add_rows(Table& table, const StoredResult& result, const ConvergenceResult& found,
+              const std::vector<std::size_t>& missing) {
   const std::size_t slots = found.samples.size();
-  std::string text;
   for (std::size_t n = 0; n < std::min(missing.size(), kMostShown); ++n) {
     const std::size_t at = missing[n];
-    const std::string error = result.kind == "sensitivity" ? result.factors[at % slots].name : "all errors";
-    text += fmt::format("  {:<16}  {:<22}  {:>8.3g} %  {}\n", error, result.responses[at / slots].name,
-                        100.0 * found.relative_half_width[at], needed_text(found, at));
+    table.rows.push_back({text_cell(result.kind == "sensitivity" ? result.factors[at % slots].name : "all errors"),
+                          text_cell(result.responses[at / slots].name), percent_cell(found.relative_half_width[at]),
+                          needed_cell(found, at)});
   }
-  if (missing.size() > kMostShown) text += fmt::format("  and {} more\n", missing.size() - kMostShown);
-  return text;
+}
+
+/// Sensitivity studies ask it of every response, Monte Carlo studies of the headline.
+std::vector<std::size_t> responses_that_count(const StoredResult& result) {
+  if (result.kind != "sensitivity") return result.headline;
+  std::vector<std::size_t> all(result.responses.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
 }
 
 }  // namespace
 
-std::string convergence_table(const StoredResult& result) {
+std::optional<Table> convergence_table(const StoredResult& result) {
   const bool indices = result.kind == "sensitivity";
   const auto& convergence = indices ? result.sensitivity.convergence : result.monte_carlo.convergence;
-  if (!convergence) return "";
+  if (!convergence) return std::nullopt;
   const ConvergenceResult& found = *convergence;
-  std::vector<std::size_t> responses = result.headline;
-  if (indices) {
-    responses.clear();
-    for (std::size_t r = 0; r < result.responses.size(); ++r) responses.push_back(r);
-  }
+  const std::vector<std::size_t> responses = responses_that_count(result);
   const std::vector<std::size_t> missing = not_reached(found, responses);
   const std::size_t all = responses.size() * found.samples.size();
-  std::string text =
-      fmt::format("\nConvergence: {} of {} {} have a {:.3g} % interval within +-{:.3g} % of their value, {}\n",
-                  all - missing.size(), all, indices ? "global indices" : "overall means", 100.0 * found.conf_level,
-                  100.0 * found.relative_error, samples_text(found));
-  if (missing.empty()) return text;
-  return text + not_reached_rows(result, found, missing) +
-         fmt::format("Raise max, which is {}, and go on with --resume if the checkpoint was kept\n",
-                     count_text(found.max));
+  Table table{
+      .name = "convergence",
+      .caption = fmt::format("Convergence: {} of {} {} have a {:.3g} % interval within +-{:.3g} % of their value, {}",
+                             all - missing.size(), all, indices ? "global indices" : "overall means",
+                             100.0 * found.conf_level, 100.0 * found.relative_error, samples_text(found)),
+      .columns = {text_column("error", "error"), text_column("response", "response"),
+                  percent_column("half_width", "half the interval"),
+                  number_column("samples_needed", "samples that would do, about")},
+      .rows = {},
+      .notes = {}};
+  add_rows(table, result, found, missing);
+  if (missing.size() > kMostShown) table.notes.push_back(fmt::format("and {} more", missing.size() - kMostShown));
+  if (!missing.empty()) {
+    table.notes.push_back(fmt::format("Raise max, which is {}, and go on with --resume if the checkpoint was kept",
+                                      count_text(found.max)));
+  }
+  return table;
 }
 
 }  // namespace poesy

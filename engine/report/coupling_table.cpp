@@ -16,71 +16,77 @@ double rounding_at(const StoredCoupling& stored, std::size_t z) {
   return kIndexRounding * std::fmax(stored.linear[z], stored.angular[z]);  // passes over NaN
 }
 
-std::string number(double value, double unit, double rounding) {
-  if (std::isnan(value)) return "-";
-  return value <= rounding ? "0" : fmt::format("{:.5g}", value / unit);
+Cell pose_cell(bool known, std::int64_t pose) {
+  return known ? count_cell(static_cast<std::uint64_t>(pose)) : text_cell("");
 }
 
-/// Nothing where sources never oppose each other.
-std::string opposed_cells(const CouplingResult& found, std::size_t at) {
-  if (!(found.cancellation_max[at] > 0.0)) return {};
-  return fmt::format("  {:>7.1f} %  {:>7.1f} % at pose {}", 100.0 * found.opposed_share[at],
-                     100.0 * found.cancellation_max[at], found.cancellation_max_pose[at]);
-}
-
-std::string subset_row(const StoredResult& result, std::size_t r, std::size_t at, std::size_t width) {
+std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::size_t at) {
   const StoredCoupling& stored = result.coupling;
   const CouplingResult& found = stored.found;
   const double rounding = rounding_at(stored, at / found.subsets % found.sizes);
-  const auto cell = [&](double value) { return number(value, display(result.responses[r]).si, rounding); };
-  const bool has_effect = found.effect_max[at] > rounding;
-  std::string text =
-      fmt::format("{:<{}}  {:>11}  {:>5}", stored.subsets[at % found.subsets], width, cell(found.effect_max[at]),
-                  has_effect ? std::to_string(found.effect_max_pose[at]) : "-");
-  for (const double value : {found.root_sum_square_max[at], found.worst_case_max[at], found.interaction_max[at]}) {
-    text += fmt::format("  {:>13}", cell(value));
-  }
-  return text + opposed_cells(found, at) + '\n';
+  const auto cell = [&](double value) {
+    Cell shown = number_cell(value / display(result.responses[r]).si, 5);
+    if (value <= rounding) shown.text = "0";
+    return shown;
+  };
+  const bool opposed = found.cancellation_max[at] > 0.0;
+  return {text_cell(stored.subsets[at % found.subsets]),
+          cell(found.effect_max[at]),
+          pose_cell(found.effect_max[at] > rounding, found.effect_max_pose[at]),
+          cell(found.root_sum_square_max[at]),
+          cell(found.worst_case_max[at]),
+          cell(found.interaction_max[at]),
+          opposed ? percent_cell(found.opposed_share[at]) : text_cell(""),
+          opposed ? percent_cell(found.cancellation_max[at]) : text_cell(""),
+          pose_cell(opposed, found.cancellation_max_pose[at])};
 }
 
-std::string response_table(const StoredResult& result, std::size_t z, std::size_t r, std::size_t width) {
+Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   const StoredCoupling& stored = result.coupling;
   const CouplingResult& found = stored.found;
-  std::string text =
-      fmt::format("\n{}: {} [{}]\n", stored.size_names[z], result.responses[r].name, display(result.responses[r]).name);
-  text += fmt::format("{:<{}}  {:>11}  {:>5}  {:>13}  {:>13}  {:>13}  {:>9}  {}\n", "subset", width, "max|effect|",
-                      "pose", "rss", "worst case", "interaction", "opposed", "cancellation");
+  const NamedUnit& response = result.responses[r];
+  const std::string_view unit = display(response).name;
+  Table table{
+      .name = fmt::format("coupling_{}_{}", z + 1, response.name),
+      .caption = fmt::format("{}: {} [{}]", stored.size_names[z], response.name, unit),
+      .columns = {text_column("subset", "subset"), number_column("effect_max", "largest effect", unit),
+                  number_column("effect_max_pose", "at pose", "", 1),
+                  number_column("root_sum_square_max", "root sum square", unit),
+                  number_column("worst_case_max", "worst case", unit),
+                  number_column("interaction_max", "interaction", unit), percent_column("opposed_share", "opposed", 3),
+                  percent_column("cancellation_max", "cancellation", 2),
+                  number_column("cancellation_max_pose", "at pose", "", 2)},
+      .rows = {},
+      .notes = {}};
   for (std::size_t k = 0; k < found.subsets; ++k) {
-    text += subset_row(result, r, (r * found.sizes + z) * found.subsets + k, width);
+    table.rows.push_back(subset_row(result, r, (r * found.sizes + z) * found.subsets + k));
   }
-  return text;
+  return table;
 }
 
-/// Subsets have fewer poses where a solve that they rest on does not count.
-std::string incomplete_text(const StoredResult& result) {
-  const CouplingResult& found = result.coupling.found;
-  const auto incomplete = std::ranges::count_if(found.count, [&](std::uint64_t count) { return count < found.poses; });
-  if (incomplete == 0) return {};
-  return "some subsets leave out poses that were not solved: see the export's coupling_summary.csv\n";
+std::vector<std::string> notes(const StoredCoupling& stored) {
+  std::vector<std::string> list{
+      fmt::format("{} sources of errors, alone and together; largest values over {} poses", stored.sources.size(),
+                  stored.found.poses),
+      "interaction: together minus the sum of each alone",
+      "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much at most; a "
+      "norm, which has no sign, cannot tell"};
+  const std::vector<std::uint64_t>& count = stored.found.count;
+  if (std::ranges::any_of(count, [&](std::uint64_t poses) { return poses < stored.found.poses; })) {
+    list.emplace_back("some subsets leave out poses that were not solved: see the export's coupling_summary.csv");
+  }
+  return list;
 }
 
 }  // namespace
 
-std::string coupling_table(const StoredResult& result) {
-  const StoredCoupling& stored = result.coupling;
-  std::size_t width = 6;
-  for (const std::string& subset : stored.subsets) width = std::max(width, subset.size());
-  std::string text = fmt::format(
-      "{} sources of errors, alone and together; largest values over {} poses. interaction: together minus the sum of "
-      "each\nalone. opposed: share of the poses where the sum is less than its largest part; a norm, which has no "
-      "sign, cannot "
-      "tell\n",
-      stored.sources.size(), stored.found.poses);
-  text += incomplete_text(result);
-  for (std::size_t z = 0; z < stored.found.sizes; ++z) {
-    for (const std::size_t r : result.signed_headline) text += response_table(result, z, r, width);
+std::vector<Table> coupling_tables(const StoredResult& result) {
+  std::vector<Table> tables;
+  for (std::size_t z = 0; z < result.coupling.found.sizes; ++z) {
+    for (const std::size_t r : result.signed_headline) tables.push_back(response_table(result, z, r));
   }
-  return text;
+  if (!tables.empty()) tables.back().notes = notes(result.coupling);
+  return tables;
 }
 
 }  // namespace poesy

@@ -3,20 +3,39 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "engine/io/result_file.h"
+#include "engine/report/table.h"
 
+/// How values are shown: every table makes its columns and cells here.
 namespace poesy {
 
 /// Position of a response among the result's; it must have it.
 std::size_t response_named(const StoredResult& result, std::string_view name);
 
-/// Factors by the spread that each gives the response at the size the study sets: index x sigma(error). Indices alone
-/// do not compare, for some are per m and some per rad.
-std::vector<std::size_t> ranking(const StoredResult& result, std::size_t response);
-
 /// "17 380 000".
 std::string count_text(std::uint64_t count);
+/// To this many significant digits; "-" for NaN.
+std::string number_text(double value, int digits = 4);
+/// A share to three digits, "1.25 %"; "-" for NaN.
+std::string percent_text(double share);
+
+/// A column of texts. dispensable: as of Column.
+Column text_column(std::string name, std::string heading, int dispensable = 0);
+/// A column of numbers, in this unit.
+Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
+/// A share, in percent.
+Column percent_column(std::string name, std::string heading, int dispensable = 0);
+
+/// "-" for an empty text.
+Cell text_cell(std::string_view text);
+/// As number_text, with the number itself.
+Cell number_cell(double value, int digits = 4);
+/// As count_text, with the count itself.
+Cell count_cell(std::uint64_t count);
+/// For a percent_column, of a share.
+Cell percent_cell(double share);
+/// An index or an end of its interval, shown as index * scale; what is rounding in SI is shown as 0.
+Cell index_cell(double index, double scale);
 
 }  // namespace poesy

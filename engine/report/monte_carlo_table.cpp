@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "engine/base/units.h"
@@ -11,33 +12,70 @@
 namespace poesy {
 namespace {
 
-std::string name_cells(std::string_view name, std::string_view unit) { return fmt::format("{:<22} {:>6}", name, unit); }
+constexpr int kDigits = 6;
 
-std::string cell(std::string_view word) { return fmt::format(" {:>13}", word); }
+/// "q_0_95", a name of JSON.
+std::string quantile_name(double level) {
+  std::string name = "q_" + shortest(level);
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '-' || c == '+'; }, '_');
+  return name;
+}
 
-std::string cell(double value) { return fmt::format(" {:>13.6g}", value); }
+std::string quantile_heading(double level) { return "q_" + shortest(level); }
 
-std::string overall_row(const StoredResult& result, std::size_t r) {
+/// The lowest quantiles go first, then the smallest value; mean, spread and what is high stay.
+std::vector<Column> overall_columns(const std::vector<double>& levels) {
+  std::vector<Column> columns{text_column("response", "response"), text_column("unit", "unit"),
+                              number_column("mean", "mean"), number_column("std", "std"),
+                              number_column("min", "min", "", 1)};
+  for (std::size_t q = 0; q < levels.size(); ++q) {
+    const std::size_t higher = levels.size() - 1 - q;
+    const int dispensable = higher == 0 ? 0 : 1 + static_cast<int>(higher);
+    columns.push_back(number_column(quantile_name(levels[q]), quantile_heading(levels[q]), "", dispensable));
+  }
+  columns.push_back(number_column("max", "max"));
+  return columns;
+}
+
+std::vector<Cell> overall_row(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = result.monte_carlo;
   const Unit& unit = display(result.responses[r]);
-  std::string text = name_cells(result.responses[r].name, unit.name);
-  std::vector<double> row{found.overall_mean[r], found.overall_std[r], found.overall_min[r]};
-  for (std::size_t q = 0; q < found.levels.size(); ++q) {
-    row.push_back(found.overall_quantiles[r * found.levels.size() + q]);
-  }
-  row.push_back(found.overall_max[r]);
-  for (const double value : row) text += cell(value / unit.si);
-  return text + '\n';
+  std::vector<Cell> row{text_cell(result.responses[r].name), text_cell(unit.name)};
+  const auto add = [&](double value) { row.push_back(number_cell(value / unit.si, kDigits)); };
+  add(found.overall_mean[r]);
+  add(found.overall_std[r]);
+  add(found.overall_min[r]);
+  for (std::size_t q = 0; q < found.levels.size(); ++q) add(found.overall_quantiles[r * found.levels.size() + q]);
+  add(found.overall_max[r]);
+  return row;
+}
+
+/// Precondition: there are poses and quantiles.
+Table overall_table(const StoredResult& result) {
+  const MonteCarloResult& found = result.monte_carlo;
+  Table table{.name = "overall",
+              .caption = fmt::format("{} errors vary together: responses over the samples of all {} poses",
+                                     result.factors.size(), found.poses),
+              .columns = overall_columns(found.levels),
+              .rows = {},
+              .notes = {fmt::format("{} samples at each pose; std: standard deviation; {}: {:.3g} % of the samples lie "
+                                    "below it (quantiles to {:.2g} % of their value)",
+                                    count_text(found.solves.front().total()), quantile_heading(found.levels.back()),
+                                    100.0 * found.levels.back(), 100.0 * found.quantile_relative_error)}};
+  for (const std::size_t r : result.headline) table.rows.push_back(overall_row(result, r));
+  return table;
 }
 
 /// The largest of one number of each pose, and its pose; NaN counts as least.
-std::string worst_pose(const std::vector<double>& at_poses, const Unit& unit) {
+void add_worst_pose(std::vector<Cell>& row, const std::vector<double>& at_poses, const Unit& unit) {
   const auto worst =
       std::ranges::max_element(at_poses, [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
-  return cell(*worst / unit.si) + fmt::format(" {:>9}", fmt::format("pose {}", worst - at_poses.begin()));
+  row.push_back(number_cell(*worst / unit.si, kDigits));
+  row.push_back(std::isnan(*worst) ? text_cell("") : count_cell(static_cast<std::uint64_t>(worst - at_poses.begin())));
 }
 
-std::string poses_row(const StoredResult& result, std::size_t r) {
+std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = result.monte_carlo;
   const Unit& unit = display(result.responses[r]);
   std::vector<double> mean;
@@ -49,29 +87,36 @@ std::string poses_row(const StoredResult& result, std::size_t r) {
     sum += found.mean[cell];
     highest_quantile.push_back(found.quantiles[(cell + 1) * found.levels.size() - 1]);
   }
-  return name_cells(result.responses[r].name, unit.name) + cell(sum / static_cast<double>(found.poses) / unit.si) +
-         worst_pose(mean, unit) + worst_pose(highest_quantile, unit) + '\n';
+  std::vector<Cell> row{text_cell(result.responses[r].name), text_cell(unit.name),
+                        number_cell(sum / static_cast<double>(found.poses) / unit.si, kDigits)};
+  add_worst_pose(row, mean, unit);
+  add_worst_pose(row, highest_quantile, unit);
+  return row;
+}
+
+/// Precondition: there are poses and quantiles.
+Table poses_table(const StoredResult& result) {
+  const std::vector<double>& levels = result.monte_carlo.levels;
+  Table table{.name = "poses",
+              .caption = "Pose by pose: the mean of the poses' means, and the worst poses",
+              .columns = {text_column("response", "response"), text_column("unit", "unit"),
+                          number_column("mean_of_means", "mean of means"),
+                          number_column("largest_mean", "largest mean"), number_column("largest_mean_pose", "at pose"),
+                          number_column("largest_" + quantile_name(levels.back()),
+                                        "largest " + quantile_heading(levels.back())),
+                          number_column("largest_quantile_pose", "at pose")},
+              .rows = {},
+              .notes = {}};
+  for (const std::size_t r : result.headline) table.rows.push_back(poses_row(result, r));
+  return table;
 }
 
 }  // namespace
 
-std::string monte_carlo_table(const StoredResult& result) {
+std::vector<Table> monte_carlo_tables(const StoredResult& result) {
   const MonteCarloResult& found = result.monte_carlo;
-  if (found.poses == 0 || found.levels.empty()) return "no poses\n";
-  std::string text =
-      fmt::format("{} errors vary together, {} samples at each of {} poses; quantiles to {:.2g} % of their value\n\n",
-                  result.factors.size(), count_text(found.solves.front().total()), found.poses,
-                  100.0 * found.quantile_relative_error);
-  text += name_cells("all poses together", "unit");
-  for (const char* word : {"mean", "std", "min"}) text += cell(word);
-  for (const double level : found.levels) text += cell("q_" + shortest(level));
-  text += cell("max") + '\n';
-  for (const std::size_t r : result.headline) text += overall_row(result, r);
-  const std::string highest = "q_" + shortest(found.levels.back());
-  text += '\n' + name_cells("over the poses", "unit") +
-          fmt::format(" {:>13} {:>23} {:>23}\n", "mean of means", "largest mean", "largest " + highest);
-  for (const std::size_t r : result.headline) text += poses_row(result, r);
-  return text;
+  if (found.poses == 0 || found.levels.empty()) return {};
+  return {overall_table(result), poses_table(result)};
 }
 
 }  // namespace poesy

@@ -5,42 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/report/coupling_table.h"
 #include "engine/report/display.h"
-#include "engine/stats/tolerance.h"
 
 namespace poesy {
 namespace {
-
-/// The responses worth a column: `first`, and those of the headline that have a dimension.
-std::vector<std::size_t> shown_responses(const StoredResult& result, std::size_t first) {
-  std::vector<std::size_t> shown{first};
-  for (const std::size_t r : result.headline) {
-    if (r != first && dimension_of(result.responses[r].unit) != Dimension::number) shown.push_back(r);
-  }
-  return shown;
-}
-
-std::string number(double value, double scale) {
-  if (std::abs(value) < kIndexRounding) return fmt::format("{:>8}", "0");
-  return fmt::format("{:>8.4g}", value * scale);
-}
-
-std::string index_cell(const SensitivityResult& s, std::size_t row, double scale) {
-  if (std::isnan(s.global[row])) return fmt::format("{:>8} {:<21}", "-", "");
-  const std::string interval =
-      fmt::format("[{},{}]", number(s.global_ci_low[row], scale), number(s.global_ci_high[row], scale));
-  return fmt::format("{} {:<21}", number(s.global[row], scale), interval);
-}
-
-double share_not_converged(const SensitivityResult& s, std::size_t factor) {
-  SolveCounts solves;
-  for (std::size_t m = 0; m < s.poses; ++m) solves.merge(s.solves[factor * s.poses + m]);
-  return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
-}
 
 std::string chart_text(const PoseChart& chart) {
   std::string text = fmt::format("\nposes may be given by {}\n", chart.name);
@@ -60,7 +33,21 @@ std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
                      curve.name, curve.description, curve.start, curve.end, chart.name, origin);
 }
 
-SolveCounts all_solves(const StoredResult& result) {
+void add(std::vector<Table>& tables, std::optional<Table> table) {
+  if (table) tables.push_back(std::move(*table));
+}
+
+std::vector<Table> sensitivity_tables(const StoredResult& result, const RankedErrors& ranked) {
+  std::vector<Table> tables{ranked_table(result, ranked)};
+  add(tables, separation_table(result, ranked));
+  add(tables, fidelity_table(result, ranked));
+  add(tables, convergence_table(result));
+  return tables;
+}
+
+}  // namespace
+
+SolveCounts solves_of(const StoredResult& result) {
   if (result.kind == "sensitivity") return result.sensitivity.total();
   if (result.kind == "identification") return result.identification.solves;
   if (result.kind == "monte-carlo") return result.monte_carlo.total();
@@ -68,37 +55,7 @@ SolveCounts all_solves(const StoredResult& result) {
   return result.evaluation.total();
 }
 
-}  // namespace
-
-std::size_t response_named(const StoredResult& result, std::string_view name) {
-  const auto found = std::find_if(result.responses.begin(), result.responses.end(),
-                                  [&](const NamedUnit& response) { return response.name == name; });
-  return static_cast<std::size_t>(found - result.responses.begin());
-}
-
-std::vector<std::size_t> ranking(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& s = result.sensitivity;
-  std::vector<std::size_t> order(s.factors);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&](std::size_t p) {
-    const double spread = s.global[response * s.factors + p] * result.factor_sigma[p];
-    return std::isnan(spread) ? -1.0 : spread;
-  };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) > key(b); });
-  return order;
-}
-
-std::string count_text(std::uint64_t count) {
-  std::string digits = std::to_string(count);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
-  return digits;
-}
-
 std::string summary_text(const StoredResult& result) {
-  const SolveCounts solves = all_solves(result);
-  const double share = solves.total() == 0
-                           ? 0.0
-                           : 100.0 * static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
   std::string text;
   if (!result.title.empty()) text += result.title + "\n";
   text += fmt::format("{} of {}: {} poses, poesy {}\n", result.kind, result.model, result.poses.size(),
@@ -108,7 +65,6 @@ std::string summary_text(const StoredResult& result) {
                       count_text(static_cast<std::uint64_t>(
                           std::llround(static_cast<double>(result.facts.solves) /
                                        std::max(result.facts.wall_seconds, std::numeric_limits<double>::min())))));
-  text += fmt::format("{} solves ({:.3g} %) did not converge\n", count_text(solves.not_converged()), share);
   return text;
 }
 
@@ -119,71 +75,24 @@ std::string default_ranking(const StoredResult& result) {
   return result.headline.empty() ? std::string() : result.responses[result.headline.front()].name;
 }
 
-std::string ranked_table(const StoredResult& result, std::string_view ranked_by) {
-  const SensitivityResult& s = result.sensitivity;
-  const std::vector<std::size_t> shown = shown_responses(result, response_named(result, ranked_by));
-  std::string text = fmt::format(
-      "Global sensitivity indices with {1:.3g} % intervals, ranked by the spread of {0} that each error causes\n",
-      ranked_by, 100.0 * s.conf_level);
-  text += fmt::format("{:>4}  {:<16}", "rank", "error");
-  for (const std::size_t r : shown) {
-    text +=
-        fmt::format("  {:<38}", fmt::format("{} [{}/..]", result.responses[r].name, display(result.responses[r]).name));
+std::vector<Table> result_tables(const StoredResult& result, std::string_view ranked_by, RowOrder order) {
+  if (result.kind == "sensitivity") return sensitivity_tables(result, ranked_errors(result, ranked_by, order));
+  if (result.kind == "identification") return identification_tables(result);
+  if (result.kind == "monte-carlo") {
+    std::vector<Table> tables = monte_carlo_tables(result);
+    add(tables, convergence_table(result));
+    return tables;
   }
-  text += "  not converged\n";
-  std::size_t rank = 0;
-  for (const std::size_t p : ranking(result, shown.front())) {
-    const Unit& factor_unit = display(result.factors[p]);
-    text += fmt::format("{:>4}  {:<16}", ++rank, result.factors[p].name);
-    for (const std::size_t r : shown) {
-      const Unit& unit = display(result.responses[r]);
-      text += fmt::format("  {} {:<7}", index_cell(s, r * s.factors + p, factor_unit.si / unit.si),
-                          fmt::format("{}/{}", unit.name, factor_unit.name));
-    }
-    text += fmt::format("  {:>10.3g} %\n", 100.0 * share_not_converged(s, p));
-  }
-  return text;
+  if (result.kind == "coupling") return coupling_tables(result);
+  return {result.cases.empty() ? evaluation_table(result) : cases_table(result)};
 }
 
-std::string evaluation_table(const StoredResult& result) {
-  const EvaluationResult& e = result.evaluation;
-  std::string text =
-      fmt::format("{:<22} {:>6} {:>13} {:>13} {:>13}\n", "response", "unit", "mean", "smallest", "largest");
-  const std::size_t all = e.poses * e.samples;
-  for (const std::size_t r : result.headline) {
-    double sum = 0.0;
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < all; ++n) {
-      if (!solved(e.status[n])) continue;
-      const double value = e.response[r * all + n];
-      sum += value;
-      lowest = std::min(lowest, value);
-      highest = std::max(highest, value);
-      ++count;
-    }
-    const Unit& unit = display(result.responses[r]);
-    text += fmt::format("{:<22} {:>6}", result.responses[r].name, unit.name);
-    if (count == 0) {
-      text += fmt::format(" {:>13}\n", "none solved");
-      continue;
-    }
-    text += fmt::format(" {:>13.6g} {:>13.6g} {:>13.6g}\n", sum / static_cast<double>(count) / unit.si,
-                        lowest / unit.si, highest / unit.si);
+void keep_first(std::size_t most, std::vector<Table>& tables) {
+  for (Table& table : tables) {
+    if (!table.ranked || table.rows.size() <= most) continue;
+    table.notes.push_back(fmt::format("{} of {} errors shown", most, table.rows.size()));
+    table.rows.resize(most);
   }
-  return text;
-}
-
-std::string result_tables(const StoredResult& result, std::string_view ranked_by) {
-  if (result.kind == "sensitivity") {
-    return ranked_table(result, ranked_by) + separation_table(result, ranked_by) + fidelity_table(result, ranked_by) +
-           convergence_table(result);
-  }
-  if (result.kind == "identification") return identification_table(result);
-  if (result.kind == "monte-carlo") return monte_carlo_table(result) + convergence_table(result);
-  if (result.kind == "coupling") return coupling_table(result);
-  return result.cases.empty() ? evaluation_table(result) : cases_table(result);
 }
 
 std::string models_text(const Catalog& catalog) {

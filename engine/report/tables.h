@@ -1,57 +1,67 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/io/result_file.h"
 #include "engine/model/catalog.h"
+#include "engine/report/ranking.h"
+#include "engine/report/table.h"
 
 namespace poesy {
 
-/// What was run, how long it took and how many solves did not converge, a few lines.
+/// How the solves of a result of any kind ended.
+SolveCounts solves_of(const StoredResult& result);
+
+/// What was run and how long it took, a few lines.
 std::string summary_text(const StoredResult& result);
 
-/// How many samples of a result failed, the first one's address, and how to replay it; empty where none is listed.
+/// How many solves did not converge; of a sampled result also the first one's address, and how to replay it.
 /// path: of the result.
 std::string failures_text(const StoredResult& result, std::string_view path);
-
-/// The factors of a sensitivity result, ranked by the spread that each gives one response at the size the study sets
-/// (global index x sigma), with the indices and intervals of the headline's responses, in mm and deg.
-/// ranked_by is a response of the result.
-std::string ranked_table(const StoredResult& result, std::string_view ranked_by);
-
-/// What calibration can remove of each error's effect, in the order of ranked_table; empty where the result does not
-/// say.
-std::string separation_table(const StoredResult& result, std::string_view ranked_by);
-
-/// Per error the largest discrepancy of two fidelities and the verdict, in the order of ranked_table; empty where the
-/// study compares none.
-std::string fidelity_table(const StoredResult& result, std::string_view ranked_by);
-
-/// How many quantities reached the interval that the study asks for, with how many samples, and which did not; empty
-/// for a fixed number of samples.
-std::string convergence_table(const StoredResult& result);
 
 /// The response a result is ranked by unless asked otherwise: the first length of the headline, else its first.
 std::string default_ranking(const StoredResult& result);
 
-/// Per response of an `evaluate` result, the mean and the extremes over all solved samples, and where they are.
-std::string evaluation_table(const StoredResult& result);
+/// The errors of a sensitivity result in their order, with the effect on the response that ranks (global index x
+/// sigma), its index and interval, those of the headline's other responses, and the share of samples not converged, in
+/// mm and deg.
+Table ranked_table(const StoredResult& result, const RankedErrors& ranked);
+
+/// What calibration can remove of each error's effect; none where the result does not say.
+std::optional<Table> separation_table(const StoredResult& result, const RankedErrors& ranked);
+
+/// Per error the largest discrepancy of two fidelities and the verdict; none where the study compares none.
+std::optional<Table> fidelity_table(const StoredResult& result, const RankedErrors& ranked);
+
+/// How many quantities reached the interval that the study asks for, with how many samples, and which did not; none
+/// for a fixed number of samples.
+std::optional<Table> convergence_table(const StoredResult& result);
+
+/// Per response of an `evaluate` result, the mean and the extremes over all solved samples.
+Table evaluation_table(const StoredResult& result);
 
 /// Per case of an `evaluate` study, mean and maximum of each response over the poses that count.
-std::string cases_table(const StoredResult& result);
+Table cases_table(const StoredResult& result);
 
-/// The errors that deform, limb by limb as far as their order goes, with the counts of poses behind the verdicts, and
-/// the couplings.
-std::string identification_table(const StoredResult& result);
+/// The errors that deform, limb by limb as far as their order goes, with the counts of poses behind the verdicts; then
+/// the couplings, where there are any.
+std::vector<Table> identification_tables(const StoredResult& result);
 
 /// Per response of a Monte Carlo result, mean, spread, extremes and quantiles over the samples of all poses together;
 /// then the mean of the poses' means, and the largest mean and highest quantile with the pose where it is.
-std::string monte_carlo_table(const StoredResult& result);
+std::vector<Table> monte_carlo_tables(const StoredResult& result);
 
-/// The tables that suit the result's kind. ranked_by is a response of the result.
-std::string result_tables(const StoredResult& result, std::string_view ranked_by);
+/// The tables that suit the result's kind. ranked_by is a response of the result; the errors of a sensitivity result
+/// stand in this order.
+std::vector<Table> result_tables(const StoredResult& result, std::string_view ranked_by,
+                                 RowOrder order = RowOrder::effect);
+
+/// Leaves the first rows of the tables that are ranked; where that takes some away, a note says how many there are.
+void keep_first(std::size_t most, std::vector<Table>& tables);
 
 /// All mechanisms, a line each.
 std::string models_text(const Catalog& catalog);

@@ -3,49 +3,89 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <vector>
 
 #include "engine/report/display.h"
 
 namespace poesy {
 namespace {
 
-std::string number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.4g}", value); }
-
-std::string index_cells(const SensitivityResult& found, std::size_t at, double scale) {
-  const auto text = [&](double index) {
-    return std::abs(index) < kIndexRounding ? std::string("0") : number(index * scale);
-  };
-  const std::string interval = fmt::format("[{}, {}]", text(found.global_ci_low[at]), text(found.global_ci_high[at]));
-  return fmt::format("{:>9} {:<22}", text(found.global[at]), interval);
+Cell tolerance_cell(double tolerance, const Unit& unit) {
+  return std::isinf(tolerance) ? text_cell("no effect") : number_cell(tolerance / unit.si);
 }
 
-std::string tolerance_cell(double tolerance, const Unit& unit) {
-  if (std::isinf(tolerance)) return fmt::format("  {:>18}", "no effect");
-  return fmt::format("  {:>18}", fmt::format("{} {:<3}", number(tolerance / unit.si), unit.name));
-}
-
-std::string reference_lines(const StoredResult& result, const ResponseTolerances& tolerances) {
+void add_reference_notes(std::vector<std::string>& notes, const StoredResult& result,
+                         const ResponseTolerances& tolerances) {
   const NamedUnit& response = result.responses[tolerances.response];
   const std::optional<ReferenceError>& reference = tolerances.all.reference;
-  if (!reference) return fmt::format("no error has an effect on {}\n", response.name);
+  if (!reference) {
+    notes.push_back(fmt::format("no error has an effect on {}", response.name));
+    return;
+  }
   const NamedUnit& factor = result.factors[reference->factor];
   const double rms = std::sqrt(tolerances.all.mean_square.at(tolerances.all.equal_effect));
-  std::string text = fmt::format("equal effect: as much as {} = {}\n", factor.name,
-                                 readable_text({reference->tolerance, dimension_of(factor.unit)}));
-  text += fmt::format("  with these, predicted root mean square of {}: {}\n", response.name,
-                      std::isnan(rms) ? "unknown" : response_text(response, rms));
-  return text;
+  notes.push_back(fmt::format("equal effect: as much as {} = {}; with these, predicted root mean square of {}: {}",
+                              factor.name, readable_text({reference->tolerance, dimension_of(factor.unit)}),
+                              response.name, std::isnan(rms) ? "unknown" : response_text(response, rms)));
 }
 
-std::string limit_lines(const StoredResult& result, const ResponseTolerances& tolerances) {
-  if (!tolerances.limit) return "";
+void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result,
+                     const ResponseTolerances& tolerances) {
+  if (!tolerances.limit) return;
   const NamedUnit& response = result.responses[tolerances.response];
-  return fmt::format(
-      "limit: predicted root mean square of {} over samples and poses = {}; its mean is below that. The background "
-      "alone gives {}\n"
-      "  an error without effect on its own has its equal tolerance, for it may act together with others\n",
-      response.name, response_text(response, tolerances.limit->limit),
-      response_text(response, std::sqrt(tolerances.all.mean_square.background)));
+  notes.push_back(
+      fmt::format("limit: predicted root mean square of {} over samples and poses = {}; its mean is below that. The "
+                  "background alone gives {}",
+                  response.name, response_text(response, tolerances.limit->limit),
+                  response_text(response, std::sqrt(tolerances.all.mean_square.background))));
+  notes.emplace_back("an error without effect on its own has its equal tolerance, for it may act together with others");
+}
+
+std::vector<std::string> notes(const StoredResult& result, const ResponseTolerances& tolerances) {
+  std::vector<std::string> list;
+  add_reference_notes(list, result, tolerances);
+  add_limit_notes(list, result, tolerances);
+  list.push_back(
+      fmt::format("index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
+                  "share: of the response's variance, at the size the study sets",
+                  100.0 * result.sensitivity.conf_level));
+  return list;
+}
+
+std::vector<Column> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
+  const std::string index_unit = fmt::format("{}/unit", display(result.responses[tolerances.response]).name);
+  std::vector<Column> list{text_column("error", "error"), text_column("kind", "kind", 4),
+                           number_column("limb", "limb", "", 3), number_column("equal_effect", "equal effect")};
+  if (tolerances.limit) {
+    list.push_back(number_column("limit_equal_effect", "limit, equal effect"));
+    list.push_back(number_column("limit_equal_tolerance", "limit, equal tolerance"));
+  }
+  list.push_back(text_column("unit", "unit"));
+  list.push_back(number_column("index", "index", index_unit));
+  list.push_back(number_column("index_low", "low", index_unit, 2));
+  list.push_back(number_column("index_high", "high", index_unit, 2));
+  list.push_back(percent_column("variance_share", "share", 1));
+  return list;
+}
+
+std::vector<Cell> row(const StoredResult& result, const ResponseTolerances& tolerances, std::size_t p) {
+  const SensitivityResult& found = result.sensitivity;
+  const NamedUnit& factor = result.factors[p];
+  const Unit& unit = display(factor);
+  std::vector<Cell> cells{text_cell(factor.name), text_cell(error_kind(dimension_of(factor.unit))),
+                          count_cell(result.factor_limb[p]), tolerance_cell(tolerances.all.equal_effect[p], unit)};
+  if (tolerances.limit) {
+    cells.push_back(tolerance_cell(tolerances.limit->equal_effect[p], unit));
+    cells.push_back(tolerance_cell(tolerances.limit->equal_tolerance[p], unit));
+  }
+  cells.push_back(text_cell(unit.name));
+  const std::size_t at = tolerances.response * found.factors + p;
+  const double scale = unit.si / display(result.responses[tolerances.response]).si;
+  for (const double value : {found.global[at], found.global_ci_low[at], found.global_ci_high[at]}) {
+    cells.push_back(index_cell(value, scale));
+  }
+  cells.push_back(percent_cell(tolerances.all.variance_share[p]));
+  return cells;
 }
 
 }  // namespace
@@ -56,33 +96,15 @@ std::string response_text(const NamedUnit& response, double si) {
   return unit.name == "1" ? value : fmt::format("{} {}", value, unit.name);
 }
 
-std::string tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances) {
-  const SensitivityResult& found = result.sensitivity;
-  const NamedUnit& response = result.responses[tolerances.response];
-  const Unit& response_unit = display(response);
-  std::string text = fmt::format("Tolerances for {}: standard deviations of normal errors\n", response.name) +
-                     reference_lines(result, tolerances) + limit_lines(result, tolerances);
-  text += fmt::format("\n{:<16}  {:<7}  {:>4}  {:<40}  {:>7}  {:>18}", "error", "kind", "limb",
-                      fmt::format("index with {:.3g} % interval", 100.0 * found.conf_level), "share", "equal effect");
-  if (tolerances.limit) text += fmt::format("  {:>18}  {:>18}", "limit, eq. effect", "limit, eq. toler.");
-  text += '\n';
-  for (std::size_t p = 0; p < result.factors.size(); ++p) {
-    const NamedUnit& factor = result.factors[p];
-    const Unit& unit = display(factor);
-    text += fmt::format(
-        "{:<16}  {:<7}  {:>4}  {} {:<7}  {:>5} %", factor.name, error_kind(dimension_of(factor.unit)),
-        result.factor_limb[p], index_cells(found, tolerances.response * found.factors + p, unit.si / response_unit.si),
-        fmt::format("{}/{}", response_unit.name, unit.name),
-        std::isnan(tolerances.all.variance_share[p]) ? "-"
-                                                     : fmt::format("{:.1f}", 100.0 * tolerances.all.variance_share[p]));
-    text += tolerance_cell(tolerances.all.equal_effect[p], unit);
-    if (tolerances.limit) {
-      text += tolerance_cell(tolerances.limit->equal_effect[p], unit) +
-              tolerance_cell(tolerances.limit->equal_tolerance[p], unit);
-    }
-    text += '\n';
-  }
-  return text;
+Table tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances) {
+  Table table{.name = "tolerances",
+              .caption = fmt::format("Tolerances for {}: standard deviations of normal errors",
+                                     result.responses[tolerances.response].name),
+              .columns = columns(result, tolerances),
+              .rows = {},
+              .notes = notes(result, tolerances)};
+  for (std::size_t p = 0; p < result.factors.size(); ++p) table.rows.push_back(row(result, tolerances, p));
+  return table;
 }
 
 }  // namespace poesy

@@ -57,10 +57,12 @@ class Checkpoints {
     for (const End& end : ends_) sum.merge(end.solves);
     return sum;
   }
+  /// One state for each stage; empty where none was taken.
   std::span<const Bytes> stages() const { return stages_; }
   /// The stage that began last.
   const Bytes& stage() const { return stages_[begun_ - 1]; }
 
+  /// Writes a checkpoint now, due or not.
   void save() const { save_(stages_); }
 
  private:
@@ -86,6 +88,7 @@ class Checkpoints {
 /// One stage's dealings with checkpoints and other ranks, if there are any.
 class Stage {
  public:
+  /// Either may be null.
   Stage(Checkpoints* checkpoints, Team* team) : checkpoints_(checkpoints), team_(team) {}
 
   /// Calls restore(state) if there is a state to take up: of the checkpoint, that rank 0 has.
@@ -97,6 +100,7 @@ class Stage {
     if (!state.empty()) restore(std::span<const std::byte>(state));
   }
 
+  /// Between two merges: takes state() and writes a checkpoint when one is due.
   template <class State>
   void merged(const State& state) {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);

@@ -1,9 +1,11 @@
 #include "engine/run/evaluate_unit.h"
 
 #include <algorithm>
+#include <array>
 
 #include "engine/random/stream.h"
 #include "engine/run/counts.h"
+#include "engine/study/history_points.h"
 
 namespace poesy {
 namespace {
@@ -36,6 +38,26 @@ UnitStats UnitStats::read(ByteReader& from, std::size_t responses, std::uint64_t
   return stats;
 }
 
+void SensitivityUnit::write(ByteWriter& to) const {
+  UnitStats::write(to);
+  for (const LocalIndex& index : within) to.reals(std::array{index.value, index.standard_error});
+}
+
+SensitivityUnit SensitivityUnit::read(ByteReader& from, std::size_t responses, std::uint64_t first,
+                                      std::size_t points) {
+  SensitivityUnit unit{UnitStats::read(from, responses, first), {}};
+  for (std::size_t n = 0; n < points * responses; ++n) {
+    const double value = from.real();
+    unit.within.push_back({value, from.real()});
+  }
+  return unit;
+}
+
+std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points) {
+  if (unit.first.value > 0) return {};
+  return points.first(static_cast<std::size_t>(std::ranges::lower_bound(points, unit.count) - points.begin()));
+}
+
 UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
     : plan_(&plan),
       responses_(model.description().responses.size()),
@@ -43,7 +65,8 @@ UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
       values_(Plan::kUnitSamples),
       outcome_(responses_ * Plan::kUnitSamples),
       status_(Plan::kUnitSamples),
-      iterations_(Plan::kUnitSamples) {}
+      iterations_(Plan::kUnitSamples),
+      points_(history_points(plan)) {}
 
 UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit) {
   const std::span values = std::span(values_).first(unit.count);
@@ -59,21 +82,29 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit) {
   return {values, outcome, status, iterations};
 }
 
-UnitStats UnitEvaluator::operator()(const WorkUnit& unit) {
+SensitivityUnit UnitEvaluator::operator()(const WorkUnit& unit) {
   const UnitOutcomes outcomes = solve(unit);
-  UnitStats stats;
-  stats.responses.reserve(responses_);
+  const std::span<const std::size_t> points = points_within(unit, points_);
+  const double sigma = plan_->distributions()[unit.slot].standard_deviation();
+  SensitivityUnit found;
+  found.responses.reserve(responses_);
+  found.within.resize(points.size() * responses_);
   kept_.clear();
   for (std::size_t b = 0; b < unit.count; ++b) {
-    stats.solves.add(outcomes.status[b], outcomes.iterations[b]);
-    stats.failed.add(SampleIndex(unit.first.value + b), outcomes.status[b]);
+    found.solves.add(outcomes.status[b], outcomes.iterations[b]);
+    found.failed.add(SampleIndex(unit.first.value + b), outcomes.status[b]);
     if (counts(outcomes.status[b], plan_->not_converged())) kept_.push_back(b);
   }
   for (std::size_t r = 0; r < responses_; ++r) {
     for (std::size_t n = 0; n < kept_.size(); ++n) values_[n] = outcomes.responses[r * unit.count + kept_[n]];
-    stats.responses.push_back(Moments::of(std::span(values_).first(kept_.size())));
+    const std::span<const double> kept = std::span(values_).first(kept_.size());
+    found.responses.push_back(Moments::of(kept));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto count = static_cast<std::size_t>(std::ranges::lower_bound(kept_, points[k]) - kept_.begin());
+      found.within[k * responses_ + r] = local_index_with_error(Moments::of(kept.first(count)), sigma);
+    }
   }
-  return stats;
+  return found;
 }
 
 }  // namespace poesy

@@ -13,9 +13,10 @@ namespace poesy {
 
 /// A sample that was not solved.
 struct FailedSample {
-  SampleIndex sample;
-  SolveStatus status;
+  SampleIndex sample;  ///< position in the stream of its cell
+  SolveStatus status;  ///< how it ended
 
+  /// Whether both members are equal.
   bool operator==(const FailedSample&) const = default;
 };
 
@@ -35,8 +36,10 @@ class FailedSamples {
   /// Precondition: all samples of `later` come after those of this.
   void merge(const FailedSamples& later);
 
+  /// In the order of samples, at most kMost.
   std::span<const FailedSample> first() const { return first_; }
 
+  /// For a state or a message.
   void write(ByteWriter& to) const;
   /// Of samples first .. end - 1, so many of which failed. Throws BytesError for what cannot be theirs.
   static FailedSamples read(ByteReader& from, std::uint64_t failures, std::uint64_t first, std::uint64_t end);
@@ -47,10 +50,11 @@ class FailedSamples {
 
 /// Where a sample stands that was not solved: its address.
 struct Failure {
-  std::size_t slot;  ///< position among the study's factors; 0 where all vary together
-  PoseIndex pose;
-  FailedSample failed;
+  std::size_t slot;     ///< position among the study's factors; 0 where all vary together
+  PoseIndex pose;       ///< among the study's
+  FailedSample failed;  ///< which sample, and how it ended
 
+  /// Whether address and end are equal.
   bool operator==(const Failure&) const = default;
 };
 

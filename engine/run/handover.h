@@ -34,11 +34,14 @@ class Block {
 template <class Function>
 class Task {
  public:
+  /// The function is copied with the task.
   explicit Task(Function function) : function_(std::move(function)) {}
+  /// Copies run on other threads: what this one wrote before is visible there.
   Task(const Task& other) : function_(other.function_) { publish(); }
   Task& operator=(const Task&) = delete;
   ~Task() = default;
 
+  /// Calls the function inside a block.
   template <class... Arguments>
   decltype(auto) operator()(Arguments&&... arguments) const {
     const Block block;

@@ -15,16 +15,17 @@ namespace poesy {
 
 /// What one work unit contributes to one response.
 struct ResponseUnit {
-  Moments moments;
-  BucketedValues values;
+  Moments moments;        ///< over the samples that count
+  BucketedValues values;  ///< the same samples, ready for a sketch
 };
 
 /// What one work unit of a Monte Carlo study contributes.
 struct PoseUnit {
   std::vector<ResponseUnit> responses;  ///< [R], over the samples that count
-  SolveCounts solves;
-  FailedSamples failed;
+  SolveCounts solves;                   ///< how its solves ended
+  FailedSamples failed;                 ///< the first of them
 
+  /// For a message.
   void write(ByteWriter& to) const;
   /// Of samples from `first` on.
   static PoseUnit read(ByteReader& from, std::size_t responses, std::uint64_t first);
@@ -35,8 +36,10 @@ struct PoseUnit {
 /// unit.
 class PoseUnitEvaluator {
  public:
+  /// Refers to both.
   PoseUnitEvaluator(const Plan& plan, const Model& model);
 
+  /// Solves the whole unit.
   PoseUnit operator()(const WorkUnit& unit);
   /// As UnitEvaluator::solve.
   UnitOutcomes solve(const WorkUnit& unit);

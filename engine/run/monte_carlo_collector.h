@@ -13,21 +13,26 @@ namespace poesy {
 
 /// One response of some samples.
 struct ResponseSamples {
-  Moments moments;
-  QuantileSketch sketch;
+  Moments moments;        ///< exact
+  QuantileSketch sketch;  ///< for quantiles
 
+  /// For a state.
   void write(ByteWriter& to) const;
+  /// Throws BytesError for what no samples give.
   static ResponseSamples read(ByteReader& from);
 };
 
 /// Some samples, all or not, at one pose.
 struct PoseSamples {
   std::vector<ResponseSamples> responses;  ///< [R]
-  SolveCounts solves;
-  FailedSamples failed;
+  SolveCounts solves;                      ///< how their solves ended
+  FailedSamples failed;                    ///< the first of them
 
+  /// Precondition: its samples come after those that are here.
   void add(const PoseUnit& unit);
+  /// For a state.
   void write(ByteWriter& to) const;
+  /// Throws BytesError for what no samples give.
   static PoseSamples read(ByteReader& from, std::size_t responses);
 };
 
@@ -37,6 +42,7 @@ struct PoseSamples {
 /// The order in which poses are finished changes nothing.
 class MonteCarloCollector {
  public:
+  /// Of packed sketches; poses beyond are solved again when more samples are wanted.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
 
   /// for_longer_study: whether to keep sketches of finished poses.

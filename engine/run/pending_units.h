@@ -38,11 +38,13 @@ class PendingUnits {
           return cells.holds(cell) ? plan.units_per_cell() : 0;
         }) {}
 
+  /// Units that are still to be solved.
   std::size_t size() const { return ends_.empty() ? 0 : ends_.back().pending; }
 
   /// In all of them.
   std::uint64_t samples() const { return samples_; }
 
+  /// The n-th of them, in the order of the plan.
   WorkUnit operator[](std::size_t n) const {
     POESY_EXPECTS(n < size());
     const auto end = std::ranges::upper_bound(ends_, n, {}, &End::pending);

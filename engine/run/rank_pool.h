@@ -26,6 +26,7 @@ class RankPool {
   RankPool& operator=(const RankPool&) = delete;
   ~RankPool();
 
+  /// Work with the numbers first, first + 1, ...
   void give(std::size_t first, std::size_t count);
   /// Returns at the end of that time, or when numbers have become few since the last call.
   void wait(std::chrono::microseconds at_most);

@@ -12,9 +12,10 @@ namespace poesy {
 /// The processes that work on one run, its ranks, as one of them sees them. None of its functions waits.
 class Ranks {
  public:
+  /// What one rank sent to another.
   struct Message {
-    std::size_t from;
-    Bytes bytes;
+    std::size_t from;  ///< the rank that sent it
+    Bytes bytes;       ///< its content
   };
 
   Ranks() = default;
@@ -24,6 +25,7 @@ class Ranks {
 
   /// This process's number. Precondition of all members: called from one thread at a time.
   virtual std::size_t rank() const = 0;
+  /// How many there are.
   virtual std::size_t size() const = 0;
   /// This process as a user would look for it: "rank 3 on node7".
   virtual std::string name() const = 0;

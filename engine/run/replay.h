@@ -11,12 +11,12 @@ namespace poesy {
 
 /// One sample, solved again.
 struct ReplayedSample {
-  std::vector<FactorIndex> varied;
-  std::vector<double> values;     ///< [varied], SI
-  std::vector<double> errors;     ///< [F] all errors of the sample, SI
-  std::vector<double> responses;  ///< [R], SI; the last iterate where not converged
-  SolveStatus status = SolveStatus::converged;
-  std::uint32_t iterations = 0;
+  std::vector<FactorIndex> varied;  ///< those that the study varies at once; the others have the background's value
+  std::vector<double> values;       ///< [varied], SI
+  std::vector<double> errors;       ///< [F] all errors of the sample, SI
+  std::vector<double> responses;    ///< [R], SI; the last iterate where not converged
+  SolveStatus status = SolveStatus::converged;  ///< how it ended in the run's own solver
+  std::uint32_t iterations = 0;                 ///< that it took there
 };
 
 /// Draws and solves the sample of this address alone; the same bits as in a run of the study. slot: as of Failure.

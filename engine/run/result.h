@@ -16,17 +16,23 @@ namespace poesy {
 
 /// How solves ended and what they cost, summed over samples.
 struct SolveCounts {
+  /// Samples that ended so, in the order of SolveStatus.
   std::array<std::uint64_t, kStatusNames.size()> by_status{};
-  std::uint64_t iterations = 0;
-  std::uint32_t most_iterations = 0;
+  std::uint64_t iterations = 0;       ///< of all samples together
+  std::uint32_t most_iterations = 0;  ///< of any one sample
 
+  /// Samples.
   std::uint64_t total() const;
   /// Samples that did not reach their fixed point.
   std::uint64_t not_converged() const;
+  /// One sample.
   void add(SolveStatus status, std::uint32_t sample_iterations);
+  /// The order changes nothing.
   void merge(const SolveCounts& other);
 
+  /// For a state or a message.
   void write(ByteWriter& to) const;
+  /// Throws BytesError.
   static SolveCounts read(ByteReader& from);
 };
 
@@ -60,10 +66,10 @@ struct FidelityResult {
 /// and a mean over the samples of all poses in a Monte Carlo study. Its half-width is the larger distance from it to an
 /// end of its interval.
 struct ConvergenceResult {
-  std::size_t min = 0;  ///< samples at each pose, as the study sets them
-  std::size_t max = 0;
-  double relative_error = 0.0;
-  double conf_level = 0.95;
+  std::size_t min = 0;          ///< samples at each pose, as the study sets them
+  std::size_t max = 0;          ///< samples at each pose, at the most
+  double relative_error = 0.0;  ///< that is asked for: half-width over |quantity|
+  double conf_level = 0.95;     ///< of the intervals
 
   std::vector<std::uint64_t> milestones;    ///< [K] samples at each pose; the last may be max, where nothing is decided
   std::vector<double> quantity;             ///< [R x P x K] SI; NaN after the slot came to its end
@@ -73,12 +79,22 @@ struct ConvergenceResult {
   std::vector<std::uint64_t> samples;       ///< [P] at each pose
 };
 
+/// What the global indices of a study with a fixed number of samples were after the first ones: R responses, P varied
+/// factors, K numbers of samples (engine/study/history_points.h). Each is what a study with exactly so many samples at
+/// each pose would find, bit by bit: a pose where its samples give no index makes it NaN.
+struct IndexHistory {
+  std::vector<std::uint64_t> samples;  ///< [K] at each pose, ascending; the last is the study's number
+  std::vector<double> global;          ///< [R x P x K] SI; the last of each is the result's index
+  std::vector<double> global_ci_low;   ///< [R x P x K]
+  std::vector<double> global_ci_high;  ///< [R x P x K]
+};
+
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined.
 struct SensitivityResult {
-  std::size_t responses = 0;
-  std::size_t factors = 0;
-  std::size_t poses = 0;
-  double conf_level = 0.95;
+  std::size_t responses = 0;  ///< R
+  std::size_t factors = 0;    ///< P
+  std::size_t poses = 0;      ///< M
+  double conf_level = 0.95;   ///< of all intervals
 
   std::vector<double> local;                   ///< [R x P x M] Du et al. 2022, Eqs. 51-52
   std::vector<double> local_ci_low;            ///< [R x P x M]
@@ -96,16 +112,19 @@ struct SensitivityResult {
   std::optional<FidelityResult> fidelity;      ///< where the study compares two fidelities
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
+  /// Where it has a fixed number of samples; not in files of older versions.
+  std::optional<IndexHistory> history;
 
+  /// Over all cells.
   SolveCounts total() const;
 };
 
 /// What a Monte Carlo study found, all errors varying together: R responses, M poses, Q quantiles; SI; NaN where
 /// undefined. The overall numbers are over the samples of all poses together.
 struct MonteCarloResult {
-  std::size_t responses = 0;
-  std::size_t poses = 0;
-  double conf_level = 0.95;
+  std::size_t responses = 0;             ///< R
+  std::size_t poses = 0;                 ///< M
+  double conf_level = 0.95;              ///< of all intervals
   double quantile_relative_error = 0.0;  ///< bound on |quantile - order statistic| / |order statistic|
   std::vector<double> levels;            ///< [Q] share of the samples below each quantile
 
@@ -129,15 +148,16 @@ struct MonteCarloResult {
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
 
+  /// Over all poses.
   SolveCounts total() const;
 };
 
 /// What `evaluate` found for M poses and S samples each (S = 1 when paired): SI.
 struct EvaluationResult {
-  std::size_t poses = 0;
-  std::size_t samples = 0;
-  std::size_t responses = 0;
-  std::size_t details = 0;  ///< D, components of all details
+  std::size_t poses = 0;      ///< M
+  std::size_t samples = 0;    ///< S
+  std::size_t responses = 0;  ///< R
+  std::size_t details = 0;    ///< D, components of all details
 
   std::vector<double> response;            ///< [R x M x S]
   std::vector<double> detail;              ///< [M x S x D]
@@ -145,12 +165,13 @@ struct EvaluationResult {
   std::vector<std::uint32_t> iterations;   ///< [M x S]
   std::vector<double> joint_displacement;  ///< [M x joints], nominal
 
+  /// Over all poses and samples.
   SolveCounts total() const;
 };
 
 /// What named cases of errors do: C cases, R responses. evaluation has the cases as its samples.
 struct CaseResult {
-  EvaluationResult evaluation;
+  EvaluationResult evaluation;       ///< with the cases as its samples
   std::vector<double> mean;          ///< [R x C] over the poses that count; NaN where there is none
   std::vector<double> max;           ///< [R x C]
   std::vector<std::uint64_t> count;  ///< [R x C] poses that count
@@ -158,17 +179,18 @@ struct CaseResult {
 
 /// Two errors of one frame that deform together and not alone.
 struct Coupling {
-  std::size_t group;
-  std::size_t first;   ///< position among the factors
-  std::size_t second;  ///< position among the factors
-  std::uint64_t deforming_poses;
+  std::size_t group;              ///< position among the groups
+  std::size_t first;              ///< position among the factors
+  std::size_t second;             ///< position among the factors
+  std::uint64_t deforming_poses;  ///< poses where both together deform, and neither alone
 };
 
 /// Which of P errors deform the mechanism, tried at G groups of sizes and M poses.
 struct IdentificationResult {
-  std::size_t factors = 0;
-  std::size_t groups = 0;
-  std::size_t poses = 0;
+  std::size_t factors = 0;  ///< P
+  std::size_t groups = 0;   ///< G
+  /// M.
+  std::size_t poses = 0;             ///< M
   double rounding = 0.0;             ///< deformations up to this cannot be told from zero
   std::uint64_t required_poses = 0;  ///< that a verdict asks for
 
@@ -181,17 +203,17 @@ struct IdentificationResult {
   std::vector<std::uint8_t> coupled_by_group;  ///< [G x P] verdict of both stages
   std::vector<std::uint8_t> single;            ///< [P] in any group
   std::vector<std::uint8_t> coupled;           ///< [P] in any group
-  std::vector<Coupling> couplings;
-  SolveCounts solves;
+  std::vector<Coupling> couplings;             ///< pairs that deform together only, by group and position
+  SolveCounts solves;                          ///< of all solves of both stages
 };
 
 /// What error sources do one by one and together: R responses, Z sizes, K subsets of the sources, M poses; SI. NaN
 /// where a solve that a number rests on does not count. What each number means: engine/run/coupling.h.
 struct CouplingResult {
-  std::size_t responses = 0;
-  std::size_t sizes = 0;
-  std::size_t subsets = 0;
-  std::size_t poses = 0;
+  std::size_t responses = 0;  ///< R
+  std::size_t sizes = 0;      ///< Z
+  std::size_t subsets = 0;    ///< K
+  std::size_t poses = 0;      ///< M
 
   std::vector<double> effect;           ///< [R x Z x K x M]
   std::vector<double> sum;              ///< [R x Z x K x M]
@@ -212,19 +234,20 @@ struct CouplingResult {
   std::vector<std::int64_t> cancellation_max_pose;  ///< [R x Z x K]
   std::vector<SolveCounts> solves;                  ///< [Z x M] of all sets of errors that were solved
 
+  /// Over all sizes and poses.
   SolveCounts total() const;
 };
 
 /// Facts about one run that differ from machine to machine and are not part of the result's content.
 struct RunFacts {
-  std::string created;  ///< UTC, ISO 8601
-  std::string host;
-  std::string cpu;
-  std::size_t threads = 1;  ///< of all ranks together
-  std::size_t ranks = 1;
+  std::string created;              ///< UTC, ISO 8601
+  std::string host;                 ///< name of the machine, of rank 0
+  std::string cpu;                  ///< its processor, as it names itself
+  std::size_t threads = 1;          ///< of all ranks together
+  std::size_t ranks = 1;            ///< processes that shared the run
   double wall_seconds = 0.0;        ///< of all parts of a run that was stopped and resumed
   double checkpoint_seconds = 0.0;  ///< of these, for checkpoints
-  std::uint64_t solves = 0;
+  std::uint64_t solves = 0;         ///< of all parts of the run
 };
 
 }  // namespace poesy

@@ -23,6 +23,7 @@ std::size_t least_samples(const Plan& plan);
 /// decided follows from the samples up to the milestone alone, so it is the same on any machine.
 class Rounds {
  public:
+  /// What decides whether a slot goes on.
   struct Rule {
     std::size_t responses;              ///< R
     std::vector<std::size_t> deciding;  ///< positions among the responses
@@ -30,10 +31,12 @@ class Rounds {
     double rounding;                    ///< a quantity whose magnitude is below this counts as reached
   };
 
+  /// Refers to the plan. Begins with the first round.
   Rounds(const Plan& plan, Rule rule);
 
   /// That each pose of the slot has at the end of this round.
   std::size_t samples(std::size_t slot) const { return samples_[slot]; }
+  /// Units of each cell of the slot in this round.
   std::size_t units(std::size_t slot) const;
   /// Whether a cell of this slot may hold so many units in this round.
   bool may_hold(std::size_t slot, std::size_t units) const;

@@ -51,6 +51,7 @@ class ProgressCounter {
   /// So many solves are still to come, as far as is known now.
   void expect_left(std::uint64_t solves) { progress_.total = progress_.solves + solves; }
 
+  /// A finished piece of work.
   void add(const SolveCounts& solves) {
     progress_.solves += solves.total();
     progress_.not_converged += solves.not_converged();

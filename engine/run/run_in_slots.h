@@ -21,8 +21,8 @@ std::size_t pool_slots(const RunOptions& options);
 
 /// A number to work on, and the slot that is free for it.
 struct Ticket {
-  std::size_t n;
-  std::size_t slot;
+  std::size_t n;     ///< which piece of work
+  std::size_t slot;  ///< where its output stands
 };
 
 /// Gives one number after another, then nothing. Never called from two threads at once.

@@ -12,8 +12,9 @@ namespace poesy {
 struct RankWork {
   std::function<SlotJob()> make_work;  ///< as of run_in_slots
   SlotJob finish;                      ///< on rank 0, in the order of n; the slot's output is not needed afterwards
+  /// Writes a slot's output of piece n for another rank.
   std::function<void(std::size_t n, std::size_t slot, ByteWriter& to)> pack;
-  std::function<void(std::size_t n, std::size_t slot, ByteReader& from)> unpack;
+  std::function<void(std::size_t n, std::size_t slot, ByteReader& from)> unpack;  ///< and reads it there
 };
 
 /// Slots that run_over_ranks uses on this rank.

@@ -15,6 +15,7 @@
 #include "engine/run/sensitivity.h"
 #include "engine/run/sensitivity_collector.h"
 #include "engine/stats/mean_interval.h"
+#include "engine/study/history_points.h"
 
 namespace poesy {
 namespace {
@@ -66,13 +67,14 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
   const std::size_t responses = model.description().responses.size();
   const std::size_t poses = plan.poses().size();
   const Rounds::Rule rule{responses, all_positions(responses), conf_level, kIndexRounding};
-  SensitivityCollector collect(plan, responses);
+  SensitivityCollector collect(plan, responses, conf_level);
   Rounds rounds(plan, rule);
   const auto take_up = [&](std::span<const std::byte> state) {
-    collect = SensitivityCollector(plan, responses);
+    collect = SensitivityCollector(plan, responses, conf_level);
     rounds = Rounds(plan, rule);
     restore(state, plan, rounds, collect);
   };
+  const std::vector<std::size_t> points = history_points(plan);
   Stage stage(options.checkpoints, options.team);
   stage.begin(take_up);
   const NumberRange cells = options.shard.value_or(Shard()).of(plan.cells());
@@ -89,13 +91,16 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
     const bool complete = run_in_order(
         pending.size(), options, [&] { return UnitEvaluator(plan, model); },
         [&](UnitEvaluator& evaluate, std::size_t n) { return evaluate(pending[n]); },
-        [&](std::size_t n, const UnitStats& stats) {
-          collect.add(pending[n], stats);
-          counter.add(stats.solves);
+        [&](std::size_t n, const SensitivityUnit& found) {
+          collect.add(pending[n], found);
+          counter.add(found.solves);
           stage.merged(state);
         },
-        [](std::size_t, const UnitStats& stats, ByteWriter& to) { stats.write(to); },
-        [&](std::size_t n, ByteReader& from) { return UnitStats::read(from, responses, pending[n].first.value); });
+        [](std::size_t, const SensitivityUnit& found, ByteWriter& to) { found.write(to); },
+        [&](std::size_t n, ByteReader& from) {
+          const WorkUnit unit = pending[n];
+          return SensitivityUnit::read(from, responses, unit.first.value, points_within(unit, points).size());
+        });
     stage.end(
         complete, [&] { return collect.total(); }, state, take_up);
     if (!complete) return std::nullopt;
@@ -105,6 +110,7 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
   if (options.shard) return std::nullopt;
   auto result = sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
   result.convergence = rounds.result();
+  if (!plan.adaptive()) result.history = collect.history(result);
   return result;
 }
 

@@ -17,13 +17,15 @@
 
 namespace poesy {
 
+/// How far a run is, in samples.
 struct Progress {
-  std::uint64_t solves = 0;
-  std::uint64_t total = 0;
-  std::uint64_t not_converged = 0;
-  std::uint64_t before = 0;  ///< of the solves, those of an earlier run that is continued
+  std::uint64_t solves = 0;         ///< done, with those of an earlier run that is continued
+  std::uint64_t total = 0;          ///< expected in all
+  std::uint64_t not_converged = 0;  ///< of those done
+  std::uint64_t before = 0;         ///< of the solves, those of an earlier run that is continued
 };
 
+/// How a run is done. None of it changes a bit of the result.
 struct RunOptions {
   std::size_t threads = 0;  ///< 0: one per processor
   /// Called now and then, never from two threads at once. May be empty.
@@ -65,11 +67,13 @@ struct ErrorTable {
   std::size_t rows = 0;              ///< S
 };
 
+/// How poses and rows of errors belong together.
 enum class Pairing {
   every_pose_with_every_row,
   row_by_row  ///< pose m with row m; equal numbers of both
 };
 
+/// How much of what the model gives is kept.
 enum class Outcomes {
   with_details,  ///< everything the model gives
   responses      ///< without details, which take most of the memory

@@ -13,17 +13,22 @@ constexpr std::uint64_t kKind = 1;  ///< no other state begins with this number
 constexpr std::uint64_t kWhole = 1;
 constexpr std::uint64_t kPart = 2;
 
+/// In a cell of so many samples.
+std::size_t units_of(std::uint64_t samples) { return Plan::units_for(static_cast<std::size_t>(samples)); }
+
 }  // namespace
 
-SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t responses)
-    : plan_(&plan), responses_(responses), whole_(plan.cells()) {
+SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level)
+    : plan_(&plan), responses_(responses), whole_(plan.cells()), history_(plan, responses, conf_level) {
   if (plan.samples() % Plan::kUnitSamples != 0) parts_.resize(plan.cells());
 }
 
-void SensitivityCollector::add(const WorkUnit& unit, const UnitStats& stats) {
+void SensitivityCollector::add(const WorkUnit& unit, const SensitivityUnit& found) {
   const std::size_t cell = cell_of(unit);
   POESY_EXPECTS(unit.first.value == units_done(cell) * Plan::kUnitSamples);
-  (unit.count == Plan::kUnitSamples ? whole_ : parts_)[cell].merge(stats);
+  UnitStats& stats = (unit.count == Plan::kUnitSamples ? whole_ : parts_)[cell];
+  stats.merge(found);
+  history_.add(unit, found.within, stats);
 }
 
 std::size_t SensitivityCollector::units_done(std::size_t cell) const {
@@ -66,6 +71,9 @@ Bytes SensitivityCollector::state() const {
     if (has_whole) whole_[cell].write(to);
     if (has_part(cell)) parts_[cell].write(to);
   }
+  std::vector<std::size_t> units;
+  for (std::size_t cell = 0; cell < whole_.size(); ++cell) units.push_back(units_done(cell));
+  history_.write(to, units);
   return to.take();
 }
 
@@ -79,12 +87,15 @@ void SensitivityCollector::restore_one(ByteReader& from) {
     throw BytesError("is the state of another kind or size of study");
   }
   const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
-  for (std::size_t cell = 0; cell < whole_.size(); ++cell) restore_cell(from, cell, samples);
+  std::vector<std::size_t> units;
+  for (std::size_t cell = 0; cell < whole_.size(); ++cell) units.push_back(restore_cell(from, cell, samples));
+  history_.read(from, units, samples);
 }
 
-void SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std::size_t samples) {
+std::size_t SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std::size_t samples) {
   const std::uint64_t holds = from.number_up_to(kWhole | kPart);
-  if (holds != 0 && units_done(cell) > 0) throw BytesError("has a cell twice");
+  if (holds == 0) return 0;
+  if (units_done(cell) > 0) throw BytesError("has a cell twice");
   if ((holds & kWhole) != 0) {
     whole_[cell] = UnitStats::read(from, responses_, 0);
     const std::uint64_t solves = whole_[cell].solves.total();
@@ -92,13 +103,14 @@ void SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std:
       throw BytesError("has a cell that is no number of whole units");
     }
   }
-  if ((holds & kPart) == 0) return;
+  if ((holds & kPart) == 0) return units_of(whole_[cell].solves.total());
   UnitStats part = UnitStats::read(from, responses_, whole_[cell].solves.total());
   const std::uint64_t solves = part.solves.total();
   if (solves == 0 || solves >= Plan::kUnitSamples || whole_[cell].solves.total() + solves != samples) {
     throw BytesError("has a last unit of the wrong size");
   }
   if (samples == plan_->samples()) parts_[cell] = std::move(part);
+  return units_of(samples);
 }
 
 }  // namespace poesy

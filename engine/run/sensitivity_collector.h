@@ -6,6 +6,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/index_history.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -16,10 +17,10 @@ namespace poesy {
 class SensitivityCollector {
  public:
   /// Refers to the plan.
-  SensitivityCollector(const Plan& plan, std::size_t responses);
+  SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level);
 
   /// Precondition: the unit after those done in its cell.
-  void add(const WorkUnit& unit, const UnitStats& stats);
+  void add(const WorkUnit& unit, const SensitivityUnit& found);
 
   /// Units of this cell that were added.
   std::size_t units_done(std::size_t cell) const;
@@ -29,6 +30,9 @@ class SensitivityCollector {
   std::vector<UnitStats> cells_of(std::size_t slot) const;
   /// From what was added.
   std::vector<UnitStats> cells() &&;
+  /// Of the indices, whose last are those of `end`. Precondition: all units were added, those of all cells; the study
+  /// has a fixed number of samples.
+  IndexHistory history(const SensitivityResult& end) const { return history_.history(end); }
 
   /// Everything added so far.
   Bytes state() const;
@@ -40,12 +44,14 @@ class SensitivityCollector {
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
   bool has_part(std::size_t cell) const { return !parts_.empty() && parts_[cell].solves.total() > 0; }
   void restore_one(ByteReader& from);
-  void restore_cell(ByteReader& from, std::size_t cell, std::size_t samples);
+  /// Gives the cell's units in that state.
+  std::size_t restore_cell(ByteReader& from, std::size_t cell, std::size_t samples);
 
   const Plan* plan_;
   std::size_t responses_;
   std::vector<UnitStats> whole_;  ///< [cells] units of full size
   std::vector<UnitStats> parts_;  ///< [cells] the last unit where it is smaller; empty when the plan has none such
+  HistoryCollector history_;
 };
 
 }  // namespace poesy

@@ -7,9 +7,10 @@ namespace poesy {
 
 /// Consecutive numbers, the end not among them.
 struct NumberRange {
-  std::size_t first;
-  std::size_t end;
+  std::size_t first;  ///< the first piece of work that is its own
+  std::size_t end;    ///< behind the last
 
+  /// Whether this piece is the shard's.
   bool holds(std::size_t number) const { return number >= first && number < end; }
 };
 

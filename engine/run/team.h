@@ -17,16 +17,19 @@ namespace poesy {
 /// Why a rank cannot go on.
 enum class LeaveReason : std::uint64_t { stopped, bad_input, file_trouble, internal };
 
+/// What a rank says when it cannot go on.
 struct RankLeft {
-  LeaveReason reason;
-  std::string text;  ///< names the rank and says what is wrong
+  LeaveReason reason;  ///< what kind of trouble it is
+  std::string text;    ///< names the rank and says what is wrong
 };
 
 /// Thrown on the ranks after rank 0 where they wait, when rank 0 ends the run.
 struct Dismissed : std::exception {
+  /// With the exit code that rank 0 ends with.
   explicit Dismissed(int exit_code) : code(exit_code) {}
+  /// A clause.
   const char* what() const noexcept override { return "rank 0 ended the run"; }
-  int code;
+  int code;  ///< the exit code that rank 0 ends with
 };
 
 /// This process's part in a run on several ranks. Rank 0 leads: it alone knows the checkpoints, hands out the work,
@@ -38,7 +41,9 @@ class Team {
   /// Refers to the ranks.
   explicit Team(Ranks& ranks) : ranks_(&ranks) {}
 
+  /// Whether this is rank 0.
   bool leads() const { return ranks_->rank() == 0; }
+  /// How it reaches the others.
   const Ranks& ranks() const { return *ranks_; }
   /// Of all ranks together, known to rank 0 once they agreed.
   std::size_t threads() const { return threads_; }
@@ -51,6 +56,7 @@ class Team {
 
   /// Rank 0: the state that the stage begins with, empty at its beginning. Gives that of rank 0 on every rank.
   Bytes begin(const Bytes& state);
+  /// The stage that began last, counted from 1.
   std::size_t stage() const { return stage_; }
   /// Rank 0: the stage ended with this state; needed only if it is complete.
   void end(bool complete, const Bytes& state);
@@ -73,12 +79,15 @@ class Team {
 
   // Messages.
 
+  /// A message that begins with what it is about.
   static ByteWriter message(RankMessage about);
+  /// Sends what was written to another rank; leaves nothing.
   void send(std::size_t to, ByteWriter& bytes);
+  /// A message from another rank.
   struct Received {
-    std::size_t from;
-    RankMessage about;
-    Bytes bytes;  ///< of the whole message
+    std::size_t from;   ///< the rank that sent it
+    RankMessage about;  ///< its first number
+    Bytes bytes;        ///< of the whole message
     /// Reads what follows the first number.
     ByteReader reader() const;
   };
@@ -103,8 +112,11 @@ class Team {
 /// Sleeps between looks for messages, the longer the longer nothing came: cores are wanted for solves.
 class LookPause {
  public:
+  /// The length of the next sleep.
   std::chrono::microseconds next() { return length_ = length_ * 2 < kLongest ? length_ * 2 : kLongest; }
+  /// Something came.
   void reset() { length_ = kShortest; }
+  /// Sleeps for next().
   void sleep();
 
  private:

@@ -4,14 +4,14 @@ namespace poesy {
 
 /// A confidence interval; NaN at both ends where there are too few samples.
 struct Interval {
-  double low;
-  double high;
+  double low;   ///< lower end
+  double high;  ///< upper end
 };
 
 /// An estimate with its interval.
 struct Estimate {
-  double value;
-  Interval interval;
+  double value;       ///< what is estimated
+  Interval interval;  ///< of the value, at the level that was asked for
 };
 
 }  // namespace poesy

@@ -14,9 +14,9 @@ Interval mean_interval(const Moments& moments, double conf_level);
 
 /// Samples of M groups by their numbers, means and sample standard deviations, [M] each.
 struct Groups {
-  std::span<const std::uint64_t> count;
-  std::span<const double> mean;
-  std::span<const double> std;
+  std::span<const std::uint64_t> count;  ///< [groups] samples
+  std::span<const double> mean;          ///< [groups] their mean
+  std::span<const double> std;           ///< [groups] their sample standard deviation
 };
 
 /// The mean of all samples of all groups together, with its interval when the groups are fixed and only what is in them

@@ -20,8 +20,9 @@ struct BucketedValues {
   std::uint32_t lowest = 0;            ///< bucket of the smallest magnitude that is not taken for zero
   std::uint32_t highest = 0;           ///< of the largest
   std::uint32_t negatives = 0;         ///< numbers below zero, and above, that are not taken for zero
-  std::uint32_t positives = 0;
-  double min = std::numeric_limits<double>::infinity();
+  std::uint32_t positives = 0;         ///< those above
+  double min = std::numeric_limits<double>::infinity();  ///< of all numbers, infinite when there is none
+  /// Likewise.
   double max = -std::numeric_limits<double>::infinity();
 
   /// As much of it as a sketch takes, in two bytes for each number (four where the magnitudes span 2^128 or more).
@@ -43,12 +44,16 @@ class QuantileSketch {
 
   /// Precondition: all values are finite.
   void add(std::span<const double> values) { add(BucketedValues(values)); }
+  /// The same, worked out before.
   void add(const BucketedValues& values);
+  /// Exact, and so in any order.
   void merge(const QuantileSketch& other);
 
+  /// Values.
   std::uint64_t count() const;
   /// Exact; NaN when empty.
   double min() const { return count() == 0 ? std::numeric_limits<double>::quiet_NaN() : min_; }
+  /// Exact; NaN when empty.
   double max() const { return count() == 0 ? std::numeric_limits<double>::quiet_NaN() : max_; }
   /// The order statistic of rank k, the smallest k >= 1 with k / n >= q: the inverse of the empirical distribution
   /// function, rank ceil(q n), to kRelativeError. NaN when empty. Precondition: 0 <= q <= 1.
@@ -57,6 +62,7 @@ class QuantileSketch {
   /// Every count of it, and back: about two bytes for each bucket. read() throws BytesError for counts that no stream
   /// of numbers gives.
   void write(ByteWriter& to) const;
+  /// The opposite of write().
   static QuantileSketch read(ByteReader& from);
 
  private:

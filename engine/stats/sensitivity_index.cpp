@@ -108,7 +108,11 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
 bool may_be_noise(const PoseStatistics& s, double level) {
   if (s.seen2 == 0.0) return true;
   if (s.noise_variance == 0.0) return false;
-  return boost::math::gamma_q(square(s.noise2) / s.noise_variance, s.seen2 * s.noise2 / s.noise_variance) > level;
+  const double shape = square(s.noise2) / s.noise_variance;
+  const double seen = s.seen2 * s.noise2 / s.noise_variance;
+  // Beyond the range of numbers nothing can be said.
+  if (!std::isfinite(shape) || shape == 0.0 || !std::isfinite(seen)) return false;
+  return boost::math::gamma_q(shape, seen) > level;
 }
 
 /// The true spreads that the data do not contradict: |spread2() - x^2| <= z sqrt(variance if x were true), which, other

@@ -28,7 +28,7 @@ struct ResponseStudy {
 /// The error from which equal-effect tolerances are counted.
 struct ReferenceError {
   std::size_t factor;  ///< position among the P errors
-  double tolerance;
+  double tolerance;    ///< SI
 };
 
 /// The error with the smallest effect index x sigma of those that have one; none where no error has.
@@ -50,6 +50,7 @@ struct MeanSquare {
 
   /// sum of effects_p t_p^2. Errors without effect do not count, whatever their tolerance.
   double growth(std::span<const double> tolerances) const;
+  /// The mean square with these tolerances [P].
   double at(std::span<const double> tolerances) const { return background + growth(tolerances); }
 };
 
@@ -63,17 +64,18 @@ std::vector<double> tolerances_within(const MeanSquare& response, std::span<cons
 
 /// Tolerances of all errors for one response.
 struct Tolerances {
-  std::optional<ReferenceError> reference;
-  std::vector<double> equal_effect;    ///< [P] from the reference; NaN without one
-  std::vector<double> variance_share;  ///< [P]
-  MeanSquare mean_square;
+  std::optional<ReferenceError> reference;  ///< from which equal_effect is counted
+  std::vector<double> equal_effect;         ///< [P] from the reference; NaN without one
+  std::vector<double> variance_share;       ///< [P]
+  MeanSquare mean_square;                   ///< for any tolerances
 };
 
+/// From this reference; without one equal_effect is NaN.
 Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceError>& reference);
 
 /// Tolerances that keep the root mean square of a response over samples and poses at a limit, and so its mean below.
 struct LimitTolerances {
-  double limit = 0.0;
+  double limit = 0.0;  ///< on the response, SI
   /// [P] every error has the same effect: t_p = k / mu_p. One without effect on its own may act together with others,
   /// so it has its equal tolerance.
   std::vector<double> equal_effect;

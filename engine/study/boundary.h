@@ -21,6 +21,7 @@ namespace poesy {
 /// Throws InputError when max(20 000, 100 count) lines do not give enough, or when poses coincide to rounding.
 SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model);
 
+/// Steps along a line in which a change of feasibility is looked for.
 inline constexpr std::size_t kScanIntervals = 32;
 
 }  // namespace poesy

@@ -16,10 +16,10 @@ namespace poesy {
 
 /// The smallest piece of work that is scheduled: consecutive samples of one slot at one pose.
 struct WorkUnit {
-  std::size_t slot;  ///< position of the varied factor among the plan's factors; 0 where all vary together
-  PoseIndex pose;
-  SampleIndex first;
-  std::size_t count;
+  std::size_t slot;   ///< position of the varied factor among the plan's factors; 0 where all vary together
+  PoseIndex pose;     ///< among the study's
+  SampleIndex first;  ///< the first of consecutive samples
+  std::size_t count;  ///< B
 };
 
 /// A study of sampled errors, expanded: an immutable table of work units in the order in which they are merged. In a
@@ -33,12 +33,16 @@ class Plan {
   /// Units that so many samples of a cell make up, the last one perhaps smaller.
   static constexpr std::size_t units_for(std::size_t samples) { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
+  /// Of a study of drawn errors, at these poses. Copies what it needs.
   Plan(const Study& study, PoseSet poses);
 
+  /// Factors that are studied one by one; 1 where all vary together.
   std::size_t slots() const { return slots_; }
   /// A cell is one slot at one pose. Cells are counted slot by slot, pose by pose.
   std::size_t cells() const { return slots_ * poses_.size(); }
+  /// Units of one slot at one pose.
   std::size_t units_per_cell() const { return units_per_cell_; }
+  /// Of the whole plan.
   std::size_t units() const { return cells() * units_per_cell_; }
   /// Unit u: cell by cell, samples in order.
   WorkUnit unit(std::size_t u) const;
@@ -46,20 +50,27 @@ class Plan {
   /// The first sample of a cell's unit; the number of samples for the unit after the last.
   std::size_t first_sample(std::size_t unit) const { return std::min(unit * kUnitSamples, samples_); }
 
+  /// At each pose, of one slot.
   std::size_t samples() const { return samples_; }
   /// How a study may come to an end before each cell has samples().
   const std::optional<AdaptiveSamples>& adaptive() const { return adaptive_; }
   /// The same with another number of samples.
   Plan with_samples(std::size_t samples) const;
+  /// Of the draws.
   std::uint64_t seed() const { return seed_; }
+  /// In the order of the study.
   const PoseSet& poses() const { return poses_; }
+  /// That vary, positions in the model's list.
   std::span<const FactorIndex> factors() const { return factors_; }
   /// Distribution of each varied factor, in the order of factors().
   std::span<const Distribution> distributions() const { return distributions_; }
   /// Constant errors, [F]; zero for those that vary, also while another one does.
   std::span<const double> background() const { return background_; }
+  /// For each sample.
   const SolverOptions& solver() const { return solver_; }
+  /// What becomes of samples that are not solved.
   NotConverged not_converged() const { return not_converged_; }
+  /// Of all units together.
   std::uint64_t solves() const;
 
  private:

@@ -11,23 +11,25 @@
 
 namespace poesy {
 
+/// The values from one end to the other, both included.
 struct Range {
-  double lower;
-  double upper;
+  double lower;  ///< SI
+  double upper;  ///< SI
 };
 
 /// The range that one joint's displacement from home must stay in, ends included.
 struct JointLimit {
   std::size_t joint;  ///< position among the model's joints
   Range range;        ///< SI
-  Place place;
+  Place place;        ///< in the study, for messages
 };
 
 /// Which poses of the platform.
 struct PoseSelection {
+  /// How poses are chosen; see select_poses().
   enum class Select { interior, file, boundary, grid, trajectory };
 
-  Select select = Select::interior;
+  Select select = Select::interior;      ///< decides which of the members below hold something
   std::size_t count = 0;                 ///< with grid_counts their product; of a trajectory its points
   std::vector<std::size_t> grid_counts;  ///< for `grid`: one number per pose coordinate, or empty
   std::vector<Range> workspace;          ///< one range per pose coordinate; for all that search a box
@@ -36,18 +38,19 @@ struct PoseSelection {
   std::string file;                      ///< as written in the study, for `file`
   PoseTable from_file;                   ///< its poses
   std::optional<Trajectory> trajectory;  ///< for `trajectory`; none in a study that is only evaluated and has none
-  Place place;  ///< of the workspace, of the file's first pose (pose m is m lines below), or of the trajectory
-  Place count_place;
+  Place place;        ///< of the workspace, of the file's first pose (pose m is m lines below), or of the trajectory
+  Place count_place;  ///< of the count, for messages
 };
 
 /// How many poses were tried and refused for one reason.
 struct RejectedPoses {
   std::string reason;  ///< "q_1_3 above 80 mm"
-  std::size_t count;
+  std::size_t count;   ///< poses
 };
 
+/// What a selection comes to.
 struct SelectedPoses {
-  PoseSet poses;
+  PoseSet poses;                        ///< [M]
   std::vector<double> condition;        ///< [M], see Model::condition
   std::vector<RejectedPoses> rejected;  ///< most frequent first
   std::vector<double> time;             ///< [M] s, ascending, of a trajectory; else empty

@@ -18,10 +18,10 @@ namespace poesy {
 
 /// Which mechanism, with the value of every geometry parameter in the order of its description (SI).
 struct MechanismChoice {
-  const CatalogEntry* entry = nullptr;
-  std::vector<double> geometry;
-  std::size_t fidelity = 0;  ///< position among the model's fidelities, 0 where it offers no choice
-  Place place;               ///< of the section, for messages about the geometry as a whole
+  const CatalogEntry* entry = nullptr;  ///< of the catalog, which must outlive the study
+  std::vector<double> geometry;         ///< SI, in the order of the description
+  std::size_t fidelity = 0;             ///< position among the model's fidelities, 0 where it offers no choice
+  Place place;                          ///< of the section, for messages about the geometry as a whole
   /// A second fidelity, solved on the same draws as the first and compared with it.
   std::optional<std::size_t> compared = std::nullopt;
 };
@@ -33,57 +33,59 @@ struct ErrorModel {
 
 /// Errors held constant while others vary.
 struct Background {
-  std::vector<FactorIndex> factors;
-  double linear = 0.0;   ///< m, for factors that are lengths
-  double angular = 0.0;  ///< rad, for factors that are angles
+  std::vector<FactorIndex> factors;  ///< that are held unless they vary
+  double linear = 0.0;               ///< m, for factors that are lengths
+  double angular = 0.0;              ///< rad, for factors that are angles
 };
 
 /// A fixed set of errors with a name.
 struct ErrorCase {
-  std::string name;
+  std::string name;            ///< stands in tables
   std::vector<double> errors;  ///< [F], SI
 };
 
 /// The sizes at which identification sets errors.
 struct ErrorSize {
-  std::string name;
-  double linear;   ///< m
-  double angular;  ///< rad
+  std::string name;  ///< stands in tables
+  double linear;     ///< m
+  double angular;    ///< rad
 };
 
 /// The error from which equal-effect tolerances are counted, and its own tolerance.
 struct ToleranceReference {
-  FactorIndex factor;
-  double tolerance;  ///< SI
+  FactorIndex factor;  ///< one of those that vary
+  double tolerance;    ///< SI
 };
 
 /// A group of errors that is judged as one.
 struct ErrorSource {
-  std::string name;
+  std::string name;                  ///< stands in tables, joined to others by '+'
   std::vector<FactorIndex> factors;  ///< as the study names them, whatever the pattern leaves of them
 };
 
 /// Which errors of a source have its size, and which of these move together.
 struct ErrorPattern {
+  /// How far a choice of limbs or components goes.
   enum class Choice {
     all,         ///< every one, together
     some,        ///< those that are named, together
     independent  ///< every one, each on its own
   };
 
-  Choice limbs = Choice::all;
-  std::size_t limb = 0;  ///< for some: it alone; counts from 1
-  Choice components = Choice::all;
-  std::vector<std::string> axes;  ///< for some: "x", "y", "z"; scalars are kept besides
+  Choice limbs = Choice::all;       ///< which limbs' errors have the size
+  std::size_t limb = 0;             ///< for some: it alone; counts from 1
+  Choice components = Choice::all;  ///< which components of an error have it
+  std::vector<std::string> axes;    ///< for some: "x", "y", "z"; scalars are kept besides
 };
 
 /// What a coupling study asks for. See engine/run/coupling.h.
 struct CouplingStudy {
-  std::vector<double> linear;   ///< [Z] m, sizes of the runs; empty where no error is a length
-  std::vector<double> angular;  ///< [Z] rad; empty where no error is an angle
-  ErrorPattern pattern;
+  std::vector<double> linear;        ///< [Z] m, sizes of the runs; empty where no error is a length
+  std::vector<double> angular;       ///< [Z] rad; empty where no error is an angle
+  ErrorPattern pattern;              ///< of every source
   std::vector<ErrorSource> sources;  ///< no factor in two of them
 
+  /// Z.
   std::size_t sizes() const { return linear.empty() ? angular.size() : linear.size(); }
 };
 
@@ -94,7 +96,9 @@ struct AdaptiveSamples {
   double relative_error = 0.0;  ///< half-width of an interval at conf_level over what it is the interval of
 };
 
+/// What is asked, of which errors.
 struct Analysis {
+  /// Kinds of studies.
   enum class Kind {
     sensitivity,     ///< the effect of each error on its own
     identification,  ///< which errors deform the mechanism at all
@@ -103,7 +107,7 @@ struct Analysis {
     coupling         ///< error sources of fixed size, one by one and together
   };
 
-  Kind kind = Kind::sensitivity;
+  Kind kind = Kind::sensitivity;                   ///< decides which of the members below count
   std::vector<FactorIndex> factors;                ///< that vary, or that are tried; empty for evaluate
   std::size_t samples = 1000;                      ///< sensitivity, Monte Carlo: at each pose
   std::optional<AdaptiveSamples> adaptive;         ///< sensitivity, Monte Carlo; then `samples` is their maximum
@@ -118,6 +122,7 @@ struct Analysis {
   CouplingStudy coupling;                          ///< coupling
 };
 
+/// What becomes of samples without a solution.
 enum class NotConverged {
   exclude,  ///< samples that did not reach their fixed point are left out of every statistic
   include   ///< the last iterate counts, as in the published procedure
@@ -125,26 +130,31 @@ enum class NotConverged {
 
 /// What a study file says, complete and consistent. See engine/io/study_file.h for reading one.
 struct Study {
-  std::string title;
-  MechanismChoice mechanism;
-  PoseSelection poses;
-  ErrorModel errors;
-  Analysis analysis;
-  SolverOptions solver;
-  NotConverged not_converged = NotConverged::exclude;
+  std::string title;                                   ///< free text
+  MechanismChoice mechanism;                           ///< which, and its geometry
+  PoseSelection poses;                                 ///< which, or how they are found
+  ErrorModel errors;                                   ///< how they scatter
+  Analysis analysis;                                   ///< what is asked
+  SolverOptions solver;                                ///< how samples are solved
+  NotConverged not_converged = NotConverged::exclude;  ///< what becomes of samples without a solution
   /// The share of all samples, 0 to 1, that may fail: above it the program ends with exit code 5, the result kept.
   double max_not_converged = 1.0;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< of all draws
 
+  /// Of the mechanism.
   const ModelDescription& model() const { return mechanism.entry->description; }
 };
 
 /// Names as written in a study file.
 std::string_view name(PoseSelection::Select select);
+/// As a study file has it.
 std::string_view name(Analysis::Kind kind);
+/// Every kind, in the order in which they are listed.
 inline constexpr std::array kKinds{Analysis::Kind::sensitivity, Analysis::Kind::identification,
                                    Analysis::Kind::evaluate, Analysis::Kind::monte_carlo, Analysis::Kind::coupling};
+/// As a study file has it.
 std::string_view name(NotConverged policy);
+/// As a study file has it.
 std::string_view name(SolverOptions::Method method);
 
 /// The constant errors, [F]: the background's value where it applies, else zero.

@@ -26,6 +26,7 @@ struct TimedPoints {
   PoseTable table;           ///< [M]
 };
 
+/// A part of a curve's time.
 struct TimeRange {
   double start;  ///< s
   double end;    ///< s, after start

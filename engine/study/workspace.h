@@ -18,6 +18,7 @@ struct Judgement {
   const Place* place = nullptr;  ///< where the study sets what refuses it
   std::string_view remedy;       ///< what makes such poses feasible
 
+  /// Whether no reason stands against it.
   bool feasible() const { return reason.empty(); }
 };
 
@@ -27,11 +28,13 @@ class Workspace {
   /// Both must outlive it.
   Workspace(const PoseSelection& selection, const Model& model);
 
+  /// Numbers of a pose.
   std::size_t coordinates() const { return selection_->workspace.size(); }
   /// The pose (SI) at scaled coordinates in [0, 1]; 0 and 1 give the ends of the ranges exactly. Both [coordinates].
   void unscale(std::span<const double> scaled, std::span<double> pose) const;
   /// The scaled coordinate of a pose's coordinate (SI).
   double scaled(std::size_t coordinate, double value) const;
+  /// Pose: SI, [coordinates].
   Judgement judge(std::span<const double> pose) const;
 
  private:
@@ -49,6 +52,7 @@ class Workspace {
 /// Collects feasible poses and counts the others by their reason.
 class PoseCollector {
  public:
+  /// Refers to it.
   explicit PoseCollector(const Workspace& workspace) : workspace_(&workspace) {}
 
   /// Judges the pose and counts it if it is rejected. Returns whether it is feasible.
@@ -58,7 +62,9 @@ class PoseCollector {
   /// Judges the pose, then keeps or counts it.
   void offer(std::span<const double> pose);
 
+  /// How many feasible poses it has.
   std::size_t kept() const { return condition_.size(); }
+  /// The m-th that was kept, SI.
   std::span<const double> pose(std::size_t m) const;
   /// Drops all but the first `count`.
   void keep_first(std::size_t count);
@@ -66,6 +72,7 @@ class PoseCollector {
   void thin_to(std::size_t count);
   /// Throws the InputError of a box that gives fewer poses than wanted.
   [[noreturn]] void fail(std::size_t wanted, const Place& workspace_place) const;
+  /// The poses, and what was rejected, most frequent first.
   SelectedPoses result() &&;
 
  private:

@@ -41,13 +41,17 @@ enum class KernelPass {
 /// that its loops unroll.
 template <std::size_t joints_per_limb>
 struct ThreeLimbs {
-  static constexpr bool kFixed = true;
+  static constexpr bool kFixed = true;  ///< the numbers of limbs, joints and pairs are constants
   /// No two limbs meet in two pairs, and all limbs meet: each off-diagonal block of N belongs to one pair.
   static constexpr bool kEveryPairOnce = true;
+  /// What the kernel is compiled for.
+  /// @{
   static constexpr std::size_t kLimbs = 3;
   static constexpr std::size_t kJoints = joints_per_limb;
   static constexpr std::size_t kPairs = 3;
+  /// @}
 
+  /// Whether a chain has this shape.
   static bool fits(const KernelChain& chain) {
     if (chain.limbs != kLimbs || chain.pairs != kPairs) return false;
     unsigned met = 0;
@@ -61,16 +65,22 @@ struct ThreeLimbs {
 
 /// Any number of limbs, joints and pairs.
 struct AnyShape {
+  /// Nothing is known when the kernel is compiled.
+  /// @{
   static constexpr bool kFixed = false;
   static constexpr bool kEveryPairOnce = false;
+  /// @}
 };
 
+/// Solves a block in batches of T (models/simd), for chains of a Shape.
 template <class T, class Shape>
 class BlockKernel {
  public:
+  /// Refers to all of it. scratch: as the kernel's caller provides it.
   BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
               const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
 
+  /// All samples of the block.
   void solve();
 
  private:

@@ -12,70 +12,73 @@ namespace poesy::chain {
 
 /// A passive joint, in the order of the limbs, base to platform.
 struct KernelJoint {
-  bool revolute;
+  bool revolute;   ///< else prismatic
   double nominal;  ///< displacement from which a solve starts unless told otherwise (rad, m)
 };
 
 /// A rigid motion between two passive joints, or before the first or behind the last one of a limb, as a product of
 /// pieces: constant motions and errors of frames that vary from sample to sample.
 struct KernelPiece {
-  bool is_error;
+  bool is_error;        ///< else a constant motion
   bool inverted;        ///< the error's inverse is meant
   double constant[12];  ///< of a constant motion: R by rows, then p
   double error[6];      ///< of an error: its constant part, [omega; v]
   int varied_row[6];    ///< row of KernelSamples::values that replaces that entry; -1 where it stays
 };
 
+/// Pieces in a row: a motion from joint to joint.
 struct KernelSegment {
-  std::size_t first_piece;
-  std::size_t pieces;
+  std::size_t first_piece;  ///< among the chain's
+  std::size_t pieces;       ///< how many
 };
 
+/// Which joints and segments are a limb's.
 struct KernelLimb {
   std::size_t first_joint;  ///< among passive joints
   std::size_t joints;       ///< passive ones; the limb has joints + 1 segments
   double meetings;          ///< pairs it takes part in
 };
 
+/// Two limbs whose platform poses are compared; positions from 0.
 struct KernelPair {
-  std::size_t k;
-  std::size_t i;
+  std::size_t k;  ///< the one that is compared
+  std::size_t i;  ///< the one it is compared with
 };
 
 /// A parallel chain at one pose with its constant errors.
 struct KernelChain {
-  const KernelLimb* limb;
-  std::size_t limbs;
-  const KernelPair* pair;
-  std::size_t pairs;
-  const KernelJoint* joint;
-  std::size_t joints;
+  const KernelLimb* limb;        ///< [limbs]
+  std::size_t limbs;             ///< how many
+  const KernelPair* pair;        ///< [pairs]
+  std::size_t pairs;             ///< how many
+  const KernelJoint* joint;      ///< [joints]
+  std::size_t joints;            ///< passive ones of all limbs
   const KernelSegment* segment;  ///< [joints + limbs], limb by limb
-  std::size_t segments;
-  const KernelPiece* piece;
+  std::size_t segments;          ///< how many
+  const KernelPiece* piece;      ///< of all segments
 };
 
 /// Samples in rows: entry (v, b) at v * stride + b.
 struct KernelSamples {
-  const double* values;
-  std::size_t varied;
-  std::size_t stride;
-  std::size_t count;
+  const double* values;  ///< [varied x stride], SI
+  std::size_t varied;    ///< V
+  std::size_t stride;    ///< distance between rows, in numbers
+  std::size_t count;     ///< B
 };
 
 /// /// Where solves start whose one varied error lies within half_width of center: a Chebyshev series of each passive
 /// joint's displacement in (value - center) / half_width, [joints x kStartTerms].
 struct KernelFit {
-  double center;
-  double half_width;
-  const double* coefficients;
+  double center;               ///< of the error's range, SI
+  double half_width;           ///< of the error's range, SI
+  const double* coefficients;  ///< [joints x kStartTerms]
 };
 inline constexpr std::size_t kStartTerms = 16;
 
 /// Fits for ranges of the error. Outside of all of them solves start from nominal displacements.
 struct KernelStart {
-  const KernelFit* fit;
-  std::size_t fits;
+  const KernelFit* fit;  ///< [fits], with ranges that do not overlap
+  std::size_t fits;      ///< how many
 };
 
 enum class KernelMethod {
@@ -84,24 +87,25 @@ enum class KernelMethod {
   newton_direct  ///< its first pass alone
 };
 
+/// How a kernel iterates; see SolverOptions.
 struct KernelOptions {
-  KernelMethod method;
-  double tolerance;       ///< on the change of the residual
-  double rounding_level;  ///< below which a change may be rounding
-  double last_step;       ///< a safe Newton step below this is the last one
-  double largest_step;    ///< that Newton may take from a start
-  std::uint32_t max_iterations;
+  KernelMethod method;           ///< which iteration
+  double tolerance;              ///< on the change of the residual
+  double rounding_level;         ///< below which a change may be rounding
+  double last_step;              ///< a safe Newton step below this is the last one
+  double largest_step;           ///< that Newton may take from a start
+  std::uint32_t max_iterations;  ///< after which a sample is given up
 };
 
 /// Rows as in KernelSamples, for all samples. The stride is at least kernel_capacity(count): entries behind the last
 /// sample are overwritten.
 struct KernelOutcome {
-  double* delta_mu;       ///< [6 pairs x stride]
-  double* responses;      ///< [3 x stride]: angular, linear, max
-  double* displacements;  ///< [joints x stride], of passive joints; or null
-  SolveStatus* status;
-  std::uint32_t* iterations;
-  std::size_t stride;
+  double* delta_mu;           ///< [6 pairs x stride]
+  double* responses;          ///< [3 x stride]: angular, linear, max
+  double* displacements;      ///< [joints x stride], of passive joints; or null
+  SolveStatus* status;        ///< [stride]
+  std::uint32_t* iterations;  ///< [stride]
+  std::size_t stride;         ///< distance between rows, in numbers
 };
 
 /// No instruction set has more lanes.

@@ -32,8 +32,11 @@ class BlockSolver {
 
   /// Row n of the last solve's residuals, [6 x pairs], or of its responses (angular, linear, max); each [count].
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
+  /// A row of the last block's responses: angular, linear, max.
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
+  /// Of the last block, for each sample.
   std::span<const SolveStatus> status() const { return std::span(status_).first(count_); }
+  /// Of the last block, for each sample.
   std::span<const std::uint32_t> iterations() const { return std::span(iterations_).first(count_); }
 
  private:

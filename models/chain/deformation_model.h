@@ -19,7 +19,7 @@ struct ErrorSlot {
 
 /// A parallel chain as a model whose responses are its limbs' comprehensive deformations.
 struct DeformationModel {
-  ParallelChain chain;
+  ParallelChain chain;           ///< perfect limbs
   std::vector<ErrorSlot> slots;  ///< [F], one per factor
   /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;

@@ -13,8 +13,8 @@ namespace poesy::chain {
 
 /// How a deformation solve ended.
 struct Deformation {
-  SolveStatus status;
-  std::uint32_t iterations;
+  SolveStatus status;        ///< how the solve ended
+  std::uint32_t iterations;  ///< that it took
 };
 
 /// What one iteration did.

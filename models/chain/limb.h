@@ -13,36 +13,42 @@ enum class JointType {
   prismatic  ///< slides along the local z axis
 };
 
+/// A joint with one degree of freedom.
 struct Joint {
-  JointType type;
-  bool actuated;
+  JointType type;  ///< how it moves
+  bool actuated;   ///< else passive: it gives way to errors
 };
 
 /// A serial limb in local product-of-exponentials form (Du et al. 2022, Eq. 13): n joints between n + 1 fixed
 /// frames. home[0] is the first joint's frame seen from the base, home[n] the platform seen from the last joint's
 /// frame, home[j] the frame of joint j + 1 seen from the frame of joint j, all at zero displacement.
 struct Limb {
-  std::vector<Joint> joints;
+  std::vector<Joint> joints;                 ///< [n], base to platform
   std::vector<lie::Transform<double>> home;  ///< [n + 1]
 
+  /// N + 1.
   std::size_t frames() const { return home.size(); }
+  /// Those that are not actuated.
   std::size_t passive_joints() const;
 };
 
 /// Two limbs whose platform poses are compared: residual log(g_k g_i^-1) (Eq. 30). Positions count from 0.
 struct LimbPair {
-  std::size_t k;
-  std::size_t i;
+  std::size_t k;  ///< the limb that is compared, g_k
+  std::size_t i;  ///< the limb it is compared with, g_i
 };
 
 /// Limbs that hold one platform, and the pairs in which their poses are compared.
 struct ParallelChain {
-  std::vector<Limb> limbs;
-  std::vector<LimbPair> pairs;
+  std::vector<Limb> limbs;      ///< in the order in which displacements stand
+  std::vector<LimbPair> pairs;  ///< in the order in which residuals stand
 
+  /// Of all limbs together.
+  /// @{
   std::size_t joints() const;
   std::size_t passive_joints() const;
   std::size_t frames() const;
+  /// @}
   /// The longest a limb is, in m, summed over its fixed frames.
   double reach() const;
 };

@@ -12,6 +12,7 @@ namespace poesy::chain {
 /// them twice with opposite signs and is never formed.
 class NormalEquations {
  public:
+  /// Scratch for chains of this shape.
   explicit NormalEquations(const ParallelChain& chain);
 
   /// Solves for the motion deviations of the passive joints. columns: [passive joints]; delta_mu: [6 x pairs].

@@ -13,10 +13,14 @@ using Matrix6 = Eigen::Matrix<T, 6, 6>;
 /// A rigid motion x -> R x + p. base_T_platform maps platform coordinates to base coordinates.
 template <class T>
 struct Transform {
+  /// Rotation.
   Matrix3<T> R = Matrix3<T>::Identity();
+  /// Translation.
   Vector3<T> p = Vector3<T>::Zero();
 
+  /// The motion back.
   Transform inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+  /// First b, then a.
   friend Transform operator*(const Transform& a, const Transform& b) { return {a.R * b.R, a.R * b.p + a.p}; }
 };
 

@@ -31,7 +31,9 @@ Vector3<T> vee(const Matrix3<T>& m) {
 /// sin(theta)/theta, (1 - cos(theta))/theta^2, (theta - sin(theta))/theta^3.
 template <class T>
 struct ExpCoefficients {
-  T a, b, c;
+  T a;  ///< sin(theta)/theta
+  T b;  ///< (1 - cos(theta))/theta^2
+  T c;  ///< (theta - sin(theta))/theta^3
 };
 
 template <class T>

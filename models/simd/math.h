@@ -12,9 +12,11 @@ inline T polynomial(T x, const double (&c)[n]) {
   return sum;
 }
 
+/// Both of one angle.
 template <class T>
 struct SinCos {
-  T sin, cos;
+  T sin;  ///< of the angle
+  T cos;  ///< of the same angle
 };
 
 /// Sine and cosine for |x| < 100, within 2 ulp; where one of them vanishes at a multiple of pi/2, within 1e-26 for each

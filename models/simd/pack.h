@@ -16,12 +16,15 @@ using Tag = hn::ScalableTag<double>;
 
 /// One truth value per lane.
 struct Mask {
-  hn::Mask<Tag> m;
+  hn::Mask<Tag> m;  ///< a bit for each lane
 
+  /// Lane by lane; any: of all lanes.
+  /// @{
   friend Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
   friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
   friend Mask operator!(Mask a) { return {hn::Not(a.m)}; }
   friend bool any(Mask a) { return !hn::AllFalse(Tag(), a.m); }
+  /// @}
   /// Bit n is lane n.
   friend unsigned bits(Mask a) {
     unsigned char bytes[8] = {};
@@ -33,18 +36,26 @@ struct Mask {
 /// Lanes of doubles. madd and nmadd round once; everything else is a single IEEE operation per lane, so that
 /// instruction sets with fused multiply-add agree in every bit.
 struct Pack {
+  /// What comparisons give.
   using MaskType = Mask;
+  /// Of this instruction set.
   static constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
-  hn::Vec<Tag> v;
+  hn::Vec<Tag> v;  ///< the lanes
 
   Pack() = default;
+  /// From lanes.
   Pack(hn::Vec<Tag> lanes) : v(lanes) {}
+  /// The same number in every lane.
   Pack(double value) : v(hn::Set(Tag(), value)) {}
 
+  /// From kLanes places in memory.
   static Pack load(const double* from) { return hn::LoadU(Tag(), from); }
+  /// To kLanes places in memory.
   void store(double* to) const { hn::StoreU(v, Tag(), to); }
 
+  /// Lane by lane.
+  /// @{
   friend Pack operator+(Pack a, Pack b) { return hn::Add(a.v, b.v); }
   friend Pack operator-(Pack a, Pack b) { return hn::Sub(a.v, b.v); }
   friend Pack operator*(Pack a, Pack b) { return hn::Mul(a.v, b.v); }
@@ -52,16 +63,20 @@ struct Pack {
   friend Pack operator-(Pack a) { return hn::Neg(a.v); }
   friend Mask operator<(Pack a, Pack b) { return {hn::Lt(a.v, b.v)}; }
   friend Mask operator>(Pack a, Pack b) { return {hn::Gt(a.v, b.v)}; }
+  /// @}
 
   /// a b + c
   friend Pack madd(Pack a, Pack b, Pack c) { return hn::MulAdd(a.v, b.v, c.v); }
   /// c - a b
   friend Pack nmadd(Pack a, Pack b, Pack c) { return hn::NegMulAdd(a.v, b.v, c.v); }
+  /// Lane by lane.
+  /// @{
   friend Pack select(Mask mask, Pack yes, Pack no) { return hn::IfThenElse(mask.m, yes.v, no.v); }
   friend Pack sqrt(Pack a) { return hn::Sqrt(a.v); }
   friend Pack abs(Pack a) { return hn::Abs(a.v); }
   friend Pack max(Pack a, Pack b) { return hn::Max(a.v, b.v); }
   friend Pack min(Pack a, Pack b) { return hn::Min(a.v, b.v); }
+  /// @}
   /// To the nearest whole number, ties to even.
   friend Pack nearest(Pack a) { return hn::Round(a.v); }
 };

@@ -56,7 +56,8 @@ inline constexpr double kAtanShort[] = {1.0,        -1.0 / 3.0,  1.0 / 5.0,  -1.
 /// exp(w) = I + a hat(w) + b hat(w)^2: a = sin(theta) / theta and b = (1 - cos(theta)) / theta^2.
 template <class T>
 struct ExpCoefficients {
-  T a, b;
+  T a;  ///< sin(theta) / theta
+  T b;  ///< (1 - cos(theta)) / theta^2
 };
 
 /// At this theta^2, for theta < 100.
@@ -93,9 +94,10 @@ inline void rotation_matrix(const T* w, T theta_squared, const ExpCoefficients<T
   r[7] = madd(c.a, w[0], r[7]);
 }
 
+/// Rotation vectors, lane by lane.
 template <class T>
 struct RotationLog {
-  T w[3];
+  T w[3];  ///< components x, y, z
   T bend;  ///< (1 - theta/2 cot(theta/2)) / theta^2: left_jacobian(w)^-1 = I - hat(w) / 2 + bend hat(w)^2
 };
 

@@ -28,17 +28,20 @@ struct PlatformMotion {
   lie::Vector3<double> dr;  ///< displacement of P, m
 };
 
+/// How a solve ended.
 struct Closing {
-  SolveStatus status;
-  std::uint32_t iterations;
+  SolveStatus status;        ///< why it ended
+  std::uint32_t iterations;  ///< that it took
 };
 
 /// Where solves at a nominal configuration start: one step of its Jacobian from no motion, which is the first order of
 /// what the errors do. At a singular pose solves start without motion.
 class ClosureStart {
  public:
+  /// For limbs about a nominal configuration.
   ClosureStart(const Geometry& geometry, const Configuration& nominal);
 
+  /// The motion to first order, where a solve starts.
   PlatformMotion operator()(const std::array<LimbWithErrors, kLimbs>& limbs) const;
 
   /// [delta; dr] from the values of the six equations without motion; zero at a singular pose.

@@ -17,6 +17,7 @@ namespace poesy::three_prs {
 template <class T>
 class ClosureKernel {
  public:
+  /// Refers to all of it.
   ClosureKernel(const ClosurePose& pose, const ClosureOptions& options, const Tile& tile, double* scratch)
       : pose_(pose), options_(options), tile_(tile), group_(reinterpret_cast<Group*>(scratch)) {}
 

@@ -14,6 +14,7 @@ namespace poesy::three_prs {
 /// solves. Owns the scratch of one thread.
 class ClosureSolver {
  public:
+  /// For one thread.
   ClosureSolver(const Geometry& geometry, const SolverOptions& options);
 
   /// Responses, status and iterations of a block at its nominal configuration; no details.

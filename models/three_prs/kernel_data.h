@@ -23,19 +23,19 @@ inline constexpr std::size_t kDetailRows = 3;     ///< swings
 /// At most kTile samples, in rows: entry (v, b) at v * stride + b. Rows can be read and written up to the next multiple
 /// of kMostLanes; what stands behind the last sample is overwritten.
 struct Tile {
-  std::size_t count;
-  const double* values;  ///< [varied x stride]
-  std::size_t values_stride;
-  double* responses;  ///< [kResponseRows x stride]
-  double* details;    ///< [kDetailRows x stride], or null
-  std::size_t outcomes_stride;
-  SolveStatus* status;        ///< [count]
-  std::uint32_t* iterations;  ///< [count]
+  std::size_t count;            ///< samples
+  const double* values;         ///< [varied x stride]
+  std::size_t values_stride;    ///< distance between rows of values, in numbers
+  double* responses;            ///< [kResponseRows x stride]
+  double* details;              ///< [kDetailRows x stride], or null
+  std::size_t outcomes_stride;  ///< distance between rows of responses and details, in numbers
+  SolveStatus* status;          ///< [count]
+  std::uint32_t* iterations;    ///< [count]
 };
 
 /// What errors do to first order.
 struct FirstOrderMap {
-  std::size_t varied;
+  std::size_t varied;      ///< V
   const double* effects;   ///< [varied x rows]: rows are kVectorRows, then kDetailRows
   const double* constant;  ///< [rows]: of the errors that do not vary
 };
@@ -43,29 +43,32 @@ inline constexpr std::size_t kMapRows = kVectorRows + kDetailRows;
 
 /// One limb at a nominal pose; matrices by rows.
 struct ClosureLimb {
-  double cosine, sine;             ///< of the angle about z from the base frame to the limb's
+  double cosine;                   ///< of the angle about z from the base frame to the limb's
+  double sine;                     ///< likewise
   double base_R_platform_limb[9];  ///< R R_i
   double joint[3];                 ///< from P to C_i, base frame
-  double q;
-  double error[kSources];    ///< as ordered by Source; the constant part
-  int varied_row[kSources];  ///< row of Tile::values that stands there instead; -1 where it is constant
-  bool varies;               ///< whether any does
+  double q;                        ///< of the carriage, nominal
+  double error[kSources];          ///< as ordered by Source; the constant part
+  int varied_row[kSources];        ///< row of Tile::values that stands there instead; -1 where it is constant
+  bool varies;                     ///< whether any does
 };
 
 /// The mechanism at a nominal pose. The six equations are those of close_limbs: three of rods, three of joints.
 struct ClosurePose {
-  ClosureLimb limb[kLimbs];
-  double a, l;
-  double r[3];         ///< P, base frame
-  double tool[3];      ///< from P to the tip, base frame
-  double start[36];    ///< [delta; dr] from the equations' values without motion, where a solve starts
-  std::size_t row[6];  ///< where each equation stands in the elimination, whose columns are [dr; delta]
+  ClosureLimb limb[kLimbs];  ///< at that pose
+  double a;                  ///< radius of the rails' circle
+  double l;                  ///< length of the rods
+  double r[3];               ///< P, base frame
+  double tool[3];            ///< from P to the tip, base frame
+  double start[36];          ///< [delta; dr] from the equations' values without motion, where a solve starts
+  std::size_t row[6];        ///< where each equation stands in the elimination, whose columns are [dr; delta]
 };
 
+/// How the iteration ends.
 struct ClosureOptions {
-  double tolerance;  ///< on the change of [delta; dr]
-  double rounding;   ///< below which a change may be rounding
-  std::uint32_t max_iterations;
+  double tolerance;              ///< on the change of [delta; dr]
+  double rounding;               ///< below which a change may be rounding
+  std::uint32_t max_iterations;  ///< after which a sample is given up
 };
 
 }  // namespace poesy::three_prs

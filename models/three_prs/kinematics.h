@@ -20,9 +20,9 @@ struct Geometry {
 /// Pose coordinates: the tilts of R = Rx(alpha) Ry(beta) Rz(gamma) (Eq. 1; rad) and the z of P (m). x, y and gamma
 /// follow from them (Eq. 6).
 struct Pose {
-  double alpha;
-  double beta;
-  double z;
+  double alpha;  ///< rotation about the base's x axis, rad
+  double beta;   ///< rotation about the platform's y axis after alpha, rad
+  double z;      ///< of P in the base frame, m
 };
 
 /// One limb at a nominal pose. The limb's frame {O_i} is the base frame turned about z by 0, 120, 240 deg.
@@ -34,9 +34,10 @@ struct LimbConfiguration {
   lie::Vector3<double> v;  ///< unit vector along the revolute joint, base frame
 };
 
+/// The mechanism at a pose.
 struct Configuration {
-  lie::Transform<double> platform;  ///< base_T_platform: R of Eq. 1, r = (x, y, z)
-  std::array<LimbConfiguration, kLimbs> limbs;
+  lie::Transform<double> platform;              ///< base_T_platform: R of Eq. 1, r = (x, y, z)
+  std::array<LimbConfiguration, kLimbs> limbs;  ///< one after the other
 };
 
 /// R_i: rotation from limb i's frame to the base frame, i counted from 0.

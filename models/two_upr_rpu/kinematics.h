@@ -17,9 +17,9 @@ struct Geometry {
 
 /// Pose coordinates: z of o_A, and the rotations about x (beta) and about the platform's v (gamma).
 struct Pose {
-  double z;
-  double beta;
-  double gamma;
+  double z;      ///< of o_A in the base frame, m
+  double beta;   ///< rad
+  double gamma;  ///< rad
 };
 
 /// Platform pose in the base frame: R = Rx(beta) Ry(gamma) (Eq. 12), o_A = (0, -z tan beta, z).

@@ -1,3 +1,5 @@
 poesy_test(report_test LABELS unit SOURCES engine/report/coupling_table_test.cpp
-           engine/report/fidelity_table_test.cpp engine/report/monte_carlo_table_test.cpp
-           engine/report/separation_table_test.cpp LINKS poesy_report)
+           engine/report/fidelity_table_test.cpp engine/report/json_tables_test.cpp
+           engine/report/monte_carlo_table_test.cpp engine/report/ranked_table_test.cpp
+           engine/report/separation_table_test.cpp engine/report/text_table_test.cpp engine/report/tolerance_table_test.cpp
+           LINKS poesy_report nlohmann_json::nlohmann_json)

@@ -8,7 +8,9 @@
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
+#include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
+#include "engine/report/text_table.h"
 #include "tests/fuzz/h5_checksums.h"
 #include "tests/fuzz/shared_coverage.h"
 #include "tests/fuzz/target.h"
@@ -47,7 +49,12 @@ void limit_children() {
 void use(const std::string& path) {
   const StoredResult result = read_result(path);
   static_cast<void>(summary_text(result));
-  static_cast<void>(result_tables(result, default_ranking(result)));
+  static_cast<void>(failures_text(result, path));
+  const std::vector<Table> tables = result_tables(result, default_ranking(result));
+  for (const std::size_t width : {std::size_t{1}, std::size_t{80}, kUnlimitedWidth}) {
+    static_cast<void>(text_of(tables, width));
+  }
+  static_cast<void>(json_of(result, tables));
   for (const std::string& table : export_tables(path, folder())) {
     fuzz::expect(std::filesystem::path(table).parent_path() == folder(), "a table lies in the folder that was named");
     ::unlink(table.c_str());

@@ -7,7 +7,8 @@ find_program(POESY_H5DUMP h5dump)
 foreach(tool POESY_PYTHON POESY_OCTAVE POESY_H5DUMP)
   if(NOT ${tool})
     message(FATAL_ERROR "The tests need python3, octave-cli and h5dump; not found: ${tool}. Install Debian's python3-h5py "
-                        "python3-h5netcdf python3-xarray octave hdf5-tools, or configure with -DPOESY_TESTS=OFF.")
+                        "python3-h5netcdf python3-xarray python3-matplotlib octave gnuplot-nox fonts-freefont-otf "
+                        "hdf5-tools, or configure with -DPOESY_TESTS=OFF.")
   endif()
 endforeach()
 
@@ -32,5 +33,17 @@ foreach(kind sensitivity evaluate paired monte_carlo coupling)
   poesy_interop_test(octave_tables_${kind} ${POESY_OCTAVE} --no-init-file --quiet ${scripts}/check_tables.m
                      ${examples}/${kind})
 endforeach()
+# What users take to read results: results/read_results.py and results/read_results.m. Files that are none come first.
+add_test(NAME interop.make_strangers COMMAND ${POESY_PYTHON} -B ${scripts}/make_strangers.py ${examples})
+set_tests_properties(interop.make_strangers PROPERTIES FIXTURES_SETUP interop_strangers DEPENDS interop.write_examples
+                     FIXTURES_REQUIRED interop_examples LABELS interop)
+poesy_interop_test(python_read_results ${POESY_PYTHON} -B ${scripts}/read_results_test.py $<TARGET_FILE:poesy> ${examples})
+poesy_interop_test(octave_read_results ${POESY_OCTAVE} --no-init-file --quiet ${scripts}/check_read_results.m
+                   ${PROJECT_SOURCE_DIR} ${examples})
+set_tests_properties(interop.python_read_results interop.octave_read_results PROPERTIES
+                     TIMEOUT 300 FIXTURES_REQUIRED "interop_examples;interop_strangers" ENVIRONMENT "POESY_PYTHON=${POESY_PYTHON}")
+add_test(NAME interop.reading_guide COMMAND ${POESY_PYTHON} -B ${scripts}/reading_guide_test.py $<TARGET_FILE:poesy>
+                                            ${POESY_OCTAVE})
+set_tests_properties(interop.reading_guide PROPERTIES LABELS interop TIMEOUT 300)
 poesy_interop_test(python_values ${POESY_PYTHON} ${scripts}/check_values.py ${examples}/sensitivity.h5
                    ${examples}/evaluate.h5 ${examples}/paired.h5)

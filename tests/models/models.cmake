@@ -3,7 +3,6 @@ poesy_test(chain_test LABELS property SOURCES models/chain/limb_test.cpp models/
            models/chain/passive_condition_test.cpp
            LINKS poesy_models)
 poesy_test(trace_test LABELS unit SOURCES models/trace_test.cpp LINKS poesy_models)
-find_package(nlohmann_json 3 REQUIRED)
 poesy_test(two_upr_rpu_test LABELS unit
            SOURCES models/two_upr_rpu/errors_test.cpp models/two_upr_rpu/kinematics_test.cpp
                    models/two_upr_rpu/model_test.cpp
@@ -16,3 +15,5 @@ poesy_test(three_prs_test LABELS unit
                    models/three_prs/trajectory_test.cpp
            LINKS poesy_models poesy_study nlohmann_json::nlohmann_json)
 poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_run poesy_models)
+# Of every mechanism in the registry, whatever it is.
+poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_io poesy_models)

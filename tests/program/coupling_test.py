@@ -27,7 +27,7 @@ class Coupling(ProgramTest):
         self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
         self.succeeds("verify", "out.h5")
         shown = self.succeeds("show", "out.h5")
-        for text in ("4 sources of errors", "0.1 mm: tip_x [mm]", "0.5 mm: tip_z [mm]", "FS+T+R+L", "% at pose"):
+        for text in ("4 sources of errors", "0.1 mm: tip_x [mm]", "0.5 mm: tip_z [mm]", "FS+T+R+L", "cancellation"):
             self.assertIn(text, shown)
         self.succeeds("export", "out.h5", "-d", "tables")
         with open(self.folder / "tables" / "coupling_summary.csv") as file:

@@ -94,7 +94,7 @@ class Fidelity(ProgramTest):
         numpy.testing.assert_array_equal(drive[published == "non-compensable"], 0.0)
         self.assertTrue((removable[is_c] > 0).all() and (removable[is_c] < 1).all())
         self.assertTrue(0 < together < 1)
-        self.assertIn("removable by calibration", self.succeeds("show", "out.h5"))
+        self.assertIn("What calibration can remove", self.succeeds("show", "out.h5"))
 
     def test_evaluation_refuses_both(self):
         self.write("study.toml", study("both", "1 mm", "1 deg", '"all"'))

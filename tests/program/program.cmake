@@ -42,6 +42,9 @@ endif()
 program_test(tolerances unit)
 program_test(trajectory unit)
 program_test(coupling unit)
+program_test(show unit)
+program_test(reference unit)
+program_test(tutorial unit)
 
 add_test(NAME regression.golden
          COMMAND ${POESY_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/regression/regression_test.py $<TARGET_FILE:poesy>)

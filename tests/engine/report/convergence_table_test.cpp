@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/report/tables.h"
+#include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
@@ -25,23 +26,24 @@ StoredResult example() {
 }
 
 TEST(ConvergenceTable, NamesWhatDidNotReachItTheWidestFirst) {
-  EXPECT_EQ(convergence_table(example()),
-            "\n"
-            "Convergence: 2 of 4 global indices have a 95 % interval within +-1 % of their value, from 1 000 to 8 000 "
-            "samples at each pose\n"
-            "  b                 y                            2.5 %  about 50 000 samples would do\n"
-            "  b                 x                              2 %  about 32 000 samples would do\n"
+  EXPECT_EQ(text_of(convergence_table(example()).value(), kUnlimitedWidth),
+            "Convergence: 2 of 4 global indices have a 95 % interval within +-1 % of their value, from 1 000 to\n"
+            "8 000 samples at each pose\n"
+            "                 half the     samples that\n"
+            "error  response  interval  would do, about\n"
+            "                      [%]\n"
+            "b      y              2.5           50 000\n"
+            "b      x              2             32 000\n"
             "Raise max, which is 8 000, and go on with --resume if the checkpoint was kept\n");
 }
 
-TEST(ConvergenceTable, IsOneLineWhenAllReachedIt) {
+TEST(ConvergenceTable, IsOneSentenceWhenAllReachedIt) {
   StoredResult result = example();
   result.sensitivity.convergence->reached = {1, 1, 1, 1};
   result.sensitivity.convergence->samples = {8000, 8000};
-  EXPECT_EQ(
-      convergence_table(result),
-      "\nConvergence: 4 of 4 global indices have a 95 % interval within +-1 % of their value, 8 000 samples at each "
-      "pose\n");
+  EXPECT_EQ(text_of(convergence_table(result).value(), kUnlimitedWidth),
+            "Convergence: 4 of 4 global indices have a 95 % interval within +-1 % of their value, 8 000 samples\n"
+            "at each pose\n");
 }
 
 TEST(ConvergenceTable, OfAMonteCarloResultSpeaksOfTheHeadline) {
@@ -51,13 +53,16 @@ TEST(ConvergenceTable, OfAMonteCarloResultSpeaksOfTheHeadline) {
   result.monte_carlo.convergence->reached = {0, 1};
   result.monte_carlo.convergence->relative_half_width = {0.02, 0.01};
   result.monte_carlo.convergence->samples = {8000};
-  const std::string text = convergence_table(result);
-  EXPECT_NE(text.find("1 of 1 overall means"), std::string::npos) << text;
+  const Table one = convergence_table(result).value();
+  EXPECT_NE(one.caption.find("1 of 1 overall means"), std::string::npos) << one.caption;
   result.headline = {0, 1};
-  EXPECT_NE(convergence_table(result).find("  all errors        x "), std::string::npos);
+  const Table both = convergence_table(result).value();
+  ASSERT_EQ(both.rows.size(), 1U);
+  EXPECT_EQ(both.rows[0][0].text, "all errors");
+  EXPECT_EQ(both.rows[0][1].text, "x");
 }
 
-TEST(ConvergenceTable, IsEmptyForFixedSamples) { EXPECT_EQ(convergence_table(StoredResult()), ""); }
+TEST(ConvergenceTable, IsNotThereForFixedSamples) { EXPECT_FALSE(convergence_table(StoredResult())); }
 
 }  // namespace
 }  // namespace poesy

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/report/tables.h"
+#include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
@@ -38,35 +39,41 @@ StoredResult example() {
 }
 
 TEST(CouplingTable, ShowsEachHeadlineResponseAtEachSize) {
-  EXPECT_EQ(
-      result_tables(example(), "x"),
-      "2 sources of errors, alone and together; largest values over 4 poses. interaction: together minus the sum "
-      "of each\nalone. opposed: share of the poses where the sum is less than its largest part; a norm, which has no "
-      "sign, cannot tell\n"
-      "\n"
-      "0.1 mm: x [mm]\n"
-      "subset  max|effect|   pose            rss     worst case    interaction    opposed  cancellation\n"
-      "FS             0.04      3           0.04           0.04              0\n"
-      "T              0.01      0           0.01           0.01              0\n"
-      "FS+T          0.035      3        0.04125          0.045          1e-05     75.0 %     50.0 % at pose 2\n");
+  EXPECT_EQ(text_of(result_tables(example(), "x"), kUnlimitedWidth),
+            "0.1 mm: x [mm]\n"
+            "        largest    at  root sum  worst                                        at\n"
+            "subset   effect  pose    square   case  interaction  opposed  cancellation  pose\n"
+            "           [mm]            [mm]   [mm]         [mm]      [%]           [%]\n"
+            "FS        0.04      3   0.04     0.04         0            -             -     -\n"
+            "T         0.01      0   0.01     0.01         0            -             -     -\n"
+            "FS+T      0.035     3   0.04125  0.045        1e-05       75            50     2\n"
+            "2 sources of errors, alone and together; largest values over 4 poses\n"
+            "interaction: together minus the sum of each alone\n"
+            "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much\n"
+            "at most; a norm, which has no sign, cannot tell\n");
 }
 
 TEST(CouplingTable, SaysWherePosesAreLeftOut) {
   StoredResult result = example();
   result.coupling.found.count[4] = 3;
-  EXPECT_NE(coupling_table(result).find("some subsets leave out poses"), std::string::npos);
+  const std::string note = coupling_tables(result).back().notes.back();
+  EXPECT_NE(note.find("some subsets leave out poses"), std::string::npos) << note;
 }
 
 TEST(CouplingTable, NamesNoPoseOfRounding) {
   StoredResult result = example();
   result.coupling.found.effect_max[4] = 1e-16;
-  EXPECT_NE(coupling_table(result).find("T                 0      -"), std::string::npos) << coupling_table(result);
+  const std::vector<Cell> row = coupling_tables(result)[0].rows[1];
+  EXPECT_EQ(row[1].text, "0");
+  EXPECT_EQ(row[2].text, "-");
 }
 
 TEST(CouplingTable, CallsRoundingZero) {
   StoredResult result = example();
   result.coupling.found.interaction_max[5] = 1e-15;
-  EXPECT_EQ(coupling_table(result).find("e-"), std::string::npos);
+  const Cell cell = coupling_tables(result)[0].rows[2][5];
+  EXPECT_EQ(cell.text, "0");
+  EXPECT_DOUBLE_EQ(cell.value.value(), 1e-12);
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "engine/report/tables.h"
+#include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
@@ -29,34 +32,37 @@ StoredResult example() {
 }
 
 TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
-  EXPECT_EQ(result_tables(example(), "linear_deformation"),
-            "2 errors vary together, 12 000 samples at each of 3 poses; quantiles to 0.2 % of their value\n"
+  EXPECT_EQ(text_of(result_tables(example(), "linear_deformation"), kUnlimitedWidth),
+            "2 errors vary together: responses over the samples of all 3 poses\n"
+            "response            unit  mean    std     min   q_0.5  q_0.95   max\n"
+            "linear_deformation  mm     2    1.5    0.001   1.75      8.5   12.5\n"
+            "ratio               1      0.5  0.125  0.0625  0.4375    1.25   3\n"
+            "12 000 samples at each pose; std: standard deviation; q_0.95: 95 % of the samples lie below it\n"
+            "(quantiles to 0.2 % of their value)\n"
             "\n"
-            "all poses together       unit          mean           std           min         q_0.5        q_0.95       "
-            "    max\n"
-            "linear_deformation         mm             2           1.5         0.001          1.75           8.5       "
-            "   12.5\n"
-            "ratio                       1           0.5         0.125        0.0625        0.4375          1.25       "
-            "      3\n"
-            "\n"
-            "over the poses           unit mean of means            largest mean          largest q_0.95\n"
-            "linear_deformation         mm             2             4    pose 1             9    pose 0\n"
-            "ratio                       1           0.5          0.75    pose 2             2    pose 1\n");
+            "Pose by pose: the mean of the poses' means, and the worst poses\n"
+            "                          mean of  largest    at  largest    at\n"
+            "response            unit    means     mean  pose   q_0.95  pose\n"
+            "linear_deformation  mm        2       4        1        9     0\n"
+            "ratio               1         0.5     0.75     2        2     1\n");
 }
 
 TEST(MonteCarloTable, NamesTheWorstOfThePosesThatAreKnown) {
   StoredResult result = example();
   result.monte_carlo.mean[0] = std::numeric_limits<double>::quiet_NaN();
-  const std::string table = monte_carlo_table(result);
-  EXPECT_NE(table.find("pose 1"), std::string::npos) << table;
+  const Table poses = monte_carlo_tables(result).at(1);
+  EXPECT_EQ(poses.rows[0][2].text, "-");
+  EXPECT_FALSE(poses.rows[0][2].value);
+  EXPECT_EQ(poses.rows[0][4].text, "1");
 }
 
 TEST(MonteCarloTable, ShowsTheHeadlineAlone) {
   StoredResult result = example();
   result.headline = {1};
-  const std::string table = monte_carlo_table(result);
-  EXPECT_EQ(table.find("linear_deformation"), std::string::npos) << table;
-  EXPECT_NE(table.find("ratio"), std::string::npos) << table;
+  for (const Table& table : monte_carlo_tables(result)) {
+    ASSERT_EQ(table.rows.size(), 1U);
+    EXPECT_EQ(table.rows[0][0].text, "ratio");
+  }
 }
 
 TEST(DefaultRanking, IsTheFirstLengthOfTheHeadline) {
@@ -68,11 +74,16 @@ TEST(DefaultRanking, IsTheFirstLengthOfTheHeadline) {
   EXPECT_EQ(default_ranking(result), "rotation");
 }
 
-TEST(SummaryText, CountsTheSolvesOfAllPoses) {
+TEST(FailuresText, CountsTheSolvesOfAllPosesOnce) {
   StoredResult result = example();
   result.monte_carlo.solves[2].by_status[2] = 360;
-  EXPECT_NE(summary_text(result).find("360 solves (0.99 %) did not converge"), std::string::npos)
-      << summary_text(result);
+  EXPECT_EQ(failures_text(result, "r.h5"), "360 of 36 360 solves (0.99 %) did not converge\n");
+  result.monte_carlo.failures = {{0, PoseIndex{2}, {SampleIndex{7}, SolveStatus::iteration_cap}}};
+  EXPECT_EQ(failures_text(result, "r.h5"),
+            "360 of 36 360 solves (0.99 %) did not converge\n"
+            "the first of them (error, pose, sample): all 2 7, iteration_cap; 1 are listed in failures.csv of 'poesy "
+            "export'\n"
+            "replay it: poesy replay r.h5 all 2 7\n");
 }
 
 }  // namespace

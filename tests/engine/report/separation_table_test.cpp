@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine/report/tables.h"
+#include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
@@ -16,7 +17,8 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
   result.sensitivity.responses = 1;
   result.sensitivity.factors = 3;
   result.sensitivity.global = {1.0, 0.5, 0.0};
-  EXPECT_EQ(separation_table(result, "position"), "");
+  const RankedErrors ranked = ranked_errors(result, "position");
+  EXPECT_FALSE(separation_table(result, ranked));
   SeparationResult& found = result.sensitivity.separation.emplace();
   const double none = std::numeric_limits<double>::quiet_NaN();
   found.drive_share = {1.0, 0.25, none};
@@ -24,14 +26,15 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
   found.removable_together = 0.4321;
   result.separation_measure = "how far the platform moves";
   result.published_class = {"compensable", "non-compensable", ""};
-  EXPECT_EQ(separation_table(result, "position"),
-            "\n"
+  EXPECT_EQ(text_of(separation_table(result, ranked).value(), kUnlimitedWidth),
             "What calibration can remove of each error's effect, to first order, over the poses\n"
+            "                                drive  removable by\n"
+            "rank  error    published class  share   calibration\n"
+            "                                  [%]           [%]\n"
+            "   1  theta_1  non-compensable     25          6.25\n"
+            "   2  q_1      compensable        100        100\n"
+            "   3  b_1      -                    -             -\n"
             "effect: how far the platform moves\n"
-            "rank  error             published class   drive share  removable by calibration\n"
-            "   1  theta_1           non-compensable        25.0 %                     6.2 %\n"
-            "   2  q_1               compensable           100.0 %                   100.0 %\n"
-            "   3  b_1               -                           -                         -\n"
             "all errors together, at the size the study sets: 43.2 % of the effect is removable\n");
 }
 

@@ -1,0 +1,61 @@
+#include "engine/report/display.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/stats/tolerance.h"
+
+namespace poesy {
+namespace {
+
+Cell cell(std::string text, double value) {
+  return {std::move(text), std::isfinite(value) ? std::optional(value) : std::nullopt};
+}
+
+}  // namespace
+
+std::size_t response_named(const StoredResult& result, std::string_view name) {
+  const auto found = std::ranges::find(result.responses, name, &NamedUnit::name);
+  return static_cast<std::size_t>(found - result.responses.begin());
+}
+
+std::string count_text(std::uint64_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
+  return digits;
+}
+
+std::string number_text(double value, int digits) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string percent_text(double share) { return std::isnan(share) ? "-" : number_text(100.0 * share, 3) + " %"; }
+
+Column text_column(std::string name, std::string heading, int dispensable) {
+  return {std::move(name), std::move(heading), "", Column::Kind::text, dispensable};
+}
+
+Column number_column(std::string name, std::string heading, std::string_view unit, int dispensable) {
+  return {std::move(name), std::move(heading), std::string(unit), Column::Kind::number, dispensable};
+}
+
+Column percent_column(std::string name, std::string heading, int dispensable) {
+  return number_column(std::move(name), std::move(heading), "%", dispensable);
+}
+
+Cell text_cell(std::string_view text) { return {text.empty() ? "-" : std::string(text), std::nullopt}; }
+
+Cell number_cell(double value, int digits) { return cell(number_text(value, digits), value); }
+
+Cell count_cell(std::uint64_t count) { return {count_text(count), static_cast<double>(count)}; }
+
+Cell percent_cell(double share) { return number_cell(100.0 * share, 3); }
+
+Cell index_cell(double index, double scale) {
+  return cell(std::abs(index) < kIndexRounding ? "0" : number_text(index * scale), index * scale);
+}
+
+}  // namespace poesy

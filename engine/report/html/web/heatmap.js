@@ -1,0 +1,206 @@
+// A field over items and poses as an image of one pixel for each value, with a cursor that pointer and arrow keys move.
+
+const ROW_HEIGHT = 14;
+const MAP_HEIGHT = 1400;
+
+function heatmap(figure, data) {
+  const rows = data.rows;
+  const coordinates = data.columns.coordinates;
+  let layer = data.layers[0];
+  let orderedBy = null; // a coordinate, or null: the number of the pose
+  const cursor = { row: 0, column: 0 };
+  const count = values(layer.value).length / rows.length;
+
+  const place = new Place(figure, (width) => (known(values(layer.value)).length ? drawMap(width) : nothing()));
+  const noun = data.columns.label;
+  place.controls.append(
+    select(
+      "Response",
+      data.layers.map(({ label }) => label),
+      (i) => {
+        layer = data.layers[i];
+        place.redraw();
+      },
+    ),
+    select(`Order ${noun}s by`, ["number", ...coordinates.map(({ name }) => name)], (i) => {
+      orderedBy = i ? coordinates[i - 1] : null;
+      place.redraw();
+    }),
+  );
+  const said = readout("Point at the map, or focus it and use the arrow keys, to read a value.");
+  place.plot.after(said);
+
+  /// The poses as they stand from left to right.
+  function order() {
+    const by = orderedBy && values(orderedBy.value);
+    return d3.range(count).sort((a, b) => (by ? d3.ascending(by[a], by[b]) : 0) || a - b);
+  }
+
+  function drawMap(width) {
+    const array = values(layer.value);
+    const poses = order();
+    const colours = fieldColours(array, layer.label, layer.unit, data.log);
+    const rowHeight = Math.max(2, Math.min(ROW_HEIGHT, MAP_HEIGHT / rows.length));
+    const named = d3.range(0, rows.length, Math.ceil((ROW_HEIGHT - 1) / rowHeight));
+    const marginLeft = Math.min(textWidth(...rows) + 10, width * 0.36);
+    const ticks = ticksAt(poses, width - marginLeft);
+    const svg = draw(describe(array), {
+      width,
+      height: rowHeight * rows.length + 44,
+      marginLeft,
+      marginRight: 12,
+      marginTop: 2,
+      marginBottom: 42,
+      x: { type: "linear", domain: [0, count], axis: null },
+      y: { type: "linear", domain: [rows.length, 0], axis: null },
+      marks: [
+        Plot.frame({ fill: "var(--unknown)", stroke: "none" }),
+        imageMark(image(array, poses, colours.colour, rowHeight), count),
+        Plot.axisX(
+          ticks.map(({ at }) => at),
+          {
+            tickFormat: (at) => ticks.find((tick) => tick.at === at).text,
+            label: labelled(orderedBy ? `${noun}s in the order of ${orderedBy.name}` : noun, orderedBy?.unit),
+            labelAnchor: "center",
+            labelArrow: "none",
+          },
+        ),
+        Plot.axisY(
+          named.map((p) => p + 0.5),
+          { tickFormat: (at) => shortened(rows[Math.floor(at)], marginLeft - 10), tickSize: 0, label: null },
+        ),
+      ],
+    });
+    const box = svgElement("rect", { class: "cursor", visibility: "hidden" });
+    svg.append(box);
+    const map = element(
+      "div",
+      {
+        class: "map",
+        tabindex: "0",
+        role: "application",
+        "aria-label": `Heat map of ${layer.label}. The arrow keys move the cursor.`,
+      },
+      svg,
+    );
+    follow(map, svg, box, poses, array);
+    return [colours.legend(width), map];
+  }
+
+  /// Columns that are numbered below the map.
+  function ticksAt(poses, width) {
+    const by = orderedBy && values(orderedBy.value);
+    if (!by)
+      return d3
+        .ticks(1, count, Math.min(count, width / 70))
+        .filter((v) => Number.isInteger(v) && v >= 1)
+        .map((v) => ({ at: v - 0.5, text: plain(v) }));
+    const step = Math.max(1, Math.ceil(count / Math.max(2, Math.floor(width / 70))));
+    return d3.range(0, count, step).map((c) => ({ at: c + 0.5, text: plain(Number(by[poses[c]].toPrecision(3))) }));
+  }
+
+  function describe(array) {
+    const i = d3.maxIndex(array);
+    const largest = `${rows[Math.floor(i / count)]} at ${noun} ${(i % count) + 1} with ${withUnit(number(array[i]), layer.unit)}`;
+    return `Heat map: ${layer.label} for ${rows.length} rows and ${count} ${noun}s. The largest value is that of ${largest}.`;
+  }
+
+  function follow(map, svg, box, poses, array) {
+    const x = svg.scale("x");
+    const y = svg.scale("y");
+    const show = (r, c) => {
+      cursor.row = Math.max(0, Math.min(rows.length - 1, r));
+      cursor.column = Math.max(0, Math.min(count - 1, c));
+      const [left, right, top, bottom] = [
+        x.apply(cursor.column),
+        x.apply(cursor.column + 1),
+        y.apply(cursor.row),
+        y.apply(cursor.row + 1),
+      ];
+      const wide = Math.max(3, right - left);
+      for (const [name, value] of Object.entries({
+        x: (left + right - wide) / 2,
+        y: top,
+        width: wide,
+        height: bottom - top,
+        visibility: "visible",
+      }))
+        box.setAttribute(name, value);
+      const pose = poses[cursor.column];
+      const where = coordinates.map(({ name, unit, value }) => `${name} ${withUnit(plain(values(value)[pose]), unit)}`);
+      said.textContent = `${rows[cursor.row]}, ${noun} ${pose + 1}${where.length ? ` (${where.join(", ")})` : ""}: ${withUnit(number(array[cursor.row * count + pose]), layer.unit)}`;
+    };
+    map.addEventListener("pointermove", (event) => {
+      const scale = svg.viewBox.baseVal.width / svg.getBoundingClientRect().width;
+      const corner = svg.getBoundingClientRect();
+      const [column, r] = [
+        x.invert((event.clientX - corner.left) * scale),
+        y.invert((event.clientY - corner.top) * scale),
+      ];
+      if (column >= 0 && column < count && r >= 0 && r < rows.length) show(Math.floor(r), Math.floor(column));
+    });
+    const steps = {
+      ArrowLeft: [0, -1],
+      ArrowRight: [0, 1],
+      ArrowUp: [-1, 0],
+      ArrowDown: [1, 0],
+      PageUp: [-10, 0],
+      PageDown: [10, 0],
+      Home: [0, -count],
+      End: [0, count],
+    };
+    map.addEventListener("keydown", (event) => {
+      const step = steps[event.key];
+      if (!step || event.altKey || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      const moves = box.getAttribute("visibility") === "visible";
+      show(cursor.row + (moves ? step[0] : 0), cursor.column + (moves ? step[1] : 0));
+    });
+  }
+
+  /// One pixel for each column, for the image may be drawn smaller; as many for each row as it is high.
+  function image(array, poses, colour, rowHeight) {
+    const small = element("canvas", { width: count, height: rows.length }).getContext("2d");
+    const pixels = small.createImageData(count, rows.length);
+    const rgba = colourTable(colour);
+    poses.forEach((pose, c) =>
+      rows.forEach((_, r) => pixels.data.set(rgba(array[r * count + pose]), 4 * (r * count + c))),
+    );
+    small.putImageData(pixels, 0, 0);
+    const high = element("canvas", { width: count, height: Math.round(rows.length * rowHeight) });
+    const context = high.getContext("2d");
+    context.imageSmoothingEnabled = false;
+    context.drawImage(small.canvas, 0, 0, high.width, high.height);
+    return high.toDataURL();
+  }
+}
+
+/// value -> [red, green, blue, alpha], transparent where unknown; each colour is parsed once.
+function colourTable(colour) {
+  const parsed = new Map();
+  return (value) => {
+    const text = colour(value);
+    if (text === null) return [0, 0, 0, 0];
+    if (!parsed.has(text)) {
+      const { r, g, b } = d3.rgb(text);
+      parsed.set(text, [r, g, b, 255]);
+    }
+    return parsed.get(text);
+  };
+}
+
+/// The image over the whole frame. Pixels stay sharp where they are larger than the screen's.
+function imageMark(source, columns) {
+  return (index, scales, channels, { width, height, marginLeft, marginTop, marginRight, marginBottom }) => {
+    const shown = width - marginLeft - marginRight;
+    return svgElement("image", {
+      href: source,
+      x: marginLeft,
+      y: marginTop,
+      width: shown,
+      height: height - marginTop - marginBottom,
+      preserveAspectRatio: "none",
+      style: columns < shown ? "image-rendering:pixelated" : "",
+    });
+  };
+}

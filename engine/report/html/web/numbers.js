@@ -1,0 +1,60 @@
+// Numbers as a reader sees them.
+
+const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+function powerOfTen(exponent) {
+  const digits = Array.from(String(Math.abs(exponent)), (digit) => SUPERSCRIPTS[digit]).join("");
+  return `10${exponent < 0 ? "⁻" : ""}${digits}`;
+}
+
+/// Three significant digits; powers of ten where zeros would have to be counted.
+function number(value) {
+  if (!Number.isFinite(value)) return "unknown";
+  if (value === 0) return "0";
+  const sign = value < 0 ? "−" : "";
+  const [mantissa, exponent] = Math.abs(value).toExponential(2).split("e").map(Number);
+  if (exponent < -3 || exponent > 5) return `${sign}${mantissa.toFixed(2)} × ${powerOfTen(exponent)}`;
+  const text = Math.abs(value).toFixed(Math.max(0, 2 - exponent));
+  return sign + (exponent > 3 ? Number(text).toLocaleString("en") : text);
+}
+
+/// At full precision as far as it is short: for coordinates and counts.
+function plain(value) {
+  return Number.isFinite(value) ? String(Number(value.toPrecision(5))).replace("-", "−") : "unknown";
+}
+
+function withUnit(text, unit) {
+  return unit ? `${text}\u202f${unit}` : text;
+}
+
+/// "label (unit)"
+function labelled(label, unit) {
+  return unit ? `${label} (${unit})` : label;
+}
+
+/// What an axis is divided by so that its ticks are short numbers, and the unit that then stands beside it.
+function axisUnit(domain, unit) {
+  const largest = Math.max(Math.abs(domain[0]), Math.abs(domain[1]));
+  const exponent = largest > 0 ? Math.floor(Math.log10(largest)) : 0;
+  if (exponent >= -3 && exponent < 5) return { factor: 1, unit };
+  const power = 3 * Math.floor(exponent / 3);
+  return { factor: 10 ** power, unit: `${powerOfTen(power)}${unit ? ` ${unit}` : ""}` };
+}
+
+/// Ticks of a logarithmic axis, at most that many: powers of ten, and their multiples by 2 and 5 where there are few.
+function logTicks([low, high], most) {
+  const powers = d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1);
+  const all = (multiples) =>
+    powers.flatMap((p) => multiples.map((m) => m * 10 ** p)).filter((v) => v >= low * 0.999 && v <= high * 1.001);
+  const tens = all([1]);
+  if (tens.length < 3) return all([1, 2, 5]);
+  const step = Math.ceil(tens.length / Math.max(2, most));
+  return tens.filter((_, k) => k % step === 0);
+}
+
+function logTick(value) {
+  const exponent = Math.floor(Math.log10(value) + 1e-9);
+  if (exponent >= -2 && exponent <= 5) return Number(value.toPrecision(1)).toLocaleString("en");
+  const multiple = Math.round(value / 10 ** exponent);
+  return `${multiple > 1 ? `${multiple} × ` : ""}${powerOfTen(exponent)}`;
+}

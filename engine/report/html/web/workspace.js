@@ -1,0 +1,219 @@
+// Poses as dots coloured by a field: a view for each pair of three coordinates, and one that can be turned.
+
+const START_VIEW = { yaw: 35, pitch: 22 };
+const TURN_STEP = 10;
+// So that the ends of the colours stand out from light and dark paper.
+const DOT_EDGE = { stroke: "var(--ink)", strokeOpacity: 0.4, strokeWidth: 0.6 };
+
+function workspace(figure, data) {
+  const count = values(data.coordinates[0].value).length;
+  let field = data.fields[0];
+  let item = 0;
+  const axes = data.coordinates.slice(0, 3).map((_, k) => k);
+  const view = { ...START_VIEW };
+
+  const place = new Place(figure, (width) => {
+    items.hidden = !(field.rows?.length > 1);
+    return known(shown()).length ? drawViews(width) : nothing();
+  });
+  const redraw = () => place.redraw();
+  const items = element("span", { class: "control-group" });
+  place.controls.append(
+    select(
+      "Colour",
+      data.fields.map(({ label }) => label),
+      (i) => {
+        field = data.fields[i];
+        item = 0;
+        offerItems();
+        redraw();
+      },
+    ),
+    items,
+    ...axisControls(),
+  );
+  offerItems();
+
+  function offerItems() {
+    items.replaceChildren(
+      ...(field.rows
+        ? [
+            select("of", field.rows, (i) => {
+              item = i;
+              redraw();
+            }),
+          ]
+        : []),
+    );
+  }
+
+  /// Which three of more coordinates are shown.
+  function axisControls() {
+    if (data.coordinates.length <= 3) return [];
+    const names = data.coordinates.map(({ name }) => name);
+    return axes.map((k) => {
+      const control = select(`Axis ${k + 1}`, names, (i) => {
+        axes[k] = i;
+        redraw();
+      });
+      control.querySelector("select").selectedIndex = k;
+      return control;
+    });
+  }
+
+  function shown() {
+    return row(values(field.value), field.rows ? item : 0, count);
+  }
+
+  function drawViews(width) {
+    const array = shown();
+    const what = field.rows ? `${field.label}, ${field.rows[item]}` : field.label;
+    const { colour, legend } = fieldColours(array, what, field.unit);
+    const poses = d3
+      .range(count)
+      .map((m) => ({
+        m,
+        value: array[m],
+        colour: colour(array[m]) ?? "var(--unknown)",
+        at: axes.map((k) => values(data.coordinates[k].value)[m]),
+      }));
+    const chosen = axes.map((k) => data.coordinates[k]);
+    const size = width < 620 ? width : Math.floor((width - 24) / 2);
+    const pairs = d3.cross(d3.range(axes.length), d3.range(axes.length)).filter(([a, b]) => a < b);
+    const text = ({ m, value, at }) =>
+      [
+        `pose ${m + 1}`,
+        ...chosen.map(({ name, unit }, k) => `${name} ${withUnit(plain(at[k]), unit)}`),
+        withUnit(number(value), field.unit),
+      ].join("\n");
+    const highest = poses[d3.maxIndex(poses, ({ value }) => value)];
+    const sentence = `${what} at ${count} poses; the largest is ${withUnit(number(highest.value), field.unit)} at ${chosen.map(({ name, unit }, k) => `${name} ${withUnit(plain(highest.at[k]), unit)}`).join(", ")}.`;
+
+    const flat = (pairs.length ? pairs : [[0, 0]]).map(([a, b]) =>
+      projection(poses, chosen, a, b, size, text, sentence),
+    );
+    const views = axes.length > 2 ? [...flat, turning(poses, chosen, size, sentence)] : flat;
+    return [legend(width), element("div", { class: "views" }, ...views)];
+  }
+
+  function projection(poses, chosen, a, b, size, text, sentence) {
+    const coordinate = (k) => (pose) => pose.at[k];
+    const labels = [a, b].map((k) => labelled(chosen[k].name, chosen[k].unit));
+    const domains = [a, b].map((k) => extent(poses.map(coordinate(k))));
+    const y = a === b ? () => 0 : coordinate(b);
+    return draw(`Dots: ${sentence} Seen along ${labels.join(" and ")}.`, {
+      width: size,
+      height: a === b ? 100 : Math.round(size * 0.72),
+      marginLeft: 52,
+      marginBottom: 40,
+      marginRight: 14,
+      inset: 8,
+      x: { domain: domains[0], label: labels[0], labelAnchor: "center", labelArrow: "none", ticks: 5, grid: true },
+      y: a === b ? { axis: null } : { domain: domains[1], label: labels[1], labelArrow: "none", ticks: 5, grid: true },
+      marks: [
+        Plot.dot(poses, { x: coordinate(a), y, fill: "colour", r: dotSize(count), ...DOT_EDGE }),
+        Plot.tip(poses, Plot.pointer({ x: coordinate(a), y, title: text })),
+      ],
+    });
+  }
+
+  function turning(poses, chosen, size, sentence) {
+    const box = element("div", {
+      class: "turning",
+      tabindex: "0",
+      role: "application",
+      "aria-label": "View that can be turned: drag it, or use the arrow keys; Home turns it back.",
+    });
+    const show = () => box.replaceChildren(turned(poses, chosen, size, view, sentence));
+    const turn = (yaw, pitch) => {
+      view.yaw = (view.yaw + yaw) % 360;
+      view.pitch = Math.max(-90, Math.min(90, view.pitch + pitch));
+      show();
+    };
+    const reset = () => {
+      Object.assign(view, START_VIEW);
+      show();
+    };
+    const steps = {
+      ArrowLeft: [-TURN_STEP, 0],
+      ArrowRight: [TURN_STEP, 0],
+      ArrowUp: [0, TURN_STEP],
+      ArrowDown: [0, -TURN_STEP],
+    };
+    box.addEventListener("keydown", (event) => {
+      if (event.altKey || event.ctrlKey || event.metaKey || !(event.key in steps || event.key === "Home")) return;
+      event.preventDefault();
+      event.key === "Home" ? reset() : turn(...steps[event.key]);
+    });
+    box.addEventListener("pointerdown", (event) => box.setPointerCapture(event.pointerId));
+    box.addEventListener("pointermove", (event) => {
+      if (box.hasPointerCapture(event.pointerId)) turn(event.movementX * 0.5, event.movementY * 0.5);
+    });
+    show();
+    return element(
+      "div",
+      { class: "turning-view" },
+      box,
+      element("button", { type: "button", onclick: reset }, "Turn back"),
+    );
+  }
+}
+
+function dotSize(count) {
+  return Math.max(1.6, Math.min(4.5, 90 / Math.sqrt(count)));
+}
+
+/// The three coordinates, each over its range, as an orthographic picture of the box that they fill.
+function turned(poses, chosen, size, { yaw, pitch }, sentence) {
+  const ranges = chosen.map((_, k) => extent(poses.map(({ at }) => at[k])));
+  const [sinYaw, cosYaw, sinPitch, cosPitch] = [yaw, pitch].flatMap((angle) => [
+    Math.sin((angle * Math.PI) / 180),
+    Math.cos((angle * Math.PI) / 180),
+  ]);
+  const project = ([x, y, z]) => {
+    const [right, deep] = [x * cosYaw - y * sinYaw, x * sinYaw + y * cosYaw];
+    return { x: right, y: z * cosPitch + deep * sinPitch, depth: deep * cosPitch - z * sinPitch };
+  };
+  const within = (at) => at.map((v, k) => (v - ranges[k][0]) / (ranges[k][1] - ranges[k][0]) - 0.5);
+  const dots = poses.map((pose) => ({ ...project(within(pose.at)), colour: pose.colour }));
+  dots.sort((a, b) => b.depth - a.depth);
+
+  const corners = d3.cross(d3.cross([-0.5, 0.5], [-0.5, 0.5]), [-0.5, 0.5], ([x, y], z) => [x, y, z]);
+  const edges = corners.flatMap((from) =>
+    [0, 1, 2].filter((k) => from[k] < 0).map((k) => ({ from, k, to: from.with(k, 0.5) })),
+  );
+  const lines = edges.map(({ from, to }) => ({ from: project(from), to: project(to), axis: from.every((v) => v < 0) }));
+  // The axes are the edges at the corner where all coordinates are smallest; each is named at its far end.
+  const names = chosen.map(({ name, unit }, k) => ({
+    ...project([-0.5, -0.5, -0.5].with(k, 0.64)),
+    text: labelled(name, unit),
+  }));
+  return draw(`Dots in three dimensions, turned by ${Math.round(yaw)} and ${Math.round(pitch)} degrees: ${sentence}`, {
+    width: size,
+    height: Math.round(size * 0.72),
+    margin: 0,
+    x: { domain: [-1.25, 1.25], axis: null },
+    y: { domain: [-0.9, 0.9], axis: null },
+    marks: [
+      Plot.link(lines, {
+        x1: (d) => d.from.x,
+        y1: (d) => d.from.y,
+        x2: (d) => d.to.x,
+        y2: (d) => d.to.y,
+        stroke: (d) => (d.axis ? "var(--ink)" : "var(--quiet)"),
+        strokeOpacity: (d) => (d.axis ? 1 : 0.4),
+        strokeWidth: (d) => (d.axis ? 1.5 : 1),
+      }),
+      Plot.dot(dots, { x: "x", y: "y", fill: "colour", r: dotSize(poses.length), ...DOT_EDGE }),
+      Plot.text(names, {
+        x: "x",
+        y: "y",
+        text: "text",
+        fill: "currentColor",
+        stroke: "var(--paper)",
+        strokeWidth: 4,
+        lineAnchor: "middle",
+      }),
+    ],
+  });
+}

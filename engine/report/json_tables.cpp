@@ -1,0 +1,85 @@
+#include "engine/report/json_tables.h"
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "engine/base/units.h"
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The last line of a resolved study is "seed = 1"; null where a file has another text.
+Json seed_of(const std::string& study_text) {
+  constexpr std::string_view kKey = "\nseed = ";
+  const std::size_t at = study_text.rfind(kKey);
+  if (at == std::string::npos) return nullptr;
+  const std::size_t begin = at + kKey.size();
+  const Json seed = Json::parse(study_text.substr(begin, study_text.find('\n', begin) - begin), nullptr, false);
+  return seed.is_number_unsigned() ? seed : Json(nullptr);
+}
+
+Json solves_json(const SolveCounts& solves) {
+  Json by_status = Json::object();
+  for (std::size_t s = 0; s < kStatusNames.size(); ++s) {
+    by_status[std::string(kStatusNames[s])] = solves.by_status[s];
+  }
+  return {{"total", solves.total()}, {"not_converged", solves.not_converged()}, {"by_status", by_status}};
+}
+
+Json column_json(const Column& column) {
+  return {{"name", column.name},
+          {"heading", column.heading},
+          {"unit", column.unit},
+          {"kind", column.kind == Column::Kind::number ? "number" : "text"}};
+}
+
+Json value_json(const Column& column, const Cell& cell) {
+  if (column.kind == Column::Kind::text) return cell.text;
+  return cell.value ? Json(*cell.value) : Json(nullptr);
+}
+
+Json table_json(const Table& table) {
+  Json columns = Json::array();
+  for (const Column& column : table.columns) columns.push_back(column_json(column));
+  Json rows = Json::array();
+  Json shown = Json::array();
+  for (const std::vector<Cell>& row : table.rows) {
+    Json values = Json::object();
+    Json texts = Json::array();
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      values[table.columns[c].name] = value_json(table.columns[c], row[c]);
+      texts.push_back(row[c].text);
+    }
+    rows.push_back(std::move(values));
+    shown.push_back(std::move(texts));
+  }
+  return {{"name", table.name}, {"caption", table.caption}, {"columns", columns},
+          {"rows", rows},       {"shown", shown},           {"notes", table.notes}};
+}
+
+}  // namespace
+
+std::string json_of(const StoredResult& result, std::span<const Table> tables) {
+  Json list = Json::array();
+  for (const Table& table : tables) list.push_back(table_json(table));
+  const Json all{{"kind", result.kind},
+                 {"model", result.model},
+                 {"title", result.title},
+                 {"poesy_version", result.poesy_version},
+                 {"git_commit", result.git_commit},
+                 {"content_sha256", result.content_sha256},
+                 {"seed", seed_of(result.study_text)},
+                 {"poses", result.poses.size()},
+                 {"solves", solves_json(solves_of(result))},
+                 {"run",
+                  {{"created", result.facts.created},
+                   {"threads", result.facts.threads},
+                   {"wall_seconds", result.facts.wall_seconds}}},
+                 {"tables", std::move(list)}};
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace poesy

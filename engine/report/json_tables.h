@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "engine/io/result_file.h"
+#include "engine/report/table.h"
+
+namespace poesy {
+
+/// A result's summary and its tables as one JSON object, for programs:
+///
+///     kind, model, title, poesy_version, git_commit, content_sha256, seed (where the study has one), poses
+///     solves: total, not_converged, by_status: {converged, stagnated, ...}
+///     run: created, threads, wall_seconds
+///     tables: [{name, caption, columns: [{name, heading, unit, kind}], rows, shown, notes}]
+///
+/// A row of `rows` has the values by the names of the columns: numbers so that they read back as the same double, in
+/// the column's unit, null where there is none; text as it is. `shown` has the texts of the same cells, as a list for
+/// each row. Text that is not UTF-8 is made so.
+std::string json_of(const StoredResult& result, std::span<const Table> tables);
+
+}  // namespace poesy

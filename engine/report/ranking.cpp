@@ -1,0 +1,64 @@
+#include "engine/report/ranking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "engine/report/display.h"
+
+namespace poesy {
+namespace {
+
+/// What the errors are put in order by, the largest first.
+double key(const StoredResult& result, std::size_t response, std::size_t p, RowOrder order) {
+  const SensitivityResult& found = result.sensitivity;
+  switch (order) {
+    case RowOrder::effect:
+      return effect(result, response, p);
+    case RowOrder::index:
+      return found.global[response * found.factors + p] * display(result.factors[p]).si;
+    case RowOrder::not_converged:
+      return share_not_converged(found, p);
+    case RowOrder::name:
+    case RowOrder::study:
+      break;
+  }
+  return 0.0;
+}
+
+std::vector<std::size_t> ordered(const StoredResult& result, std::size_t response, RowOrder order) {
+  std::vector<std::size_t> rows(result.sensitivity.factors);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  if (order == RowOrder::name) {
+    std::ranges::stable_sort(rows, {}, [&](std::size_t p) { return result.factors[p].name; });
+    return rows;
+  }
+  std::ranges::stable_sort(rows, std::ranges::greater(), [&](std::size_t p) {
+    const double value = key(result, response, p, order);
+    return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
+  });
+  return rows;
+}
+
+}  // namespace
+
+double effect(const StoredResult& result, std::size_t response, std::size_t factor) {
+  return result.sensitivity.global[response * result.sensitivity.factors + factor] * result.factor_sigma[factor];
+}
+
+double share_not_converged(const SensitivityResult& result, std::size_t factor) {
+  SolveCounts solves;
+  for (std::size_t m = 0; m < result.poses; ++m) solves.merge(result.solves[factor * result.poses + m]);
+  return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
+}
+
+RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order) {
+  RankedErrors found{response_named(result, response), {}, std::vector<std::size_t>(result.sensitivity.factors)};
+  const std::vector<std::size_t> by_effect = ordered(result, found.response, RowOrder::effect);
+  for (std::size_t n = 0; n < by_effect.size(); ++n) found.ranks[by_effect[n]] = n + 1;
+  found.rows = order == RowOrder::effect ? by_effect : ordered(result, found.response, order);
+  return found;
+}
+
+}  // namespace poesy

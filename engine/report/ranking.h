@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "engine/io/result_file.h"
+
+namespace poesy {
+
+/// In which order tables show the errors of a sensitivity result; the largest first.
+enum class RowOrder {
+  effect,        ///< index x sigma: what the error does at the size that the study gives it
+  index,         ///< in the units shown
+  name,          ///< a to z
+  study,         ///< as the study has them
+  not_converged  ///< share of the samples
+};
+
+/// What users call them, in the order of RowOrder.
+inline constexpr std::array<std::string_view, 5> kRowOrders{"effect", "index", "name", "order", "not-converged"};
+
+/// The errors of a sensitivity result, put in order by one response. Equal ones stay in the order of the study, and
+/// what is not known comes last.
+struct RankedErrors {
+  std::size_t response;            ///< position among the result's
+  std::vector<std::size_t> rows;   ///< positions of the errors in the order asked for
+  std::vector<std::size_t> ranks;  ///< [P] of each error by its effect, from 1
+};
+
+/// Precondition: the result has the response.
+RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order = RowOrder::effect);
+
+/// index x sigma(error), SI: indices alone do not compare, for some are per m and some per rad.
+double effect(const StoredResult& result, std::size_t response, std::size_t factor);
+
+/// Share of an error's samples that were not solved.
+double share_not_converged(const SensitivityResult& result, std::size_t factor);
+
+}  // namespace poesy

@@ -1,0 +1,147 @@
+function result = read_results(source, response, figure_file)
+% READ_RESULTS  The indices of a poesy sensitivity study, with names, units and intervals; draws them ranked.
+%
+%   result = read_results('study.h5')     MATLAB reads the result file itself
+%   result = read_results('tables')       Octave reads what `poesy export study.h5 -d tables` wrote; so can MATLAB
+%   read_results(source)                  draws what each error does to the first response that is a length
+%   read_results(source, 'angular_deformation')                          to another response
+%   result = read_results(source, 'linear_deformation', 'ranked.svg')    writes the figure to a file
+%
+% result, for P errors and R responses:
+%   factors, factor_units            {P x 1}  names and SI units of the errors
+%   responses, response_units        {R x 1}
+%   sigma                            [P x 1]  standard deviation of each error, SI
+%   index, index_low, index_high     [P x R]  global index and its interval, SI: response unit per factor unit
+%   effect, effect_low, effect_high  [P x R]  index x sigma, in effect_units {R x 1}: mm, deg
+%   rank                             [P x R]  rank(k, r) is the error that has the k-th largest effect on response r
+  if exist(source, 'dir') == 7
+    result = from_tables(source);
+  elseif exist(source, 'file') ~= 2
+    error('read_results:absent', '%s: there is no such file or folder', source);
+  elseif exist('h5read') == 0
+    error('read_results:octave', ['%s: Octave does not read result files; run "poesy export %s -d tables" and give ' ...
+          'read_results the folder tables'], source, source);
+  else
+    result = from_file(source);
+  end
+  if nargin < 2 || isempty(response)
+    response = default_response(result);
+  elseif ~any(strcmp(result.responses, response))
+    error('read_results:response', '%s: there is no response %s; it has %s', source, response, ...
+          strjoin(result.responses', ', '));
+  end
+  if nargin > 2
+    f = figure('Visible', 'off');
+    draw(result, response);
+    saveas(f, figure_file);
+    close(f);
+  elseif nargout == 0
+    figure();
+    draw(result, response);
+  end
+end
+
+function result = from_file(file)
+  try
+    filetype = char(h5readatt(file, '/', 'filetype'));
+  catch
+    filetype = 'none';
+  end
+  if ~strcmp(filetype, 'poesy-result')
+    error('read_results:filetype', '%s: not a result of poesy (attribute filetype: %s)', file, filetype);
+  end
+  version = h5readatt(file, '/', 'version');
+  if version(1) > 1
+    error('read_results:version', '%s: has version %d.%d, this reads 1.x; take the newer read_results.m', file, ...
+          version(1), version(2));
+  end
+  kind = char(h5readatt(file, '/', 'kind'));
+  if ~strcmp(kind, 'sensitivity')
+    error('read_results:kind', '%s: of kind %s, which has no indices; give a result of a sensitivity study', ...
+          file, kind);
+  end
+  % h5read gives the axes in reversed order: what the file has as [R x P] arrives as [P x R]. Names arrive as a string
+  % array or, in older versions, as a cell array; cellstr takes both.
+  result = assembled(cellstr(h5read(file, '/factors/name')), cellstr(h5read(file, '/factors/unit')), ...
+                     h5read(file, '/factors/sigma'), ...
+                     cellstr(h5read(file, '/responses/name')), cellstr(h5read(file, '/responses/unit')), ...
+                     h5read(file, '/sensitivity/global'), h5read(file, '/sensitivity/global_ci_low'), ...
+                     h5read(file, '/sensitivity/global_ci_high'));
+end
+
+function result = from_tables(folder)
+  for name = {'global.csv', 'factors.csv'}
+    if exist(fullfile(folder, name{1}), 'file') ~= 2
+      error('read_results:tables', ['%s: has no %s; give the folder that "poesy export RESULT.h5 -d FOLDER" made ' ...
+            'of a sensitivity result'], folder, name{1});
+    end
+  end
+  % factors.csv: sigma in SI and as people read it, 1000 times (mm) or 180 / pi times (deg) as much.
+  [factors, ~, sigma] = read_table(fullfile(folder, 'factors.csv'));
+  scale = sigma(:, 2) ./ sigma(:, 1);
+  factor_units = repmat({'1'}, numel(factors), 1);
+  factor_units(abs(scale / 1000 - 1) < 1e-6) = {'m'};
+  factor_units(abs(scale * pi / 180 - 1) < 1e-6) = {'rad'};
+  % global.csv: for each response index, lower and upper end in SI, then the same three in mm or deg. The header says
+  % "linear_deformation [m per m or rad]".
+  [~, columns, numbers] = read_table(fullfile(folder, 'global.csv'));
+  first = columns(1:6:end);
+  responses = regexprep(first, ' \[.*', '');
+  response_units = regexprep(first, '^.*\[(\S+) per .*$', '$1');
+  result = assembled(factors, factor_units, sigma(:, 1), responses, response_units, numbers(:, 1:6:end), ...
+                     numbers(:, 2:6:end), numbers(:, 3:6:end));
+end
+
+% A table of poesy: the first line names the columns, the first column the rows; the rest are numbers.
+function [rows, columns, numbers] = read_table(file)
+  lines = strsplit(strtrim(fileread(file)), char(10));
+  cells = cellfun(@(line) strsplit(line, ','), lines, 'UniformOutput', false);
+  cells = vertcat(cells{:});
+  rows = cells(2:end, 1);
+  columns = cells(1, 2:end)';
+  numbers = str2double(cells(2:end, 2:end));
+end
+
+function result = assembled(factors, factor_units, sigma, responses, response_units, index, low, high)
+  result.factors = factors(:);
+  result.factor_units = factor_units(:);
+  result.responses = responses(:);
+  result.response_units = response_units(:);
+  result.sigma = sigma(:);
+  result.index = index;
+  result.index_low = low;
+  result.index_high = high;
+  effect_units = result.response_units;
+  scale = ones(1, numel(effect_units));
+  scale(strcmp(effect_units, 'm')) = 1000;
+  scale(strcmp(effect_units, 'rad')) = 180 / pi;
+  effect_units(strcmp(effect_units, 'm')) = {'mm'};
+  effect_units(strcmp(effect_units, 'rad')) = {'deg'};
+  result.effect_units = effect_units;
+  to_effect = result.sigma * scale;
+  result.effect = index .* to_effect;
+  result.effect_low = low .* to_effect;
+  result.effect_high = high .* to_effect;
+  spread = result.effect;
+  spread(isnan(spread)) = -1;  % an index that is not known ranks last
+  [~, result.rank] = sort(spread, 1, 'descend');
+end
+
+function response = default_response(result)
+  choices = [find(strcmp(result.response_units, 'm')); 1];
+  response = result.responses{choices(1)};
+end
+
+function draw(result, response)
+  r = find(strcmp(result.responses, response));
+  order = result.rank(:, r);
+  rows = 1:numel(order);
+  barh(rows, result.effect(order, r));
+  hold('on');
+  plot([result.effect_low(order, r), result.effect_high(order, r)]', [rows; rows], 'k-');
+  hold('off');
+  set(gca(), 'YDir', 'reverse', 'YTick', rows, 'TickLabelInterpreter', 'none');
+  set(gca(), 'YTickLabel', result.factors(order));
+  xlabel(['global index x sigma [' result.effect_units{r} ']']);
+  title(response, 'Interpreter', 'none');
+end

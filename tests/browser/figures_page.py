@@ -1,0 +1,137 @@
+"""A page like a report's, with a figure of every type, in all its varieties, at the sizes of the largest studies.
+
+figures_page.py WEB PAGE.html writes it; WEB is the folder of the build with a report's scripts.
+"""
+
+import base64
+import html
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+RESPONSES = ["linear_deformation", "angular_deformation"]
+UNITS = ["mm per mm", "mrad per mm"]
+
+
+class Page:
+    def __init__(self):
+        self.random = np.random.default_rng(7)
+        self.figures = {}
+        self.arrays = {}
+
+    def array(self, numbers):
+        name = f"a{len(self.arrays)}"
+        self.arrays[name] = base64.b64encode(np.asarray(numbers, "<f4").tobytes()).decode()
+        return name
+
+    def interval(self, numbers, width=0.08):
+        numbers = np.asarray(numbers)
+        return {"value": self.array(numbers), "low": self.array(numbers * (1 - width)), "high": self.array(numbers * (1 + width))}
+
+
+def errors(count):
+    return [f"delta_{1 + i // 15}_{1 + i // 3 % 5}_{'xyz'[i % 3]}" for i in range(count)]
+
+
+def add_bars(page):
+    local = page.random.gamma(0.6, 1, (2, 71)) * [[1], [3e-6]]
+    local[:, 5] = np.nan
+    page.figures["ranking"] = {
+        "type": "bars", "choices": [{"label": "Response", "options": RESPONSES}],
+        "quantities": [
+            {"label": "Global index", "units": UNITS, **page.interval(local)},
+            {"label": "Effect at the size that the study sets", "units": [["mm"] * 40 + ["mrad"] * 31] * 2,
+             "value": page.array(local * 2), "low": None, "high": None},
+        ],
+        "items": errors(71), "sort": "value", "log": False}
+    page.figures["compared"] = {
+        "type": "bars", "quantities": [{"label": "Global index", "units": ["mm per mm"], **page.interval(page.random.gamma(1, 1, (2, 1, 9)))}],
+        "items": errors(9), "series": ["gauss-newton", "first-order"], "sort": "value", "log": False}
+    page.figures["removable"] = {
+        "type": "bars", "quantities": [{"label": "Change", "units": [""], "value": page.array([0.3, -0.2, 0.1, 0]), "low": None, "high": None}],
+        "items": ["a", "b", "c", "d"], "sort": "none", "log": False}
+    page.figures["decades"] = {
+        "type": "bars", "quantities": [{"label": "Nonlinearity", "units": ["1"], **page.interval(10 ** page.random.uniform(-7, 1, 20))}],
+        "items": errors(20), "sort": "value", "log": True}
+
+
+def coordinates(page, poses, count):
+    names = [("z", "mm"), ("alpha", "deg"), ("beta", "deg"), ("reach", "mm")]
+    low = np.array([500, -30, -20, 0.1])[:, None]
+    high = np.array([700, 30, 20, 0.4])[:, None]
+    return [{"name": name, "unit": unit, "value": page.array(numbers)}
+            for (name, unit), numbers in zip(names[:count], page.random.uniform(low, high, (4, poses)))]
+
+
+def add_fields(page, key, rows, poses, coordinate_count):
+    field = np.abs(np.sin(np.linspace(0, 9, poses))[None, :] * np.linspace(0.1, 2, rows)[:, None]) + 0.02
+    field[3 % rows, : poses // 5] = np.nan
+    columns = coordinates(page, poses, coordinate_count)
+    page.figures[f"map_{key}"] = {
+        "type": "heatmap", "rows": errors(rows), "columns": {"label": "pose", "coordinates": columns}, "log": key == "large",
+        "layers": [{"label": label, "unit": unit, "value": page.array(field * scale)} for label, unit, scale in zip(RESPONSES, UNITS, [1, 1e-5])]}
+    page.figures[f"workspace_{key}"] = {
+        "type": "workspace", "coordinates": columns,
+        "fields": [{"label": "Mean linear deformation", "unit": "mm", "value": page.array(field[-1])},
+                   {"label": "Local index", "unit": "mm per mm", "rows": errors(rows), "value": page.array(field)}]}
+
+
+def add_lines(page):
+    samples = np.geomspace(100, 20000, 12).astype(int)
+    def series(label, style="solid"):
+        end = page.random.gamma(1, 1)
+        numbers = end * (1 + page.random.normal(0, 1, 12) / np.sqrt(samples))
+        band = end * 2 / np.sqrt(samples)
+        return {"label": label, "style": style, "value": page.array(numbers), "low": page.array(numbers - band), "high": page.array(numbers + band)}
+    page.figures["history"] = {
+        "type": "lines", "x": {"label": "samples", "unit": "", "value": page.array(samples), "log": True}, "most": 8,
+        "panels": [{"label": label, "unit": unit, "series": [series(name) for name in errors(25)]} for label, unit in zip(RESPONSES, UNITS)]}
+    time = np.linspace(0, 2, 158)
+    curve = lambda phase: {"value": page.array(1e-4 * np.sin(3 * time + phase))}
+    page.figures["trajectory"] = {
+        "type": "lines", "x": {"label": "time", "unit": "s", "value": page.array(time), "log": False}, "most": 4,
+        "panels": [{"label": f"tip_{name}", "unit": "mm", "series": [
+            {"label": label, "style": style, **curve(k)} for k, (label, style) in
+            enumerate([("FS", "solid"), ("FS+T", "dashed"), ("FS+T+R, a set with quite a long name", "dotted")])]} for name in "xyzabc"]}
+
+
+def add_scatter(page):
+    first = page.random.gamma(0.7, 1, (2, 71))
+    page.figures["agreement"] = {
+        "type": "scatter", "choices": [{"label": "Response", "options": RESPONSES}],
+        "x": {"label": "gauss-newton", "value": page.array(first)},
+        "y": {"label": "first-order", "value": page.array(first * page.random.normal(1, 0.1, (2, 71)))},
+        "units": UNITS, "names": errors(71), "diagonal": True}
+
+
+def figures_page(web):
+    """The text of the page."""
+    page = Page()
+    add_bars(page)
+    add_fields(page, "small", 25, 158, 3)
+    add_fields(page, "large", 71, 1738, 4)
+    add_fields(page, "flat", 2, 12, 1)
+    add_lines(page)
+    add_scatter(page)
+    sections = "".join(
+        f'<section id="{key}" aria-labelledby="{key}-h"><h2 id="{key}-h">{key}</h2><p>Which errors matter, and where.</p>'
+        f'<figure data-figure="{key}"><div class="plot"></div><figcaption>What is seen.</figcaption></figure></section>'
+        for key in page.figures)
+    read = lambda name: (Path(web) / name).read_text()
+    data = json.dumps({"figures": page.figures, "arrays": page.arrays}).replace("<", "\\u003c")
+    policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:"
+    return (
+        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<meta http-equiv="Content-Security-Policy" content="{html.escape(policy)}">'
+        f'<title>Figures</title><style>{read("report.css")}</style></head><body><a class="skip" href="#main">Skip to the results</a>'
+        f'<header><h1>Figures</h1></header><main id="main">{sections}</main><footer>poesy</footer>'
+        f'<script type="application/json" id="report-data">{data}</script>'
+        + "".join(f"<script>{read(name)}</script>" for name in ("d3.js", "plot.js", "report.js"))
+        + "</body></html>")
+
+
+if __name__ == "__main__":
+    Path(sys.argv[2]).write_text(figures_page(sys.argv[1]))

@@ -1,0 +1,58 @@
+#include "engine/report/tolerance_table.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/report/text_table.h"
+#include "tests/engine/report/ranked_result.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+ResponseTolerances example() {
+  ResponseTolerances found{.response = 0, .all = {}, .limit = std::nullopt};
+  found.all.reference = ReferenceError{0, 1e-3};
+  found.all.equal_effect = {1e-3, 0.004, kInfinity, kNaN};
+  found.all.variance_share = {0.25, 0.75, 0.0, kNaN};
+  found.all.mean_square = {.background = 0.0, .effects = {0.25, 0.0, 0.0, 0.0}};
+  return found;
+}
+
+StoredResult result() {
+  StoredResult stored = ranked_result();
+  stored.factor_limb = {1, 1, 2, 3};
+  return stored;
+}
+
+TEST(ToleranceTable, HasTolerancesInTheUnitOfEachError) {
+  Table table = tolerance_table(result(), example());
+  EXPECT_EQ(table.notes[0],
+            "equal effect: as much as delta_b = 1 mm; with these, predicted root mean square of x: 0.5 mm");
+  table.notes.clear();
+  EXPECT_EQ(text_of(table, kUnlimitedWidth),
+            "Tolerances for x: standard deviations of normal errors\n"
+            "                              equal\n"
+            "error      kind     limb     effect  unit      index        low       high  share\n"
+            "                                           [mm/unit]  [mm/unit]  [mm/unit]    [%]\n"
+            "delta_b    linear      1     1       mm        0.4        0.3        0.5       25\n"
+            "epsilon_a  angular     1     0.2292  deg       1.745      1.571      3.491     75\n"
+            "delta_c    linear      2  no effect  mm        0.3        0.2        0.35       0\n"
+            "delta_a    linear      3          -  mm            -          -          -      -\n");
+}
+
+TEST(ToleranceTable, OfALimitHasBothWaysToShareIt) {
+  ResponseTolerances found = example();
+  found.limit =
+      LimitTolerances{.limit = 1e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
+  const Table table = tolerance_table(result(), found);
+  EXPECT_EQ(table.columns[4].name, "limit_equal_effect");
+  EXPECT_EQ(table.rows[0][4].text, "0.1");
+  EXPECT_EQ(table.rows[0][5].text, "1000");
+}
+
+}  // namespace
+}  // namespace poesy

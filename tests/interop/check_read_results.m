@@ -1,0 +1,71 @@
+% Checks results/read_results.m on the example results of tests/engine/io/example_result.h: from exported tables as Octave
+% reads them, and from the result file as MATLAB does, whose h5read and h5readatt are made up for in interop/matlab.
+% usage: octave-cli check_read_results.m SOURCES EXAMPLES; POESY_PYTHON in the environment
+1;
+
+function fails(call, words)
+  message = '';
+  try
+    call();
+  catch problem
+    message = problem.message;
+  end
+  assert(~isempty(message), ['no error; expected: ' words]);
+  assert(~isempty(strfind(message, words)), [message ' does not say: ' words]);
+end
+
+function check_values(result)
+  assert(result.factors, {'epsilon_1'; 'delta_1'});
+  assert(result.factor_units, {'rad'; 'm'});
+  assert(result.responses, {'angular_deformation'; 'linear_deformation'});
+  assert(result.response_units, {'rad'; 'm'});
+  assert(result.effect_units, {'deg'; 'mm'});
+  assert(result.sigma, [0.5 / sqrt(3); 0.001], -1e-15);
+  % Element (r, p) of array k is 1000 k + 100 r + 10 p, and the last of all is not known.
+  assert(result.index, [5000 5100; 5010 NaN]);
+  assert(result.index_low, [6000 6100; 6010 NaN]);
+  assert(result.index_high, [7000 7100; 7010 NaN]);
+  to_effect = [0.5 / sqrt(3); 0.001] * [180 / pi, 1000];
+  assert(result.effect, [5000 5100; 5010 NaN] .* to_effect, -1e-15);
+  assert(result.effect_low, [6000 6100; 6010 NaN] .* to_effect, -1e-15);
+  assert(result.effect_high, [7000 7100; 7010 NaN] .* to_effect, -1e-15);
+  assert(result.rank, [1 1; 2 2]);
+end
+
+function check_figure(source)
+  figure_file = [tempname() '.svg'];
+  read_results(source, 'angular_deformation', figure_file);
+  drawn = fileread(figure_file);
+  delete(figure_file);
+  for words = {'<svg', 'global index x sigma \[deg\]', 'epsilon', 'delta', '</svg>'}
+    assert(~isempty(regexp(drawn, words{1}, 'once')), ['the figure lacks ' words{1}]);
+  end
+  assert(numel(strfind(drawn, '<path')) > 5, 'the figure is empty');
+end
+
+warning('off', 'all');  % Octave's about its own fonts and gnuplot
+arguments = argv();
+sources = arguments{1};
+examples = arguments{2};
+addpath(fullfile(sources, 'results'));
+assert(any(strcmp(available_graphics_toolkits(), 'gnuplot')), 'Octave cannot draw; install gnuplot-nox and fonts-freefont-otf');
+
+tables = fullfile(examples, 'sensitivity');
+file = [tables '.h5'];
+from_tables = read_results(tables);
+check_values(from_tables);
+check_figure(tables);
+fails(@() read_results(fullfile(examples, 'absent')), 'no such file or folder');
+fails(@() read_results(examples), 'has no global.csv');
+fails(@() read_results(fullfile(examples, 'monte_carlo')), 'has no global.csv');
+fails(@() read_results(tables, 'absent_response'), 'it has angular_deformation, linear_deformation');
+fails(@() read_results(file), 'poesy export');
+
+addpath(fullfile(sources, 'tests', 'interop', 'matlab'));
+from_file = read_results(file);
+check_values(from_file);
+assert(isequaln(from_file, from_tables), 'tables and file give different results');
+fails(@() read_results([fullfile(examples, 'monte_carlo') '.h5']), 'of kind monte-carlo, which has no indices');
+fails(@() read_results(fullfile(tables, 'global.csv')), 'not a result of poesy');
+fails(@() read_results(fullfile(examples, 'newer.h5')), 'has version 2.0, this reads 1.x');
+fails(@() read_results(fullfile(examples, 'stranger.h5')), 'filetype: something-else');

@@ -1,0 +1,21 @@
+"""Writes files that are no results, or of a newer version, beside the examples.
+
+usage: make_strangers.py EXAMPLES
+"""
+
+import pathlib
+import sys
+
+import h5py
+
+
+def main(examples):
+    for name, filetype, version in (("newer", "poesy-result", [2, 0]), ("stranger", "something-else", [1, 0])):
+        with h5py.File(pathlib.Path(examples) / f"{name}.h5", "w") as file:
+            file.attrs["filetype"] = filetype
+            file.attrs["version"] = version
+    h5py.File(pathlib.Path(examples) / "nameless.h5", "w").close()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,240 @@
+#include "models/registry.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "engine/io/study_file.h"
+
+namespace poesy {
+namespace {
+
+/// A mechanism at one of its fidelities.
+struct Choice {
+  const CatalogEntry* entry;
+  std::size_t fidelity;
+};
+
+std::vector<Choice> choices() {
+  std::vector<Choice> list;
+  for (const CatalogEntry& entry : registry()) {
+    for (std::size_t f = 0; f < std::max<std::size_t>(entry.description.fidelities.size(), 1); ++f) {
+      list.push_back({&entry, f});
+    }
+  }
+  return list;
+}
+
+std::string name_of(const testing::TestParamInfo<Choice>& info) {
+  std::string name = info.param.entry->description.name + "_" + std::to_string(info.param.fidelity);
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+/// What every mechanism of the registry promises, whatever it is (models/README.md).
+class EveryMechanism : public testing::TestWithParam<Choice> {
+ protected:
+  static const ModelDescription& description() { return GetParam().entry->description; }
+
+  static std::vector<double> published() {
+    std::vector<double> geometry;
+    for (const GeometryParameter& parameter : description().geometry) geometry.push_back(parameter.published);
+    return geometry;
+  }
+
+  const std::unique_ptr<Model> model_ = GetParam().entry->build(published(), GetParam().fidelity);
+
+  /// Reachable poses inside the description's workspace, drawn with a fixed seed: at least three of four.
+  std::vector<std::vector<double>> poses() const {
+    std::mt19937_64 random(20260101);
+    std::vector<std::vector<double>> reachable;
+    for (int k = 0; k < 40; ++k) {
+      std::vector<double> pose;
+      for (std::size_t c = 0; c < description().pose_coordinates.size(); ++c) {
+        const double share = std::uniform_real_distribution<>(0.0, 1.0)(random);
+        pose.push_back(std::lerp(description().pose_lower[c], description().pose_upper[c], share));
+      }
+      if (!model_->unreachable(pose)) reachable.push_back(pose);
+    }
+    EXPECT_GE(reachable.size(), 30u);
+    return reachable;
+  }
+};
+
+/// What a block gives.
+struct Outcomes {
+  std::vector<double> responses;  ///< [R x B]
+  std::vector<SolveStatus> status;
+  std::vector<std::uint32_t> iterations;
+};
+
+Outcomes solve(Evaluator& evaluator, const ModelDescription& model, std::span<const double> pose,
+               std::span<const FactorIndex> varied, std::span<const double> values, std::size_t count) {
+  const std::vector<double> none(model.factors.size(), 0.0);
+  Outcomes found{std::vector<double>(model.responses.size() * count), std::vector<SolveStatus>(count),
+                 std::vector<std::uint32_t>(count)};
+  evaluator.evaluate({pose, none, varied, values, count}, {found.responses, found.status, found.iterations, {}});
+  return found;
+}
+
+/// Names stand in study files, tables and on the command line without quotes.
+void expect_plain_and_different(const std::vector<std::string>& names) {
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  for (const std::string& name : names) {
+    EXPECT_FALSE(name.empty());
+    EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-"),
+              std::string::npos)
+        << name;
+  }
+}
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& things) {
+  std::vector<std::string> names;
+  for (const Named& thing : things) names.push_back(thing.name);
+  return names;
+}
+
+TEST_P(EveryMechanism, NamesThingsPlainlyAndOnce) {
+  const ModelDescription& model = description();
+  expect_plain_and_different({model.name});
+  expect_plain_and_different(names_of(model.geometry));
+  expect_plain_and_different(names_of(model.pose_coordinates));
+  expect_plain_and_different(names_of(model.responses));
+  expect_plain_and_different(names_of(model.joints));
+  expect_plain_and_different(names_of(model.charts));
+  expect_plain_and_different(names_of(model.curves));
+  // A case of errors names factors and sets side by side, and linear and angular besides.
+  std::vector<std::string> of_errors = names_of(model.factors);
+  for (const std::string& set : names_of(model.factor_sets)) of_errors.push_back(set);
+  of_errors.insert(of_errors.end(), {"linear", "angular"});
+  expect_plain_and_different(of_errors);
+}
+
+TEST_P(EveryMechanism, SaysTheSameBeforeAndAfterItIsBuilt) {
+  EXPECT_EQ(model_->description().name, description().name);
+  EXPECT_EQ(names_of(model_->description().factors), names_of(description().factors));
+  EXPECT_EQ(names_of(model_->description().responses), names_of(description().responses));
+  EXPECT_EQ(names_of(model_->description().joints), names_of(description().joints));
+}
+
+TEST_P(EveryMechanism, HasPositionsThatExist) {
+  const ModelDescription& model = description();
+  for (const FactorSet& set : model.factor_sets) {
+    EXPECT_FALSE(set.factors.empty()) << set.name;
+    EXPECT_TRUE(std::ranges::is_sorted(set.factors)) << set.name;
+    for (const FactorIndex factor : set.factors) EXPECT_LT(factor.value, model.factors.size()) << set.name;
+  }
+  for (const std::size_t response : model.headline) EXPECT_LT(response, model.responses.size());
+  for (const std::size_t response : model.signed_headline) EXPECT_LT(response, model.responses.size());
+  if (model.deformation) {
+    EXPECT_LT(model.deformation->response, model.responses.size());
+  }
+  for (const NamedCurve& curve : model.curves) {
+    ASSERT_LT(curve.chart, model.charts.size()) << curve.name;
+    EXPECT_EQ(curve.origin.size(), model.charts[curve.chart].coordinates.size()) << curve.name;
+    EXPECT_EQ(curve.at(curve.start).size(), curve.origin.size()) << curve.name;
+    EXPECT_LT(curve.start, curve.end) << curve.name;
+  }
+  if (model.separation) {
+    EXPECT_EQ(model.separation->published.size(), model.factors.size());
+  }
+  for (const Factor& factor : model.factors) EXPECT_GE(factor.limb, 1u) << factor.name;
+}
+
+TEST_P(EveryMechanism, HasSourcesThatShareNoFactor) {
+  std::set<std::size_t> taken;
+  for (const CouplingSource& source : description().sources) {
+    ASSERT_NE(description().find_set(source.set), nullptr) << source.name;
+    for (const FactorIndex factor : description().find_set(source.set)->factors) {
+      EXPECT_TRUE(taken.insert(factor.value).second) << source.name;
+    }
+  }
+}
+
+TEST_P(EveryMechanism, HasAWorkspaceInsideReach) {
+  for (const std::vector<double>& pose : poses()) {
+    EXPECT_EQ(model_->joint_displacements(pose).size(), description().joints.size());
+    EXPECT_GE(model_->condition(pose), 1.0);
+    if (description().separation) {
+      EXPECT_EQ(model_->separation(pose).effect.size(), description().factors.size());
+    }
+  }
+}
+
+/// To rounding.
+TEST_P(EveryMechanism, RespondsNothingToNoError) {
+  const std::unique_ptr<Evaluator> evaluator = model_->evaluator({});
+  for (const std::vector<double>& pose : poses()) {
+    const Outcomes found = solve(*evaluator, description(), pose, {}, {}, 1);
+    EXPECT_TRUE(solved(found.status[0]));
+    for (const double response : found.responses) EXPECT_NEAR(response, 0.0, 1e-13);
+  }
+}
+
+/// In every bit: a sample does not depend on its neighbours, nor on what was solved before.
+TEST_P(EveryMechanism, SolvesSamplesOfABlockAsItSolvesThemAlone) {
+  constexpr std::size_t kCount = 21;
+  const ModelDescription& model = description();
+  std::vector<FactorIndex> varied;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) varied.emplace_back(f);
+  std::mt19937_64 random(20260102);
+  std::vector<double> values(varied.size() * kCount);
+  for (double& value : values) value = std::normal_distribution<>(0.0, 1e-4)(random);
+  const std::vector<std::vector<double>> some = poses();
+  const std::unique_ptr<Evaluator> evaluator = model_->evaluator({});
+  const std::unique_ptr<Evaluator> another = model_->evaluator({});
+  for (std::size_t m = 0; m < 5; ++m) {
+    const Outcomes block = solve(*evaluator, model, some[m], varied, values, kCount);
+    for (std::size_t b = 0; b < kCount; ++b) {
+      std::vector<double> own;
+      for (std::size_t v = 0; v < varied.size(); ++v) own.push_back(values[v * kCount + b]);
+      const Outcomes alone = solve(*another, model, some[m], varied, own, 1);
+      EXPECT_EQ(alone.status[0], block.status[b]);
+      EXPECT_EQ(alone.iterations[0], block.iterations[b]);
+      for (std::size_t r = 0; r < model.responses.size(); ++r) {
+        EXPECT_EQ(alone.responses[r], block.responses[r * kCount + b]) << model.responses[r].name;
+      }
+    }
+  }
+}
+
+TEST_P(EveryMechanism, ShowsASolveThatGivesTheSame) {
+  const std::unique_ptr<Evaluator> evaluator = model_->evaluator({});
+  const std::vector<double> pose = poses().front();
+  std::vector<double> errors(description().factors.size(), 0.0);
+  errors[0] = 1e-4;
+  const std::optional<SolveTrace> trace = model_->trace(pose, errors, {});
+  if (!trace) GTEST_SKIP() << "the model shows no iterations";
+  const std::vector<FactorIndex> varied{FactorIndex(0)};
+  const Outcomes found = solve(*evaluator, description(), pose, varied, std::span(errors).first(1), 1);
+  ASSERT_EQ(trace->responses.size(), found.responses.size());
+  for (std::size_t r = 0; r < found.responses.size(); ++r) {
+    EXPECT_NEAR(trace->responses[r], found.responses[r], 1e-12) << description().responses[r].name;
+  }
+}
+
+TEST_P(EveryMechanism, BoundsErrorsAboveZero) {
+  for (std::size_t f = 0; f < description().factors.size(); ++f) {
+    EXPECT_GT(model_->error_bound(FactorIndex(f)).size, 0.0) << description().factors[f].name;
+  }
+}
+
+TEST_P(EveryMechanism, HasTemplatesThatReadBack) {
+  for (const Analysis::Kind kind : kKinds) {
+    if (kind == Analysis::Kind::identification && !description().deformation) continue;
+    if (kind == Analysis::Kind::coupling && description().sources.empty()) continue;
+    const Study study = study_of_text(template_text(*GetParam().entry, kind), "template", registry(), StudyUse::run);
+    EXPECT_EQ(study.analysis.kind, kind);
+    const std::string text = resolved_text(study);
+    EXPECT_EQ(resolved_text(study_of_text(text, "resolved", registry(), StudyUse::run)), text);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryMechanism, testing::ValuesIn(choices()), name_of);
+
+}  // namespace
+}  // namespace poesy
