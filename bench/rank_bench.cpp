@@ -87,11 +87,12 @@ void measure_both(Team& team, std::size_t units_per_cell) {
   {
     const Plan plan(study, poses);
     const std::size_t responses = model->description().responses.size();
-    const UnitStats unit{std::vector(responses, Moments::of(numbers())), counts(), {}};
-    SensitivityCollector collect(plan, responses);
+    const SensitivityUnit unit{{std::vector(responses, Moments::of(numbers())), counts(), {}}, {}};
+    SensitivityCollector collect(plan, responses, study.analysis.conf_level);
     measure(
-        "sensitivity", plan, unit, team, [&](const WorkUnit& of, const UnitStats& stats) { collect.add(of, stats); },
-        [&](ByteReader& from) { return UnitStats::read(from, responses, 0); });
+        "sensitivity", plan, unit, team,
+        [&](const WorkUnit& of, const SensitivityUnit& found) { collect.add(of, found); },
+        [&](ByteReader& from) { return SensitivityUnit::read(from, responses, 0, 0); });
   }
   // As many units at few poses: what is done once for a pose does not count in long studies.
   study.analysis.kind = Analysis::Kind::monte_carlo;

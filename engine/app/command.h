@@ -13,6 +13,7 @@ void add_run(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_evaluate(CLI::App& program, Action& action);
 void add_show(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_merge(CLI::App& program, Action& action);

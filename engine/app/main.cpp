@@ -44,7 +44,7 @@ void add_commands(CLI::App& program, Action& action) {
   };
   group("Prepare a study", {add_models, add_template, add_check});
   group("Compute", {add_run, add_merge, add_evaluate});
-  group("Look at results", {add_show, add_tolerances, add_replay, add_export, add_verify});
+  group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
   group("About the program", {add_completion, add_man});
 }
 

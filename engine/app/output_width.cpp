@@ -17,7 +17,7 @@ constexpr std::size_t kUsualWidth = 80;
 
 std::size_t output_width() {
   if (::isatty(STDOUT_FILENO) == 0) return kUnlimitedWidth;
-  if (const std::size_t width = terminal_width(STDOUT_FILENO); width > 0) return width;
+  if (const std::size_t columns = terminal_width(STDOUT_FILENO); columns > 0) return columns;
   const char* columns = std::getenv("COLUMNS");
   const auto width = columns != nullptr ? parse_number(columns) : std::nullopt;
   return width && *width >= 1.0 && *width < 1e6 ? static_cast<std::size_t>(*width) : kUsualWidth;

@@ -24,7 +24,7 @@
 namespace poesy::app {
 namespace {
 
-constexpr std::uint64_t kMostNumber = 1000000;  ///< of lines and characters
+constexpr std::uint64_t kMostAsked = 1000000;  ///< rows, characters
 constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --json";
 
 struct Options {
@@ -105,14 +105,14 @@ void add_show(CLI::App& program, Action& action) {
                                fmt::join(kRowOrders, ", ")))
       ->type_name("KEY");
   add_whole_number(*command, "--top", "--top", options->top, "only the first N errors of a sensitivity result", 1,
-                   kMostNumber)
+                   kMostAsked)
       ->type_name("N");
   add_whole_number(*command, "--width", "--width", options->width,
-                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostNumber)
+                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostAsked)
       ->type_name("N");
   command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
   command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
-                              {"the ten errors that another response ranks first",
+                              {"the ten errors that matter most to another response",
                                "poesy show result.h5 --response angular_deformation --top 10"}}));
   command->callback([options, &action] { action = [options] { return show(*options); }; });
 }

@@ -1,15 +1,12 @@
-#include <unistd.h>
-
 #include <array>
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <system_error>
 
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/io/content_hash.h"
 #include "engine/io/file_writer.h"
+#include "engine/io/output_path.h"
 #include "engine/io/result_file.h"
 #include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
@@ -188,30 +185,7 @@ void write_shard(const std::string& path, const Study& study, const SelectedPose
 }
 
 void check_result_path(const std::string& path, std::span<const std::string> inputs) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  std::error_code ignored;
-  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    throw InputError({.file = path}, fs::is_directory(path, ignored) ? "is a folder" : "is not a plain file",
-                     "name a file for the result");
-  }
-  for (const std::string& input : inputs) {
-    if (fs::equivalent(path, input, ignored)) {
-      throw InputError({.file = path}, "is also an input, which the result would replace", "name another file with -o");
-    }
-  }
-  if (fs::exists(path, ignored) && !may_be_replaced(path)) {
-    throw InputError({.file = path}, "exists and is no result of poesy, and it would be lost",
-                     "name another file with -o, or remove it");
-  }
-  if (!fs::is_directory(folder, ignored)) {
-    throw InputError({.file = path}, "its folder " + folder.string() + " does not exist", "make it or choose another");
-  }
-  if (!fs::path(path).has_filename()) throw InputError({.file = path}, "names no file", "name a file for the result");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    const std::string reason = std::generic_category().message(errno);
-    throw FileError(path, "cannot be written into its folder (" + reason + ")", "choose another folder");
-  }
+  check_output_path(path, {"result", may_be_replaced}, inputs);
 }
 
 }  // namespace poesy

@@ -21,19 +21,20 @@ std::string number_text(double value, int digits = 4);
 std::string percent_text(double share);
 
 /// A column of texts. dispensable: as of Column.
+/// A column of words.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
-/// A column of numbers, in this unit.
+/// A column of numbers in one unit, or in none.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
-/// A share, in percent.
+/// A column of shares, in percent.
 Column percent_column(std::string name, std::string heading, int dispensable = 0);
 
-/// "-" for an empty text.
+/// A word; "-" for an empty text.
 Cell text_cell(std::string_view text);
-/// As number_text, with the number itself.
+/// A number to this many significant digits.
 Cell number_cell(double value, int digits = 4);
-/// As count_text, with the count itself.
+/// A whole number with all its digits.
 Cell count_cell(std::uint64_t count);
-/// For a percent_column, of a share.
+/// A share, for a percent_column.
 Cell percent_cell(double share);
 /// An index or an end of its interval, shown as index * scale; what is rounding in SI is shown as 0.
 Cell index_cell(double index, double scale);

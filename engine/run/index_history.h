@@ -16,8 +16,8 @@ namespace poesy {
 
 /// What the global indices of a sensitivity study were at its history points (engine/study/history_points.h), put
 /// together as units are merged. As soon as all poses of a slot have reached a point, its indices are computed and what
-/// the poses had is dropped: as cells are solved slot by slot, one slot's is in memory at a time, 16 bytes for each
-/// response, pose and point, and of interrupted runs and shards that of the slots which they cut.
+/// the poses had is dropped: as cells are solved slot by slot, that of one slot is in memory at a time, 16 bytes for
+/// each response, pose and point; of continued runs and of shards, that of the slots which they cut besides.
 class HistoryCollector {
  public:
   /// Refers to the plan.

@@ -107,12 +107,9 @@ PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
 /// seen2 follows noise2 / f times a chi-square of f = 2 noise2^2 / noise_variance degrees of freedom (Satterthwaite).
 bool may_be_noise(const PoseStatistics& s, double level) {
   if (s.seen2 == 0.0) return true;
-  if (s.noise_variance == 0.0) return false;
-  const double shape = square(s.noise2) / s.noise_variance;
-  const double seen = s.seen2 * s.noise2 / s.noise_variance;
-  // Beyond the range of numbers nothing can be said.
-  if (!std::isfinite(shape) || shape == 0.0 || !std::isfinite(seen)) return false;
-  return boost::math::gamma_q(shape, seen) > level;
+  const double noise4 = square(s.noise2);
+  if (noise4 == 0.0 || s.noise_variance == 0.0) return false;  // either may have underflowed alone
+  return boost::math::gamma_q(noise4 / s.noise_variance, s.seen2 * s.noise2 / s.noise_variance) > level;
 }
 
 /// The true spreads that the data do not contradict: |spread2() - x^2| <= z sqrt(variance if x were true), which, other

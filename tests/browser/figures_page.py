@@ -75,6 +75,7 @@ def add_fields(page, key, rows, poses, coordinate_count):
     page.figures[f"workspace_{key}"] = {
         "type": "workspace", "coordinates": columns,
         "fields": [{"label": "Mean linear deformation", "unit": "mm", "value": page.array(field[-1])},
+                   {"label": "Signed change", "unit": "1", "value": page.array(1e-5 * (field[0] - field[-1]))},
                    {"label": "Local index", "unit": "mm per mm", "rows": errors(rows), "value": page.array(field)}]}
 
 

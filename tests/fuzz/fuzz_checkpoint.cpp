@@ -7,6 +7,7 @@
 #include "engine/io/sha256.h"
 #include "engine/run/evaluation_state.h"
 #include "engine/run/monte_carlo_collector.h"
+#include "engine/run/sensitivity.h"
 #include "engine/run/sensitivity_collector.h"
 #include "tests/fuzz/small_plans.h"
 #include "tests/fuzz/target.h"
@@ -31,7 +32,7 @@ void offer(State state, const Make& make, const Use& use) {
 void offer_to_sensitivity(State state) {
   static const fuzz::SmallPlan small(Analysis::Kind::sensitivity);
   const Plan& plan = small.plan;
-  const auto make = [&] { return SensitivityCollector(plan, fuzz::kResponses); };
+  const auto make = [&] { return SensitivityCollector(plan, fuzz::kResponses, 0.95); };
   offer(state, make, [&](SensitivityCollector&& collector) {
     bool complete = true;
     for (std::size_t cell = 0; cell < plan.cells(); ++cell) {
@@ -39,7 +40,9 @@ void offer_to_sensitivity(State state) {
       complete = complete && collector.units_done(cell) == plan.units_per_cell();
     }
     static_cast<void>(collector.total());
-    if (complete) static_cast<void>(std::move(collector).cells());
+    if (!complete) return;
+    const std::vector<double> background(fuzz::kResponses * plan.poses().size());
+    static_cast<void>(collector.history(sensitivity_result(plan, std::move(collector).cells(), background, 0.95)));
   });
 }
 

@@ -1,4 +1,4 @@
-// A result file, or a shard of one. What reads is printed and exported. A crash or a hang of HDF5 in the child that
+// A result file, or a shard of one. What reads is printed, reported and exported. A crash or a hang of HDF5 in the child that
 // reads first (engine/io/trial_read.h) is no finding; one in this process is.
 #include <sys/resource.h>
 
@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
+#include "engine/report/html/report.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
@@ -55,6 +56,8 @@ void use(const std::string& path) {
     static_cast<void>(text_of(tables, width));
   }
   static_cast<void>(json_of(result, tables));
+  const ReportedResult reported{result, path};
+  static_cast<void>(html_report({&reported, 1}));
   for (const std::string& table : export_tables(path, folder())) {
     fuzz::expect(std::filesystem::path(table).parent_path() == folder(), "a table lies in the folder that was named");
     ::unlink(table.c_str());

@@ -77,6 +77,17 @@ def check_sensitivity(path):
 
     check_tolerances(opened(path, "tolerances"))
 
+    history = opened(path, "sensitivity/history")
+    expect(history.coords["samples"], [50, 100])
+    for array, name in enumerate(["global", "global_ci_low", "global_ci_high"], start=8):
+        assert history[name].dims == ("response", "factor", "samples"), name
+        expected = numbered(array, 2)
+        if name != "global_ci_high":
+            expected[-1, -1, -1] = 1000 * array + 110 + 1 / 8
+        expect(history[name], expected)
+    assert history["global"].sel(response="linear_deformation", factor="epsilon_1", samples=50) == 8100
+    assert history.attrs["conf_level"] == history["global_ci_low"].attrs["conf_level"] == 0.95
+
     solver = opened(path, "solver")
     cell = np.arange(8).reshape(2, 4)
     assert solver["not_converged"].dims == ("factor", "pose")

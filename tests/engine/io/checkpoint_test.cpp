@@ -92,15 +92,18 @@ TEST(Checkpoint, RefusesContentThatDoesNotFitEvenWithItsDigest) {
   }
 }
 
-TEST(Checkpoint, SaysThatItsFormatIsNewer) {
+TEST(Checkpoint, SaysThatItsFormatIsAnother) {
   const Bytes file = encoded({});
-  Bytes content(file.begin(), file.end() - 32);
-  content[16] = std::byte{2};
-  try {
-    static_cast<void>(decode_checkpoint(sealed(std::move(content))));
-    ADD_FAILURE();
-  } catch (const BytesError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 2"), std::string::npos);
+  for (const unsigned version : {1U, 3U}) {
+    Bytes content(file.begin(), file.end() - 32);
+    content[16] = std::byte(version);
+    try {
+      static_cast<void>(decode_checkpoint(sealed(std::move(content))));
+      ADD_FAILURE();
+    } catch (const BytesError& error) {
+      const std::string expected = "version " + std::to_string(version) + ", and this program knows 2";
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
   }
 }
 

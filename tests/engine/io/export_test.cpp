@@ -52,6 +52,8 @@ TEST_F(Export, SensitivityHasThePromisedTables) {
                                       "factors.csv",
                                       "failures.csv",
                                       "global.csv",
+                                      "history_angular_deformation.csv",
+                                      "history_linear_deformation.csv",
                                       "iterations_max.csv",
                                       "iterations_mean.csv",
                                       "local_angular_deformation.csv",
@@ -101,6 +103,17 @@ TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
   EXPECT_EQ(table[1][7], "5100");
   EXPECT_DOUBLE_EQ(parse_number(table[1][10]).value(), 5100.0 * 1e3 * std::numbers::pi / 180.0);  // mm per deg
   EXPECT_EQ(table[2][7], "NaN");
+}
+
+TEST_F(Export, HistoryHasARowForEachNumberOfSamples) {
+  export_tables(folder_ / "s.h5", folder_.path());
+  EXPECT_EQ(read_table(folder_ / "history_linear_deformation.csv"),
+            (std::vector<Cells>{{"factor", "samples", "index [m per rad or m]", "index_ci_low [m per rad or m]",
+                                 "index_ci_high [m per rad or m]"},
+                                {"epsilon_1", "50", "8100", "9100", "10100"},
+                                {"epsilon_1", "100", "8100.125", "9100.125", "10100.125"},
+                                {"delta_1", "50", "8110", "9110", "10110"},
+                                {"delta_1", "100", "8110.125", "9110.125", "NaN"}}));
 }
 
 TEST_F(Export, LocalTableHasFactorsDownAndPosesAcross) {

@@ -58,6 +58,8 @@ TEST_F(ConvergenceFile, OfASensitivityResult) {
   const StoredResult stored = read_result(path_);
   ASSERT_TRUE(stored.sensitivity.convergence);
   expect_same(*stored.sensitivity.convergence, *result.convergence);
+  EXPECT_FALSE(stored.sensitivity.history);
+  EXPECT_FALSE(h5::File::open(path_).exists("/sensitivity/history"));
   EXPECT_NE(stored.study_text.find("samples.relative_error = 0.25\n"), std::string::npos) << stored.study_text;
 
   export_tables(path_, folder_.file("tables"));

@@ -74,6 +74,11 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   expect_same(found.global_ci_low, expected.global_ci_low, "global_ci_low");
   expect_same(found.global_ci_high, expected.global_ci_high, "global_ci_high");
   expect_same(found.background, expected.background, "background");
+  ASSERT_TRUE(found.history);
+  EXPECT_EQ(found.history->samples, expected.history->samples);
+  expect_same(found.history->global, expected.history->global, "history global");
+  expect_same(found.history->global_ci_low, expected.history->global_ci_low, "history global_ci_low");
+  expect_same(found.history->global_ci_high, expected.history->global_ci_high, "history global_ci_high");
   EXPECT_EQ(found.failures, expected.failures);
   ASSERT_EQ(found.solves.size(), expected.solves.size());
   for (std::size_t cell = 0; cell < found.solves.size(); ++cell) {

@@ -33,6 +33,7 @@ Bits bits_of(const ConvergenceResult& found) {
 }
 
 Bits bits_of(const SensitivityResult& found) {
+  EXPECT_FALSE(found.history) << "what a history would say is in the convergence";
   Bits bits = bits_of(found.convergence.value());
   for (const auto* values : {&found.local, &found.local_ci_high, &found.global, &found.global_ci_low, &found.count,
                              &found.mean, &found.std}) {

@@ -85,6 +85,8 @@ TEST_P(Extension, GivesTheBitsOfAFreshRun) {
                                     {unit, unit + 300},
                                     {unit + 300, 2 * unit},
                                     {unit + 300, unit + 400},
+                                    {2 * unit, 3 * unit},
+                                    {2 * unit + 300, 5 * unit},
                                     {std::size_t{300}, unit + 1}}) {
     const Prepared shorter(study_of(GetParam(), fewer));
     const Prepared longer(study_of(GetParam(), more));
@@ -211,6 +213,23 @@ TEST_P(Continuation, TakesOrRefusesAnyOtherBytes) {
       changed.back()[at] ^= flip;
       static_cast<void>(accepted(prepared, changed));
       changed.back()[at] ^= flip;
+    }
+  }
+}
+
+TEST_P(Sharding, MergesOrRefusesAnyOtherBytes) {
+  // Likewise.
+  const Prepared prepared(study_of(GetParam(), Plan::kUnitSamples + 300));
+  States changed = run_shard(prepared, {0, 4});
+  for (std::size_t index = 1; index < 4; ++index) {
+    const States next = run_shard(prepared, {index, 4});
+    for (std::size_t k = 0; k < next.size(); ++k) changed[k].insert(changed[k].end(), next[k].begin(), next[k].end());
+  }
+  for (std::size_t at = 0; at < changed.front().size(); at += 1 + changed.front().size() / 1000) {
+    for (const auto flip : {std::byte{1}, std::byte{0x3f}, std::byte{0x80}, std::byte{0xff}}) {
+      changed.front()[at] ^= flip;
+      static_cast<void>(accepted(prepared, changed));
+      changed.front()[at] ^= flip;
     }
   }
 }

@@ -59,6 +59,13 @@ inline Bits bits_of(const SensitivityResult& result) {
   }
   for (const SolveCounts& solves : result.solves) append(bits, solves);
   append(bits, result.failures);
+  if (result.history) {
+    bits.insert(bits.end(), result.history->samples.begin(), result.history->samples.end());
+    for (const auto* values :
+         {&result.history->global, &result.history->global_ci_low, &result.history->global_ci_high}) {
+      append(bits, *values);
+    }
+  }
   return bits;
 }
 

@@ -1,6 +1,8 @@
 // Ranked horizontal bars with the interval of each; several series stand below each other, told apart by filling.
 
 const FIRST_BARS = 25;
+const BAR = 14; // px
+const BAR_GAP = 8;
 const SERIES_FILLS = [
   { fill: "var(--first)", stroke: "var(--first)" },
   { fill: "var(--second-light)", stroke: "var(--second)" },
@@ -51,127 +53,50 @@ function bars(figure, data) {
     const [value, low, high] = [quantity.value, quantity.low, quantity.high].map((name) => at(values(name)));
     const largest = names.map((_, p) => d3.max(series, (_, s) => Math.abs(value(s, p))));
     const order = data.sort === "none" ? d3.range(names.length) : ranked(largest);
-    return order
-      .slice(0, all ? names.length : FIRST_BARS)
-      .flatMap((p) =>
-        series.map((_, s) => ({
-          name: names[p],
-          unit: unitOf(p),
-          series: s,
-          value: value(s, p),
-          low: low(s, p),
-          high: high(s, p),
-        })),
-      );
+    return order.slice(0, all ? names.length : FIRST_BARS).flatMap((p) =>
+      series.map((_, s) => ({
+        name: names[p],
+        unit: unitOf(p),
+        series: s,
+        value: value(s, p),
+        low: low(s, p),
+        high: high(s, p),
+      })),
+    );
   }
 
   function drawBars(rows, width) {
     const oneUnit = new Set(rows.map(({ unit }) => unit)).size === 1;
-    const ends = rows
-      .flatMap(({ value, low, high }) => [value, low, high])
-      .filter((v) => Number.isFinite(v) && (!data.log || v > 0));
-    const log = Boolean(data.log) && ends.length > 0;
-    const domain = log
-      ? [d3.min(ends) / 1.3, d3.max(ends) * 1.3]
-      : [Math.min(0, d3.min(ends)), Math.max(0, d3.max(ends)) || 1];
-    const axis = log ? { factor: 1, unit: rows[0].unit } : axisUnit(domain, rows[0].unit);
-    const scaled = (v) => (log && !(v > 0) ? NaN : v / axis.factor);
+    const axis = barAxis(rows, data.log, oneUnit ? rows[0].unit : undefined);
     const valueText = ({ value, unit }) => (oneUnit ? number(value / axis.factor) : withUnit(number(value), unit));
-
+    const said = (d) => [d.name, series[d.series], withInterval(d, d.unit)].filter(Boolean).join("\n");
     const marginLeft = Math.min(textWidth(...rows.map(({ name }) => name)) + 10, width * 0.42);
     const marginRight = textWidth(...rows.map(valueText)) + 14;
-    const thickness = series.length === 1 ? 13 : 14;
-    const step = thickness * series.length + (series.length === 1 ? 8 : 10);
-    const count = rows.length / series.length;
-    const offset = (s) => (s + 0.5 - series.length / 2) * thickness;
-    const channels = (s) => ({ y: "name", dy: offset(s) });
-    const tip = ({ name, series: s, value, low, high, unit }) =>
-      [
-        name,
-        series[s],
-        withUnit(number(value), unit),
-        Number.isFinite(low) ? `interval ${number(low)} to ${withUnit(number(high), unit)}` : "",
-      ]
-        .filter(Boolean)
-        .join("\n");
-
-    // Behind whatever of the bar and its interval reaches farthest to the right.
-    const labelAt = ({ value, high }) =>
-      Math.max(domain[0], d3.max([value, high, log ? domain[0] : 0].filter(Number.isFinite)));
-
-    const marks = series.flatMap((_, s) => {
-      const mine = rows.filter((d) => d.series === s);
-      const { fill, stroke } = series.length === 1 ? { fill: "var(--bar)", stroke: "var(--bar)" } : SERIES_FILLS[s % 2];
-      const base = log ? domain[0] : 0;
-      return [
-        log
-          ? [
-              Plot.ruleY(mine, { ...channels(s), x1: base, x2: (d) => scaled(d.value), stroke, strokeOpacity: 0.35 }),
-              Plot.dot(mine, { ...channels(s), x: (d) => scaled(d.value), r: 4, fill, stroke }),
-            ]
-          : Plot.rect(mine, {
-              x1: 0,
-              x2: (d) => scaled(d.value),
-              y: "name",
-              insetTop: offset(s) + step / 2 - thickness / 2 + 0.5,
-              insetBottom: step / 2 - offset(s) - thickness / 2 + 0.5,
-              fill,
-              stroke,
-              strokeWidth: 1,
-            }),
-        Plot.ruleY(
-          mine.filter((d) => Number.isFinite(d.low)),
-          {
-            ...channels(s),
-            x1: (d) => scaled(d.low),
-            x2: (d) => scaled(d.high),
-            stroke: "var(--ink)",
-            strokeWidth: 1.2,
-            marker: "tick",
-          },
-        ),
-        Plot.text(mine, {
-          ...channels(s),
-          x: (d) => scaled(labelAt(d)),
-          text: valueText,
-          textAnchor: "start",
-          dx: 6,
-          fontVariant: "tabular-nums",
-        }),
-      ].flat();
-    });
-    const svg = draw(describe(rows), {
+    const shown = rows.filter((d) => d.series === 0).map(({ name }) => name);
+    const step = BAR * series.length + BAR_GAP;
+    const svg = draw(sentence(rows), {
       width,
-      height: count * step + 26,
+      height: shown.length * step + 26,
       marginLeft,
       marginRight,
       marginTop: 24,
       marginBottom: 2,
-      x: {
-        type: log ? "log" : "linear",
-        domain: domain.map((v) => v / axis.factor),
-        axis: "top",
-        label: null,
-        grid: true,
-        ...(log
-          ? { ticks: logTicks(domain, (width - marginLeft - marginRight) / 45), tickFormat: logTick }
-          : { ticks: Math.max(2, Math.floor((width - marginLeft - marginRight) / 90)) }),
-      },
+      x: { ...axis.options(width - marginLeft - marginRight), axis: "top", label: null, grid: true },
       y: {
         type: "band",
-        domain: rows.filter((d) => d.series === 0).map((d) => d.name),
+        domain: shown,
         padding: 0,
         label: null,
         tickSize: 0,
         tickFormat: (name) => shortened(name, marginLeft - 10),
       },
       marks: [
-        ...marks,
-        log ? [] : Plot.ruleX([0], { stroke: "var(--ink)" }),
-        Plot.tip(rows, Plot.pointerY({ x: (d) => scaled(d.value), y: "name", title: tip, anchor: "left" })),
+        series.map((_, s) => seriesMarks(rows, s, series.length, axis, valueText)),
+        axis.log ? [] : Plot.ruleX([0], { stroke: "var(--ink)" }),
+        tip(rows, { x: (d) => axis.at(d.value), y: "name", title: said, anchor: "left" }, Plot.pointerY),
       ],
     });
-    return [title(labelled(quantity.label, oneUnit ? axis.unit : "")), series.length > 1 ? legend() : [], svg].flat();
+    return [title(labelled(quantity.label, axis.unit)), series.length > 1 ? legend() : [], svg].flat();
   }
 
   function legend() {
@@ -179,10 +104,64 @@ function bars(figure, data) {
     return element("p", { class: "swatches" }, ...entries);
   }
 
-  function describe(rows) {
+  function sentence(rows) {
     const best = rows[d3.maxIndex(rows, ({ value }) => Math.abs(value))];
     const of = choices.text ? ` of ${choices.text}` : "";
     const whose = series.length > 1 ? ` (${series[best.series]})` : "";
     return `Bars: ${quantity.label}${of}. The largest of ${names.length} is ${best.name}${whose} with ${withUnit(number(best.value), best.unit)}.`;
   }
+}
+
+/// The axis of bars: from 0, or logarithmic over what is positive. at(value) is where a value stands on it.
+function barAxis(rows, logarithmic, unit) {
+  const numbers = rows.flatMap(({ value, low, high }) => [value, low, high]).filter(Number.isFinite);
+  const positive = numbers.filter((v) => v > 0);
+  const log = Boolean(logarithmic) && positive.length > 0;
+  const range = log ? [d3.min(positive) / 1.3, d3.max(positive) * 1.3] : d3.extent([0, ...numbers]);
+  const whole = range[0] < range[1] ? range : [0, 1];
+  const axis = unit === undefined ? { factor: 1, unit: "" } : axisUnit(whole, unit);
+  const domain = whole.map((v) => v / axis.factor);
+  const options = (width) =>
+    log
+      ? { type: "log", domain, ticks: logTicks(domain, width / 45), tickFormat: logTick }
+      : { domain, ticks: Math.max(2, Math.floor(width / 90)) };
+  return { ...axis, log, options, start: log ? domain[0] : 0, at: (v) => (log && !(v > 0) ? NaN : v / axis.factor) };
+}
+
+/// The bars of series s of so many, their intervals, and their values behind them.
+function seriesMarks(rows, s, of, axis, valueText) {
+  const mine = rows.filter((d) => d.series === s);
+  const dy = (s + 0.5 - of / 2) * BAR;
+  const colours = of === 1 ? { fill: "var(--bar)", stroke: "var(--bar)" } : SERIES_FILLS[s % SERIES_FILLS.length];
+  const end = ({ value, high }) => d3.max([value, high].map(axis.at).concat(axis.start));
+  return [
+    axis.log ? lollipops(mine, axis, dy, colours) : fullBars(mine, axis, dy, (BAR * (of - 1) + BAR_GAP) / 2, colours),
+    Plot.ruleY(
+      mine.filter((d) => Number.isFinite(d.low)),
+      {
+        y: "name",
+        dy,
+        x1: (d) => axis.at(d.low),
+        x2: (d) => axis.at(d.high),
+        stroke: "var(--ink)",
+        strokeWidth: 1.2,
+        marker: "tick",
+      },
+    ),
+    Plot.text(mine, { y: "name", dy, x: end, text: valueText, textAnchor: "start", dx: 6 }),
+  ];
+}
+
+function fullBars(rows, axis, dy, inset, colours) {
+  const edges = { insetTop: inset + dy + 0.5, insetBottom: inset - dy + 0.5 };
+  return Plot.rect(rows, { y: "name", x1: 0, x2: (d) => axis.at(d.value), ...edges, ...colours, strokeWidth: 1 });
+}
+
+/// On a logarithmic axis the length of a bar says nothing, so there the end alone is drawn.
+function lollipops(rows, axis, dy, { fill, stroke }) {
+  const at = (d) => axis.at(d.value);
+  return [
+    Plot.ruleY(rows, { y: "name", dy, x1: axis.start, x2: at, stroke, strokeOpacity: 0.35 }),
+    Plot.dot(rows, { y: "name", dy, x: at, r: 4, fill, stroke }),
+  ];
 }

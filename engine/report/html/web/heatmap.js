@@ -10,12 +10,13 @@ function heatmap(figure, data) {
   let orderedBy = null; // a coordinate, or null: the number of the pose
   const cursor = { row: 0, column: 0 };
   const count = values(layer.value).length / rows.length;
+  const numberOf = (m) => (data.columns.numbers ? values(data.columns.numbers)[m] : m);
 
   const place = new Place(figure, (width) => (known(values(layer.value)).length ? drawMap(width) : nothing()));
   const noun = data.columns.label;
   place.controls.append(
     select(
-      "Response",
+      "Colour",
       data.layers.map(({ label }) => label),
       (i) => {
         layer = data.layers[i];
@@ -44,7 +45,7 @@ function heatmap(figure, data) {
     const named = d3.range(0, rows.length, Math.ceil((ROW_HEIGHT - 1) / rowHeight));
     const marginLeft = Math.min(textWidth(...rows) + 10, width * 0.36);
     const ticks = ticksAt(poses, width - marginLeft);
-    const svg = draw(describe(array), {
+    const svg = draw(sentence(array), {
       width,
       height: rowHeight * rows.length + 44,
       marginLeft,
@@ -92,16 +93,16 @@ function heatmap(figure, data) {
     const by = orderedBy && values(orderedBy.value);
     if (!by)
       return d3
-        .ticks(1, count, Math.min(count, width / 70))
-        .filter((v) => Number.isInteger(v) && v >= 1)
-        .map((v) => ({ at: v - 0.5, text: plain(v) }));
+        .ticks(0, count - 1, Math.min(count, width / 70))
+        .filter(Number.isInteger)
+        .map((v) => ({ at: v + 0.5, text: plain(numberOf(v)) }));
     const step = Math.max(1, Math.ceil(count / Math.max(2, Math.floor(width / 70))));
     return d3.range(0, count, step).map((c) => ({ at: c + 0.5, text: plain(Number(by[poses[c]].toPrecision(3))) }));
   }
 
-  function describe(array) {
+  function sentence(array) {
     const i = d3.maxIndex(array);
-    const largest = `${rows[Math.floor(i / count)]} at ${noun} ${(i % count) + 1} with ${withUnit(number(array[i]), layer.unit)}`;
+    const largest = `${rows[Math.floor(i / count)]} at ${noun} ${numberOf(i % count)} with ${withUnit(number(array[i]), layer.unit)}`;
     return `Heat map: ${layer.label} for ${rows.length} rows and ${count} ${noun}s. The largest value is that of ${largest}.`;
   }
 
@@ -128,7 +129,7 @@ function heatmap(figure, data) {
         box.setAttribute(name, value);
       const pose = poses[cursor.column];
       const where = coordinates.map(({ name, unit, value }) => `${name} ${withUnit(plain(values(value)[pose]), unit)}`);
-      said.textContent = `${rows[cursor.row]}, ${noun} ${pose + 1}${where.length ? ` (${where.join(", ")})` : ""}: ${withUnit(number(array[cursor.row * count + pose]), layer.unit)}`;
+      said.textContent = `${rows[cursor.row]}, ${noun} ${numberOf(pose)}${where.length ? ` (${where.join(", ")})` : ""}: ${withUnit(number(array[cursor.row * count + pose]), layer.unit)}`;
     };
     map.addEventListener("pointermove", (event) => {
       const scale = svg.viewBox.baseVal.width / svg.getBoundingClientRect().width;

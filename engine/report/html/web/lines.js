@@ -18,12 +18,10 @@ function lines(figure, data) {
     return panels.map((one) => drawPanel(one, width));
   });
   const redraw = () => place.redraw();
-  const choices = new Choices(data.choices, redraw);
-  place.controls.append(...choices.controls);
   if (data.panels.length > MOST_PANELS)
     place.controls.append(
       select(
-        "Panel",
+        "Show",
         data.panels.map(({ label }) => label),
         (i) => {
           panel = i;
@@ -55,11 +53,10 @@ function lines(figure, data) {
 
   /// [{label, colour, dash, points: [{x, y, low, high}]}] of the series ticked.
   function seriesShown({ series }) {
-    const of = (name) => (name ? row(values(name), choices.row, x.length) : null);
     return series
       .filter(({ label }) => ticked.has(label))
       .map(({ label, value, low, high, style }) => {
-        const [y, below, above] = [of(value), of(low), of(high)];
+        const [y, below, above] = [value, low, high].map(values);
         const points = d3
           .range(x.length)
           .map((k) => ({ x: x[k], y: y[k], low: below ? below[k] : NaN, high: above ? above[k] : NaN }));
@@ -75,7 +72,7 @@ function lines(figure, data) {
   }
 
   function drawPanel(one, width) {
-    const unit = Array.isArray(one.unit) ? one.unit[choices.row] : one.unit;
+    const { unit } = one;
     const shown = seriesShown(one);
     const numbers = shown
       .flatMap(({ points }) => points.flatMap(({ y, low, high }) => [y, low, high]))
@@ -98,29 +95,17 @@ function lines(figure, data) {
         Plot.areaY(points, { x: "x", y1: scaled("low"), y2: scaled("high"), fill: colour, fillOpacity: 0.13 }),
         Plot.line(points, { x: "x", y: scaled("y"), stroke: colour, strokeWidth: 1.7, strokeDasharray: dash }),
         points.length <= 40 ? Plot.dot(points, { x: "x", y: scaled("y"), fill: colour, r: 2.2 }) : [],
-        Plot.tip(
-          points,
-          Plot.pointer({
-            x: "x",
-            y: scaled("y"),
-            maxRadius: 14,
-            title: (point) =>
-              [
-                label,
-                `${data.x.label} ${withUnit(plain(point.x), data.x.unit)}`,
-                withUnit(number(point.y), unit),
-                Number.isFinite(point.low)
-                  ? `interval ${number(point.low)} to ${withUnit(number(point.high), unit)}`
-                  : "",
-              ]
-                .filter(Boolean)
-                .join("\n"),
-          }),
-        ),
+        tip(points, {
+          x: "x",
+          y: scaled("y"),
+          maxRadius: 14,
+          title: (point) =>
+            `${label}\n${data.x.label} ${withUnit(plain(point.x), data.x.unit)}\n${withInterval({ ...point, value: point.y }, unit)}`,
+        }),
       ].flat(),
     );
     const xDomain = extent(x);
-    const svg = draw(describe(one, shown, unit), {
+    const svg = draw(sentence(one, shown, unit), {
       width,
       height,
       marginLeft: 56,
@@ -149,14 +134,13 @@ function lines(figure, data) {
     return element("div", { class: "panel" }, title(labelled(one.label, axis.unit)), svg);
   }
 
-  function describe(one, shown, unit) {
+  function sentence(one, shown, unit) {
     const ends = shown.map(({ label, points }) => ({
       label,
       y: points.findLast(({ y }) => Number.isFinite(y))?.y ?? NaN,
     }));
     const best = ends[d3.maxIndex(ends, ({ y }) => y)] ?? ends[0];
-    const of = choices.text ? ` of ${choices.text}` : "";
-    return `Lines: ${one.label}${of} over ${data.x.label}, ${shown.length} lines. At its end the highest is ${best.label} with ${withUnit(number(best.y), unit)}.`;
+    return `Lines: ${one.label} over ${data.x.label}, ${shown.length} lines. At its end the highest is ${best.label} with ${withUnit(number(best.y), unit)}.`;
   }
 }
 

@@ -23,13 +23,24 @@ function plain(value) {
   return Number.isFinite(value) ? String(Number(value.toPrecision(5))).replace("-", "−") : "unknown";
 }
 
-function withUnit(text, unit) {
-  return unit ? `${text}\u202f${unit}` : text;
+/// "1" is the unit of pure numbers.
+function isUnit(unit) {
+  return Boolean(unit) && unit !== "1";
 }
 
-/// "label (unit)"
+function withUnit(text, unit) {
+  return isUnit(unit) ? `${text}\u202f${unit}` : text;
+}
+
+/// The value, and on a line of its own its interval where that is known.
+function withInterval({ value, low, high }, unit) {
+  const text = withUnit(number(value), unit);
+  return Number.isFinite(low) ? `${text}\ninterval ${number(low)} to ${withUnit(number(high), unit)}` : text;
+}
+
+/// "label [unit]", as the tables write it.
 function labelled(label, unit) {
-  return unit ? `${label} (${unit})` : label;
+  return isUnit(unit) ? `${label} [${unit}]` : label;
 }
 
 /// What an axis is divided by so that its ticks are short numbers, and the unit that then stands beside it.
@@ -38,7 +49,7 @@ function axisUnit(domain, unit) {
   const exponent = largest > 0 ? Math.floor(Math.log10(largest)) : 0;
   if (exponent >= -3 && exponent < 5) return { factor: 1, unit };
   const power = 3 * Math.floor(exponent / 3);
-  return { factor: 10 ** power, unit: `${powerOfTen(power)}${unit ? ` ${unit}` : ""}` };
+  return { factor: 10 ** power, unit: `${powerOfTen(power)}${isUnit(unit) ? ` ${unit}` : ""}` };
 }
 
 /// Ticks of a logarithmic axis, at most that many: powers of ten, and their multiples by 2 and 5 where there are few.
@@ -47,7 +58,8 @@ function logTicks([low, high], most) {
   const all = (multiples) =>
     powers.flatMap((p) => multiples.map((m) => m * 10 ** p)).filter((v) => v >= low * 0.999 && v <= high * 1.001);
   const tens = all([1]);
-  if (tens.length < 3) return all([1, 2, 5]);
+  const finer = all([1, 2, 5]);
+  if (tens.length < 3 && finer.length <= Math.max(4, most)) return finer;
   const step = Math.ceil(tens.length / Math.max(2, most));
   return tens.filter((_, k) => k % step === 0);
 }

@@ -20,10 +20,10 @@ function scatter(figure, data) {
     const domain = [Math.min(0, low), high * 1.04].map((v) => v / axis.factor);
     const size = Math.min(width, 600);
     const at = { x: (point) => point.x / axis.factor, y: (point) => point.y / axis.factor };
-    const tip = (point) =>
+    const said = (point) =>
       `${point.name}\n${data.x.label}: ${withUnit(number(point.x), unit)}\n${data.y.label}: ${withUnit(number(point.y), unit)}`;
     const ticks = Math.max(3, Math.floor(size / 90));
-    return draw(describe(points, unit), {
+    return draw(sentence(points, unit), {
       width: size,
       height: size,
       marginLeft: 56,
@@ -51,12 +51,12 @@ function scatter(figure, data) {
           : [],
         Plot.dot(points, { ...at, r: 4, fill: "var(--bar)", fillOpacity: 0.35, stroke: "var(--bar)" }),
         pointNames(points, at),
-        Plot.tip(points, Plot.pointer({ ...at, title: tip })),
+        tip(points, { ...at, title: said }),
       ],
     });
   }
 
-  function describe(points, unit) {
+  function sentence(points, unit) {
     const best = points[d3.maxIndex(points, (point) => Math.max(point.x, point.y))];
     const of = choices.text ? ` for ${choices.text}` : "";
     return `Dots: ${data.y.label} against ${data.x.label}${of}, ${points.length} items. The largest is ${best.name} with ${withUnit(number(best.x), unit)} and ${withUnit(number(best.y), unit)}.`;

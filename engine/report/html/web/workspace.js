@@ -7,6 +7,7 @@ const DOT_EDGE = { stroke: "var(--ink)", strokeOpacity: 0.4, strokeWidth: 0.6 };
 
 function workspace(figure, data) {
   const count = values(data.coordinates[0].value).length;
+  const numberOf = (m) => (data.numbers ? values(data.numbers)[m] : m);
   let field = data.fields[0];
   let item = 0;
   const axes = data.coordinates.slice(0, 3).map((_, k) => k);
@@ -69,20 +70,18 @@ function workspace(figure, data) {
     const array = shown();
     const what = field.rows ? `${field.label}, ${field.rows[item]}` : field.label;
     const { colour, legend } = fieldColours(array, what, field.unit);
-    const poses = d3
-      .range(count)
-      .map((m) => ({
-        m,
-        value: array[m],
-        colour: colour(array[m]) ?? "var(--unknown)",
-        at: axes.map((k) => values(data.coordinates[k].value)[m]),
-      }));
+    const poses = d3.range(count).map((m) => ({
+      m,
+      value: array[m],
+      colour: colour(array[m]) ?? "var(--unknown)",
+      at: axes.map((k) => values(data.coordinates[k].value)[m]),
+    }));
     const chosen = axes.map((k) => data.coordinates[k]);
     const size = width < 620 ? width : Math.floor((width - 24) / 2);
     const pairs = d3.cross(d3.range(axes.length), d3.range(axes.length)).filter(([a, b]) => a < b);
     const text = ({ m, value, at }) =>
       [
-        `pose ${m + 1}`,
+        `pose ${numberOf(m)}`,
         ...chosen.map(({ name, unit }, k) => `${name} ${withUnit(plain(at[k]), unit)}`),
         withUnit(number(value), field.unit),
       ].join("\n");
@@ -112,7 +111,7 @@ function workspace(figure, data) {
       y: a === b ? { axis: null } : { domain: domains[1], label: labels[1], labelArrow: "none", ticks: 5, grid: true },
       marks: [
         Plot.dot(poses, { x: coordinate(a), y, fill: "colour", r: dotSize(count), ...DOT_EDGE }),
-        Plot.tip(poses, Plot.pointer({ x: coordinate(a), y, title: text })),
+        tip(poses, { x: coordinate(a), y, title: text }),
       ],
     });
   }
@@ -159,6 +158,13 @@ function workspace(figure, data) {
   }
 }
 
+// The edges of the box that are its axes: at the start, in front below and at the left. Each is named at its far end.
+const AXIS_STARTS = [
+  [-0.5, -0.5, -0.5],
+  [-0.5, -0.5, -0.5],
+  [-0.5, 0.5, -0.5],
+];
+
 function dotSize(count) {
   return Math.max(1.6, Math.min(4.5, 90 / Math.sqrt(count)));
 }
@@ -182,10 +188,13 @@ function turned(poses, chosen, size, { yaw, pitch }, sentence) {
   const edges = corners.flatMap((from) =>
     [0, 1, 2].filter((k) => from[k] < 0).map((k) => ({ from, k, to: from.with(k, 0.5) })),
   );
-  const lines = edges.map(({ from, to }) => ({ from: project(from), to: project(to), axis: from.every((v) => v < 0) }));
-  // The axes are the edges at the corner where all coordinates are smallest; each is named at its far end.
+  const lines = edges.map(({ from, k, to }) => ({
+    from: project(from),
+    to: project(to),
+    axis: from.every((v, j) => v === AXIS_STARTS[k][j]),
+  }));
   const names = chosen.map(({ name, unit }, k) => ({
-    ...project([-0.5, -0.5, -0.5].with(k, 0.64)),
+    ...project(AXIS_STARTS[k].with(k, 0.6)),
     text: labelled(name, unit),
   }));
   return draw(`Dots in three dimensions, turned by ${Math.round(yaw)} and ${Math.round(pitch)} degrees: ${sentence}`, {
@@ -205,15 +214,12 @@ function turned(poses, chosen, size, { yaw, pitch }, sentence) {
         strokeWidth: (d) => (d.axis ? 1.5 : 1),
       }),
       Plot.dot(dots, { x: "x", y: "y", fill: "colour", r: dotSize(poses.length), ...DOT_EDGE }),
-      Plot.text(names, {
-        x: "x",
-        y: "y",
-        text: "text",
-        fill: "currentColor",
-        stroke: "var(--paper)",
-        strokeWidth: 4,
-        lineAnchor: "middle",
-      }),
+      ["end", "middle", "start"].map((textAnchor, side) =>
+        Plot.text(
+          names.filter(({ x }) => (x < -0.1 ? 0 : x < 0.1 ? 1 : 2) === side),
+          { x: "x", y: "y", text: "text", textAnchor, fill: "currentColor", stroke: "var(--paper)", strokeWidth: 4 },
+        ),
+      ),
     ],
   });
 }

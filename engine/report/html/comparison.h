@@ -1,0 +1,60 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/report/html/page.h"
+#include "engine/report/html/report.h"
+
+namespace poesy {
+
+/// Positions in both of what A and B have in common, in the order of A.
+using Common = std::vector<std::pair<std::size_t, std::size_t>>;
+
+Common common(const std::vector<std::string>& a, const std::vector<std::string>& b);
+
+/// The names that `these` has and `others` has not.
+std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others);
+
+/// The numbers of one result, [R x P] in the units shown; without intervals low and high are empty.
+struct ComparedValues {
+  std::vector<double> value;
+  std::vector<double> low = {};
+  std::vector<double> high = {};
+};
+
+/// One quantity of both results.
+struct ComparedQuantity {
+  std::string label;
+  std::string array;                            ///< how its arrays are named
+  std::vector<std::vector<std::string>> units;  ///< [R] of one for all items, or of P
+  ComparedValues a;
+  ComparedValues b;
+};
+
+/// What two results say about the same R options and P items.
+struct Comparison {
+  std::string option_word;           ///< "response"
+  std::string item_word;             ///< "error"
+  std::vector<std::string> options;  ///< [R]
+  std::vector<std::string> items;    ///< [P]
+  std::vector<std::string> only_a;   ///< items of A alone
+  std::vector<std::string> only_b;
+  /// Bars show all of them; the first gives ranks and the points against each other, the last the table.
+  std::vector<ComparedQuantity> quantities;
+  bool ranked = true;  ///< whether items have an order by size
+};
+
+/// What there is to compare of two results of one kind and mechanism. Throws InputError where they have nothing in
+/// common.
+Comparison comparison(const ReportedResult& a, const ReportedResult& b);
+
+/// Adds figures and tables of a comparison to a page, as sections.
+void add_comparison(const Comparison& compared, Page& page);
+
+/// The page of two results. Throws InputError where they cannot be compared. Precondition: two results.
+Page comparison_page(std::span<const ReportedResult> results);
+
+}  // namespace poesy

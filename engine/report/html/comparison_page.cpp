@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/report/display.h"
+#include "engine/report/html/comparison.h"
+#include "engine/report/html/outcomes.h"
+#include "engine/report/html/parts.h"
+#include "engine/report/html/warnings.h"
+#include "engine/report/html/what_was_run.h"
+
+namespace poesy {
+namespace {
+
+void check_kinds(const ReportedResult& a, const ReportedResult& b) {
+  const auto check = [&](std::string_view what, const std::string& of_a, const std::string& of_b) {
+    if (of_a == of_b) return;
+    throw InputError({.file = b.path},
+                     fmt::format("cannot be compared with {}: its {} is '{}', not '{}'", a.path, what, of_b, of_a),
+                     "compare two results of one kind and mechanism, or report each alone");
+  };
+  check("kind", a.stored.kind, b.stored.kind);
+  check("mechanism", a.stored.model, b.stored.model);
+}
+
+bool same_poses(const StoredResult& a, const StoredResult& b) {
+  if (a.poses.size() != b.poses.size() || a.poses.coordinates() != b.poses.coordinates()) return false;
+  for (std::size_t c = 0; c < a.poses.coordinates(); ++c) {
+    if (a.poses.column(c) != b.poses.column(c)) return false;
+  }
+  return true;
+}
+
+/// Local index x sigma of B less that of A, of the errors that both have, [rows x M].
+std::vector<double> local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
+                                      std::pair<std::size_t, std::size_t> response) {
+  const auto effect = [](const StoredResult& of, std::size_t r, std::size_t p, std::size_t m) {
+    return of.sensitivity.local[(r * of.factors.size() + p) * of.poses.size() + m] * of.factor_sigma[p];
+  };
+  std::vector<double> list;
+  for (const auto& [pa, pb] : factors) {
+    for (std::size_t m = 0; m < a.poses.size(); ++m) {
+      list.push_back(effect(b, response.second, pb, m) - effect(a, response.first, pa, m));
+    }
+  }
+  return list;
+}
+
+/// Where indices differ, of results at the same poses.
+void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
+  Section section("where", "Where in the workspace they differ");
+  if (!same_poses(a, b)) {
+    section.paragraph("A and B were not solved at the same poses, so they cannot be compared pose by pose.");
+    page.sections.push_back(std::move(section));
+    return;
+  }
+  ArrayPool& pool = page.figures.pool;
+  const ShownCells shown = shown_cells(a);
+  const Common factors = common(names_of(a.factors), names_of(b.factors));
+  HeatMap map{{}, {}, "pose", column_coordinates(a, shown, pool), pose_numbers(shown, pool)};
+  for (const auto& both : factors) map.rows.push_back(a.factors[both.first].name);
+  std::vector<Field> fields;
+  for (const auto& both : common(names_of(a.responses, shown.responses), names_of(b.responses))) {
+    const std::size_t r = shown.responses[both.first];
+    const NamedUnit& response = a.responses[r];
+    const std::vector<double> values = shown.at_poses(local_differences(a, b, factors, {r, both.second}));
+    const ArrayName array = pool.add(fmt::format("difference/{}", r), values, display(response).si);
+    map.layers.push_back({"B - A, effect on " + response.name, unit_text(response), array});
+    fields.push_back({map.layers.back().label, map.layers.back().unit, array, map.rows});
+  }
+  section.paragraph("The effect of each error at each pose in B, less that in A.");
+  if (!shown.note().empty()) section.paragraph(shown.note());
+  add_figure(page, section, "heat", std::move(map), "A row for each error that both have, a column for each pose.");
+  add_figure(page, section, "workspace",
+             Workspace{pose_coordinates(a, shown, pool), std::move(fields), pose_numbers(shown, pool)},
+             "Each dot is a pose, coloured by what is chosen.");
+  page.sections.push_back(std::move(section));
+}
+
+/// How the solves of both ended.
+void add_unsolved(const ReportedResult& a, const ReportedResult& b, Page& page) {
+  const SolveCounts of_a = sum_of(tally_of(a.stored).cells);
+  const SolveCounts of_b = sum_of(tally_of(b.stored).cells);
+  Table table{.name = "solves",
+              .caption = "How the solves of A and B ended",
+              .columns = {text_column("status", "status"), number_column("a", "solves of A"),
+                          percent_column("share_a", "share"), number_column("b", "solves of B"),
+                          percent_column("share_b", "share")},
+              .rows = {},
+              .notes = {}};
+  const auto share = [](const SolveCounts& solves, std::size_t status) {
+    return percent_cell(static_cast<double>(solves.by_status[status]) / static_cast<double>(solves.total()));
+  };
+  for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+    table.rows.push_back({text_cell(kStatusNames[status]), count_cell(of_a.by_status[status]), share(of_a, status),
+                          count_cell(of_b.by_status[status]), share(of_b, status)});
+  }
+  Section section("not-solved", "What was not solved");
+  section.table(table);
+  page.sections.push_back(std::move(section));
+}
+
+std::string name_of(const ReportedResult& result) {
+  return result.stored.title.empty() ? result.path : fmt::format("{} ({})", result.stored.title, result.path);
+}
+
+}  // namespace
+
+Page comparison_page(std::span<const ReportedResult> results) {
+  const ReportedResult& a = results[0];
+  const ReportedResult& b = results[1];
+  check_kinds(a, b);
+  Page page;
+  page.title = fmt::format("Two results of {} compared", a.stored.model);
+  page.subtitle = fmt::format("A: {}; B: {}", name_of(a), name_of(b));
+  for (const auto& [letter, result] : {std::pair(kLetters[0], &a), std::pair(kLetters[1], &b)}) {
+    for (const std::string& warning : warnings(*result))
+      page.warnings.push_back(fmt::format("{}: {}", letter, warning));
+  }
+  add_comparison(comparison(a, b), page);
+  if (a.stored.kind == "sensitivity") add_where(a.stored, b.stored, page);
+  add_unsolved(a, b, page);
+  page.sections.push_back(what_was_run(results));
+  return page;
+}
+
+}  // namespace poesy

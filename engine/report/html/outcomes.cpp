@@ -1,0 +1,144 @@
+#include "engine/report/html/outcomes.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "engine/report/display.h"
+#include "engine/report/html/parts.h"
+
+namespace poesy {
+namespace {
+
+/// What evaluations ended with, samples that are no cases together.
+SolveTally evaluation_tally(const StoredResult& result) {
+  const EvaluationResult& found = result.evaluation;
+  SolveTally outcomes{"case", result.cases, found.poses, {}};
+  if (result.cases.empty()) outcomes.names = {"all rows"};
+  outcomes.cells.resize(outcomes.names.size() * found.poses);
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    for (std::size_t s = 0; s < found.samples; ++s) {
+      const std::size_t row = result.cases.empty() ? 0 : s;
+      const std::size_t at = m * found.samples + s;
+      outcomes.cells[row * found.poses + m].add(found.status[at], found.iterations[at]);
+    }
+  }
+  return outcomes;
+}
+
+Table status_table(const SolveCounts& solves) {
+  Table table{.name = "solves",
+              .caption = "How the solves ended",
+              .columns = {text_column("status", "status"), number_column("solves", "solves"),
+                          percent_column("share", "share"), text_column("meaning", "meaning")},
+              .rows = {},
+              .notes = {}};
+  constexpr std::string_view kMeanings[] = {
+      "the change fell below the tolerance", "as exact as the arithmetic allows; counts as converged",
+      "still changing after the most iterations allowed", "the equations have no unique solution",
+      "a value overflowed or became undefined"};
+  for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+    const double share = static_cast<double>(solves.by_status[status]) / static_cast<double>(solves.total());
+    table.rows.push_back({text_cell(kStatusNames[status]), count_cell(solves.by_status[status]), percent_cell(share),
+                          text_cell(kMeanings[status])});
+  }
+  return table;
+}
+
+Table failures_table(const ReportedResult& result) {
+  Table table{
+      .name = "failures",
+      .caption = "Samples that did not converge, in the order of errors, poses and samples",
+      .columns = {text_column("error", "error"), number_column("pose", "pose"), number_column("sample", "sample"),
+                  text_column("status", "status"), text_column("replay", "replay it with")},
+      .rows = {},
+      .notes = {fmt::format("At most {} of each error at a pose are listed, and {} in all.", FailedSamples::kMost,
+                            count_text(kMostFailuresListed))}};
+  for (const Failure& failure : listed_failures(result.stored)) {
+    const std::string error = varied_name(result.stored, failure.slot);
+    const std::uint64_t sample = failure.failed.sample.value;
+    table.rows.push_back(
+        {text_cell(error), count_cell(failure.pose.value), count_cell(sample),
+         text_cell(kStatusNames[static_cast<std::size_t>(failure.failed.status)]),
+         text_cell(fmt::format("poesy replay {} {} {} {}", result.path, error, failure.pose.value, sample))});
+  }
+  return table;
+}
+
+void add_figures(const StoredResult& result, const SolveTally& outcomes, Page& page, Section& section) {
+  ArrayPool& pool = page.figures.pool;
+  if (outcomes.names.size() > 1) {
+    Bars bars{{},
+              {{"not converged", {{"%"}}, pool.add("not_converged_rows", outcomes.shares_by_row(), 0.01)}},
+              outcomes.names};
+    add_figure(page, section, "not-converged", std::move(bars),
+               fmt::format("Share of the solves of each {} that did not converge.", outcomes.row_word));
+  }
+  if (outcomes.poses < 2 || outcomes.poses != result.poses.size()) return;
+  const ShownCells shown = shown_cells(result);
+  std::vector<Field> fields{
+      pose_field("not_converged_poses", "not converged", "%", outcomes.shares_by_pose(), shown, pool, 0.01)};
+  for (Field& field : condition_field(result, shown, pool)) fields.push_back(std::move(field));
+  add_figure(page, section, "not-converged-where",
+             Workspace{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
+             "Where solves did not converge: each dot is a pose.");
+}
+
+}  // namespace
+
+std::vector<double> SolveTally::shares() const {
+  std::vector<double> list;
+  list.reserve(cells.size());
+  for (const SolveCounts& cell : cells) list.push_back(share_not_converged(cell));
+  return list;
+}
+
+std::vector<double> SolveTally::shares_by_row() const {
+  std::vector<double> list;
+  for (std::size_t row = 0; row < names.size(); ++row) {
+    list.push_back(share_not_converged(sum_of(std::span(cells).subspan(row * poses, poses))));
+  }
+  return list;
+}
+
+std::vector<double> SolveTally::shares_by_pose() const {
+  std::vector<double> list;
+  for (std::size_t m = 0; m < poses; ++m) {
+    SolveCounts sum;
+    for (std::size_t row = 0; row < names.size(); ++row) sum.merge(cells[row * poses + m]);
+    list.push_back(share_not_converged(sum));
+  }
+  return list;
+}
+
+SolveTally tally_of(const StoredResult& result) {
+  const std::size_t poses = result.poses.size();
+  if (result.kind == "sensitivity") return {"error", names_of(result.factors), poses, result.sensitivity.solves};
+  if (result.kind == "monte-carlo") return {"", {"all errors"}, poses, result.monte_carlo.solves};
+  if (result.kind == "coupling") return {"size", result.coupling.size_names, poses, result.coupling.found.solves};
+  if (result.kind == "identification") return {"", {"all errors"}, 1, {result.identification.solves}};
+  return evaluation_tally(result);
+}
+
+void add_outcomes(const ReportedResult& result, Page& page) {
+  const SolveTally outcomes = tally_of(result.stored);
+  const SolveCounts total = sum_of(outcomes.cells);
+  Section section("not-solved", "What was not solved");
+  if (total.not_converged() == 0) {
+    section.paragraph(fmt::format("All {} solves converged.", count_text(total.total())));
+  } else {
+    section.paragraph(
+        fmt::format("{} of {} solves ({:.3g} %) did not converge. Each is counted where it happened; what the numbers "
+                    "above make of "
+                    "them is the study's choice, not_converged under [solver].",
+                    count_text(total.not_converged()), count_text(total.total()), 100.0 * share_not_converged(total)));
+    add_figures(result.stored, outcomes, page, section);
+  }
+  section.table(status_table(total));
+  if (!listed_failures(result.stored).empty()) {
+    section.folded("Samples that did not converge, and how to replay them", failures_table(result));
+  }
+  page.sections.push_back(std::move(section));
+}
+
+}  // namespace poesy

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/report/html/figures.h"
+#include "engine/report/table.h"
+
+namespace poesy {
+
+/// A section of the report under a heading. All texts are plain ones, escaped here.
+class Section {
+ public:
+  Section(std::string id, std::string heading) : id_(std::move(id)), heading_(std::move(heading)) {}
+
+  Section& paragraph(std::string_view text);
+  Section& subheading(std::string_view text);
+  /// The place of a figure of the page, which is drawn by its script.
+  Section& figure(std::string_view key, std::string_view caption);
+  Section& table(const Table& table);
+  /// Tables that are open only when the reader asks for them.
+  Section& folded(std::string_view summary, const std::vector<Table>& tables);
+  Section& folded(std::string_view summary, const Table& table) { return folded(summary, std::vector{table}); }
+  /// A long text as it stands, open only when the reader asks for it.
+  Section& folded_text(std::string_view summary, std::string_view text);
+
+  const std::string& id() const { return id_; }
+  const std::string& heading() const { return heading_; }
+  const std::string& body() const { return body_; }  ///< HTML
+
+ private:
+  std::string id_;
+  std::string heading_;
+  std::string body_;
+};
+
+/// What a report consists of.
+struct Page {
+  std::string title;
+  std::string subtitle;
+  std::vector<std::string> warnings;
+  std::vector<Section> sections;
+  FigureSet figures;
+};
+
+/// The page as one HTML document that needs no other file.
+std::string html_document(const Page& page);
+
+}  // namespace poesy

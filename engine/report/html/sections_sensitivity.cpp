@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/report/display.h"
+#include "engine/report/html/outcomes.h"
+#include "engine/report/html/parts.h"
+#include "engine/report/html/sections.h"
+#include "engine/report/ranking.h"
+#include "engine/report/tables.h"
+#include "engine/stats/tolerance.h"
+
+namespace poesy {
+namespace {
+
+double without_rounding(double index) { return std::abs(index) < kIndexRounding ? 0.0 : index; }
+
+/// Indices [R x P] in the units shown and the order of response_order: as effects, index x sigma, or as they are.
+std::vector<double> shown_indices(const StoredResult& result, const std::vector<double>& indices, bool as_effect) {
+  std::vector<double> list;
+  const std::size_t factors = result.factors.size();
+  for (const std::size_t r : response_order(result)) {
+    for (std::size_t p = 0; p < factors; ++p) {
+      const double scale = as_effect ? result.factor_sigma[p] : display(result.factors[p]).si;
+      list.push_back(without_rounding(indices[r * factors + p]) * scale / display(result.responses[r]).si);
+    }
+  }
+  return list;
+}
+
+/// "mm/deg", for each response and error.
+std::vector<std::vector<std::string>> index_units(const StoredResult& result) {
+  std::vector<std::vector<std::string>> units;
+  for (const std::size_t r : response_order(result)) {
+    std::vector<std::string> of_items;
+    for (const NamedUnit& factor : result.factors) {
+      of_items.push_back(fmt::format("{}/{}", display(result.responses[r]).name, display(factor).name));
+    }
+    units.push_back(std::move(of_items));
+  }
+  return units;
+}
+
+std::vector<std::vector<std::string>> response_units(const StoredResult& result) {
+  std::vector<std::vector<std::string>> units;
+  for (const std::size_t r : response_order(result)) units.push_back({unit_text(result.responses[r])});
+  return units;
+}
+
+BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& pool) {
+  const SensitivityResult& found = result.sensitivity;
+  const std::string name = as_effect ? "global_effect" : "global_index";
+  const auto add = [&](const std::string& suffix, const std::vector<double>& indices) {
+    return pool.add(name + suffix, shown_indices(result, indices, as_effect));
+  };
+  return {.label = as_effect ? "effect at the size the study sets (index x sigma)" : "global index",
+          .units = as_effect ? response_units(result) : index_units(result),
+          .value = add("", found.global),
+          .low = add("_low", found.global_ci_low),
+          .high = add("_high", found.global_ci_high)};
+}
+
+Section which_errors_matter(const StoredResult& result, std::vector<Table>& tables, Page& page) {
+  Section section("which-errors-matter", "Which errors matter");
+  section.paragraph(fmt::format(
+      "The global index of an error is the scatter of a response for each unit of scatter of the error, its mean over "
+      "the {} plus its spread between them. Times the size that the study gives the error it is the effect, which "
+      "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals.",
+      counted(result.poses.size(), "pose", "poses"), 100.0 * result.sensitivity.conf_level));
+  Bars bars{{{"response", names_of(result.responses, response_order(result))}},
+            {bar_quantity(result, true, page.figures.pool), bar_quantity(result, false, page.figures.pool)},
+            names_of(result.factors)};
+  add_figure(page, section, "ranking", std::move(bars), "The errors, the one that matters most first.");
+  for (const Table& table : take_tables(tables, std::vector<std::string_view>{"ranked"})) section.table(table);
+  return section;
+}
+
+/// Local indices x sigma of one response, [P x M], SI.
+std::vector<double> local_effects(const StoredResult& result, std::size_t response) {
+  const SensitivityResult& found = result.sensitivity;
+  const std::size_t cells = found.factors * found.poses;
+  std::vector<double> effects(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    effects[cell] = without_rounding(found.local[response * cells + cell]) * result.factor_sigma[cell / found.poses];
+  }
+  return effects;
+}
+
+/// Effects at each pose and samples not converged, as layers of rows x poses.
+std::vector<HeatLayer> layers(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
+  std::vector<HeatLayer> list;
+  for (const std::size_t r : shown.responses) {
+    const NamedUnit& response = result.responses[r];
+    const std::vector<double> effects = shown.at_poses(local_effects(result, r));
+    list.push_back({"effect on " + response.name, unit_text(response),
+                    pool.add(fmt::format("effect/{}", r), effects, display(response).si)});
+  }
+  list.push_back({"not converged", "%", pool.add("not_converged", shown.at_poses(tally_of(result).shares()), 0.01)});
+  return list;
+}
+
+/// The layers as fields of the workspace.
+std::vector<Field> fields(const StoredResult& result, const std::vector<HeatLayer>& layers, const ShownCells& shown,
+                          ArrayPool& pool) {
+  std::vector<Field> list;
+  for (const HeatLayer& layer : layers)
+    list.push_back({layer.label, layer.unit, layer.value, names_of(result.factors)});
+  for (Field& field : condition_field(result, shown, pool)) list.push_back(std::move(field));
+  return list;
+}
+
+/// Curves of the local effects over the time of a trajectory, those of the most important errors first.
+Lines along_trajectory(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
+  Lines lines{.x = pose_axis(result, shown, pool), .panels = {}};
+  const std::size_t poses = result.poses.size();
+  for (const std::size_t r : shown.responses) {
+    const NamedUnit& response = result.responses[r];
+    Panel panel{response.name, unit_text(response), {}};
+    const std::vector<double> effects = local_effects(result, r);
+    for (const std::size_t p : ranked_errors(result, response.name).rows) {
+      const std::vector<double> curve = shown.at_poses(std::span(effects).subspan(p * poses, poses));
+      const std::string array = fmt::format("curve/{}/{}", r, p);
+      panel.series.push_back({result.factors[p].name, pool.add(array, curve, display(response).si)});
+    }
+    lines.panels.push_back(std::move(panel));
+  }
+  return lines;
+}
+
+Section where(const StoredResult& result, Page& page) {
+  ArrayPool& pool = page.figures.pool;
+  const ShownCells shown = shown_cells(result);
+  Section section("where", "Where in the workspace");
+  section.paragraph(
+      "The effect of each error at each pose: its local index there times the size that the study gives it. The last "
+      "layer is the share of samples that did not converge.");
+  if (!shown.note().empty()) section.paragraph(shown.note());
+  const std::vector<HeatLayer> shown_layers = layers(result, shown, pool);
+  if (!result.time.empty()) {
+    add_figure(page, section, "trajectory", along_trajectory(result, shown, pool),
+               "The effect of each error along the trajectory.");
+  }
+  add_figure(page, section, "heat",
+             HeatMap{shown_layers, names_of(result.factors), "pose", column_coordinates(result, shown, pool),
+                     pose_numbers(shown, pool)},
+             "A row for each error, a column for each pose.");
+  add_figure(page, section, "workspace",
+             Workspace{pose_coordinates(result, shown, pool), fields(result, shown_layers, shown, pool),
+                       pose_numbers(shown, pool)},
+             "Each dot is a pose of the study, coloured by what is chosen.");
+  return section;
+}
+
+}  // namespace
+
+void add_sensitivity(const StoredResult& result, Page& page) {
+  std::vector<Table> tables = result_tables(result, default_ranking(result));
+  page.sections.push_back(which_errors_matter(result, tables, page));
+  page.sections.push_back(where(result, page));
+  add_certainty(result, tables, page);
+  add_tolerances(result, page);
+  add_separation(result, tables, page);
+  add_fidelity(result, tables, page);
+  if (!tables.empty()) page.sections[0].folded("More tables", tables);
+}
+
+}  // namespace poesy

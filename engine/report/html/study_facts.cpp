@@ -1,0 +1,60 @@
+#include "engine/report/html/study_facts.h"
+
+#include "engine/base/units.h"
+
+namespace poesy {
+namespace {
+
+/// Takes the first line off a text.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+std::string readable_quoted(std::string_view quoted) {
+  try {
+    return readable_text(parse_quantity(quoted), 6);
+  } catch (const QuantityError&) {
+    return std::string(quoted);
+  }
+}
+
+}  // namespace
+
+std::string study_setting(std::string_view study_text, std::string_view section, std::string_view key) {
+  std::string_view current;
+  while (!study_text.empty()) {
+    const std::string_view line = take_line(study_text);
+    if (line.starts_with('[') && line.ends_with(']')) {
+      current = line.substr(1, line.size() - 2);
+    } else if (current == section && line.starts_with(key) && line.substr(key.size()).starts_with(" = ")) {
+      return std::string(line.substr(key.size() + 3));
+    }
+  }
+  return {};
+}
+
+std::string readable_setting(std::string_view setting) {
+  std::string text;
+  while (!setting.empty()) {
+    const char first = setting.front();
+    const std::size_t end = first == '"' ? setting.find('"', 1) : std::string_view::npos;
+    if (end != std::string_view::npos) {
+      text += readable_quoted(setting.substr(1, end - 1));
+      setting.remove_prefix(end + 1);
+      continue;
+    }
+    if (first != '{' && first != '}') text += first;
+    setting.remove_prefix(1);
+  }
+  const std::size_t begin = text.find_first_not_of(' ');
+  return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
+}
+
+std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key) {
+  return readable_setting(study_setting(study_text, section, key));
+}
+
+}  // namespace poesy

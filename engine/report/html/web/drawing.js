@@ -1,0 +1,58 @@
+// SVGs: texts, descriptions, and what Plot does not have.
+
+const FONT_SIZE = 12;
+const FIGURE_STYLE = { fontSize: `${FONT_SIZE}px`, fontFamily: "var(--sans)" };
+const measuring = document.createElement("canvas").getContext("2d");
+
+/// The width of the widest text in the font of figures, in px.
+function textWidth(...texts) {
+  measuring.font = `${FONT_SIZE}px ${getComputedStyle(document.body).getPropertyValue("--sans") || "sans-serif"}`;
+  return d3.max(texts, (text) => measuring.measureText(text).width) ?? 0;
+}
+
+/// The text, its end left out where it is wider than the width in px.
+function shortened(text, width) {
+  if (textWidth(text) <= width) return text;
+  let end = text.length;
+  while (end > 1 && textWidth(`${text.slice(0, end)}…`) > width) --end;
+  return `${text.slice(0, end)}…`;
+}
+
+/// Plot.plot with what all figures share: an SVG that is one picture to a screen reader, described by one sentence.
+function draw(description, options) {
+  const svg = Plot.plot({ ...options, style: FIGURE_STYLE });
+  describe(svg, description);
+  return svg;
+}
+
+/// Makes an SVG of Plot's one picture with one description, not a group of unnamed parts with labels.
+function describe(svg, description) {
+  for (const part of svg.querySelectorAll("[aria-label]")) {
+    part.dataset.mark = part.getAttribute("aria-label");
+    part.removeAttribute("aria-label");
+  }
+  svg.setAttribute("role", "img");
+  svg.setAttribute("aria-label", description);
+}
+
+/// What is said of the item under the pointer. The tables say it to those who have none.
+function tip(items, options, pointer = Plot.pointer) {
+  return Object.assign(Plot.tip(items, pointer(options)), { ariaLabel: undefined });
+}
+
+function title(text) {
+  return element("p", { class: "plot-title" }, text);
+}
+
+/// What stands where no value is known.
+function nothing() {
+  return element("p", { class: "plot-nothing" }, "No value is known here.");
+}
+
+/// An SVG element, for marks that Plot does not have.
+function svgElement(tag, attributes, text) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  if (text !== undefined) made.textContent = text;
+  return made;
+}

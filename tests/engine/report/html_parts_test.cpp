@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "engine/report/html/figures.h"
+#include "engine/report/html/html_table.h"
+#include "engine/report/html/markup.h"
+#include "engine/report/html/study_facts.h"
+
+namespace poesy {
+namespace {
+
+TEST(Escaped, LeavesNothingThatMeansSomethingInHtml) {
+  EXPECT_EQ(escaped("<a href=\"x\">'&'"), "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;");
+  EXPECT_EQ(escaped("line\nand\ttab"), "line\nand\ttab");
+}
+
+TEST(Escaped, KeepsUtf8AndReplacesWhatIsNone) {
+  EXPECT_EQ(escaped("ü € 😀"), "ü € 😀");
+  const std::string replaced = "\xEF\xBF\xBD";
+  for (const char* bad : {"\xFF", "\x80", "\x01", "\x7F", "\xC3"}) EXPECT_EQ(escaped(bad), replaced) << bad;
+  EXPECT_EQ(escaped("\xC0\xAF"), replaced + replaced);                 // overlong
+  EXPECT_EQ(escaped("\xED\xA0\x80"), replaced + replaced + replaced);  // a surrogate
+  EXPECT_EQ(escaped("\xE2\x82"
+                    "a"),
+            replaced + replaced + "a");
+}
+
+TEST(Base64, IsThatOfRfc4648) {
+  const auto of = [](std::string_view text) { return base64(std::as_bytes(std::span(text))); };
+  EXPECT_EQ(of(""), "");
+  EXPECT_EQ(of("f"), "Zg==");
+  EXPECT_EQ(of("fo"), "Zm8=");
+  EXPECT_EQ(of("foo"), "Zm9v");
+  EXPECT_EQ(of("foobar"), "Zm9vYmFy");
+}
+
+TEST(ArrayPool, KeepsEachNameOnceInTheUnitShown) {
+  ArrayPool pool;
+  const std::array values{0.001, 0.25, std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(pool.add("a", values, 0.001), "a");
+  EXPECT_EQ(pool.add("a", values, 0.001), "a");
+  ASSERT_EQ(pool.arrays().size(), 1U);
+  const std::vector<float>& kept = pool.arrays().at("a");
+  EXPECT_FLOAT_EQ(kept[0], 1.0F);
+  EXPECT_FLOAT_EQ(kept[1], 250.0F);
+  EXPECT_TRUE(std::isnan(kept[2]));
+}
+
+TEST(FiguresJson, HasNoTags) {
+  FigureSet set;
+  set.figures.emplace("k", HeatMap{.layers = {}, .rows = {"</script><!--"}, .column_label = "pose", .coordinates = {}});
+  const std::string json = figures_json(set);
+  EXPECT_EQ(json.find('<'), std::string::npos);
+  EXPECT_NE(json.find("\\u003c/script>\\u003c!--"), std::string::npos);
+}
+
+TEST(HtmlTable, NamesRowsByTheFirstTextAndShowsUnitsAndNotes) {
+  const Table table{.name = "t",
+                    .caption = "A & B",
+                    .columns = {{"rank", "rank", "", Column::Kind::number},
+                                {"error", "error", "", Column::Kind::text},
+                                {"x", "x", "mm", Column::Kind::number}},
+                    .rows = {{{"1", 1.0}, {"<a>", {}}, {"2.5", 2.5}}},
+                    .notes = {"a note"}};
+  const std::string html = html_table(table);
+  for (const char* part : {"<caption>A &amp; B</caption>", "<th scope=\"col\" class=\"n\">x [mm]</th>",
+                           "<tr><td class=\"n\">1</td><th scope=\"row\">&lt;a&gt;</th><td class=\"n\">2.5</td></tr>",
+                           "<p class=\"note\">a note</p>", "data-table=\"t\""}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
+  }
+}
+
+TEST(StudyFacts, AreFoundInTheirSectionAndMadeReadable) {
+  const std::string text =
+      "a = 1\n[errors]\nlinear = { distribution = \"normal\", sigma = \"0.001 m\" }\n[solver]\nmethod = \"newton\"\n";
+  EXPECT_EQ(study_setting(text, "solver", "method"), "\"newton\"");
+  EXPECT_EQ(study_setting(text, "errors", "method"), "");
+  EXPECT_EQ(study_setting(text, "", "a"), "1");
+  EXPECT_EQ(readable_setting(text, "errors", "linear"), "distribution = normal, sigma = 1 mm");
+  EXPECT_EQ(readable_setting("\"0.017453292519943295 rad\""), "1 deg");
+  EXPECT_EQ(readable_setting("\"open"), "\"open");
+}
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,398 @@
+#include "engine/report/html/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/io/result_file.h"
+#include "tests/engine/io/example_result.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Every match of the pattern's first group.
+std::vector<std::string> all(const std::string& text, const std::string& pattern) {
+  const std::regex expression(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator at(text.begin(), text.end(), expression); at != std::sregex_iterator(); ++at) {
+    found.push_back((*at)[1]);
+  }
+  return found;
+}
+
+/// The part between the style and the scripts, which are of the program itself.
+std::string body(const std::string& html) {
+  const std::size_t begin = html.find("<body>");
+  return html.substr(begin, html.find("<script type=\"application/json\"") - begin);
+}
+
+Json data(const std::string& html) {
+  constexpr std::string_view kOpen = "<script type=\"application/json\" id=\"report-data\">";
+  const std::size_t begin = html.find(kOpen) + kOpen.size();
+  return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
+
+std::vector<float> floats(const std::string& base64) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned group = 0;
+  unsigned bits = 0;
+  for (const char digit : base64) {
+    if (digit == '=') break;
+    group = group << 6 | static_cast<unsigned>(digits.find(digit));
+    bits += 6;
+    if (bits >= 8) bytes += static_cast<char>(group >> (bits -= 8) & 0xFF);
+  }
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));  // little-endian, as this machine
+  return values;
+}
+
+std::vector<float> array(const Json& report, const Json& name) {
+  return floats(report["arrays"].at(name.get<std::string>()).get<std::string>());
+}
+
+void expect_size(const Json& report, const Json& name, std::size_t size) {
+  if (name.is_null()) return;
+  EXPECT_EQ(array(report, name).size(), size) << name;
+}
+
+std::size_t options(const Json& figure) {
+  std::size_t product = 1;
+  for (const Json& choice : figure["choices"]) product *= choice["options"].size();
+  return product;
+}
+
+void check_bars(const Json& report, const Json& figure) {
+  const std::size_t series = figure.contains("series") ? figure["series"].size() : 1;
+  const std::size_t items = figure["items"].size();
+  for (const Json& quantity : figure["quantities"]) {
+    EXPECT_EQ(quantity["units"].size(), options(figure));
+    for (const Json& unit : quantity["units"]) EXPECT_TRUE(unit.is_string() || unit.size() == items);
+    for (const char* member : {"value", "low", "high"}) {
+      expect_size(report, quantity[member], series * options(figure) * items);
+    }
+  }
+}
+
+void check_heat_map(const Json& report, const Json& figure) {
+  const std::size_t columns = array(report, figure["columns"]["coordinates"][0]["value"]).size();
+  for (const Json& coordinate : figure["columns"]["coordinates"]) expect_size(report, coordinate["value"], columns);
+  for (const Json& layer : figure["layers"]) expect_size(report, layer["value"], figure["rows"].size() * columns);
+}
+
+void check_workspace(const Json& report, const Json& figure) {
+  const std::size_t poses = array(report, figure["coordinates"][0]["value"]).size();
+  if (figure.contains("numbers")) expect_size(report, figure["numbers"], poses);
+  for (const Json& coordinate : figure["coordinates"]) expect_size(report, coordinate["value"], poses);
+  for (const Json& field : figure["fields"]) {
+    expect_size(report, field["value"], (field.contains("rows") ? field["rows"].size() : 1) * poses);
+  }
+}
+
+void check_lines(const Json& report, const Json& figure) {
+  const std::size_t points = array(report, figure["x"]["value"]).size();
+  for (const Json& panel : figure["panels"]) {
+    for (const Json& series : panel["series"]) {
+      for (const char* member : {"value", "low", "high"}) {
+        if (series.contains(member)) expect_size(report, series[member], points);
+      }
+    }
+  }
+}
+
+void check_scatter(const Json& report, const Json& figure) {
+  EXPECT_EQ(figure["units"].size(), options(figure));
+  for (const char* axis : {"x", "y"}) {
+    expect_size(report, figure[axis]["value"], options(figure) * figure["names"].size());
+  }
+}
+
+/// That all parts of the page fit together, whatever it tells.
+void check_page(const std::string& html) {
+  const std::string page = body(html);
+  const std::vector<std::string> ids = all(page, "<section id=\"([^\"]*)\"");
+  EXPECT_EQ(std::set(ids.begin(), ids.end()).size(), ids.size());
+  EXPECT_EQ(all(page, "<a href=\"#([^\"]*)\">"), ids);  // the skip link has a class
+  const Json report = data(html);
+  const std::vector<std::string> keys = all(page, "<figure data-figure=\"([^\"]*)\">");
+  EXPECT_EQ(std::set(keys.begin(), keys.end()).size(), keys.size());
+  EXPECT_EQ(keys.size(), report["figures"].size());
+  using Check = std::function<void(const Json&, const Json&)>;
+  const std::map<std::string, Check> checks{{"bars", check_bars},
+                                            {"heatmap", check_heat_map},
+                                            {"workspace", check_workspace},
+                                            {"lines", check_lines},
+                                            {"scatter", check_scatter}};
+  for (const std::string& key : keys) {
+    SCOPED_TRACE(key);
+    ASSERT_TRUE(report["figures"].contains(key));
+    const Json& figure = report["figures"][key];
+    checks.at(figure["type"])(report, figure);
+  }
+  for (const char* tag : {"section", "table", "tr", "figure", "details", "ul", "p"}) {
+    const std::string name = tag;
+    EXPECT_EQ(all(page, "<(" + name + ")[ >]").size(), all(page, "</(" + name + ")>").size()) << tag;
+  }
+}
+
+/// That a number went into a figure: to 32 bits, or as one that is not known.
+void expect_shown(float shown, double value) {
+  EXPECT_EQ(std::isnan(shown), std::isnan(value));
+  if (!std::isnan(value)) {
+    EXPECT_FLOAT_EQ(shown, static_cast<float>(value));
+  }
+}
+
+class HtmlReport : public testing::Test {
+ protected:
+  ReportedResult stored() const { return {read_result(path), "r.h5"}; }
+  ReportedResult sensitivity() const {
+    example.write_sensitivity(path);
+    return stored();
+  }
+
+  static std::string report(const ReportedResult& result) { return html_report({&result, 1}); }
+  static std::string report(const ReportedResult& a, const ReportedResult& b) {
+    const std::vector<ReportedResult> both{a, b};
+    return html_report(both);
+  }
+
+  test::TempFolder folder;
+  std::string path = folder / "r.h5";
+  test::Example example;
+};
+
+TEST_F(HtmlReport, OfEveryKindIsWhole) {
+  check_page(report(sensitivity()));
+  example.write_evaluation(path, Pairing::every_pose_with_every_row);
+  check_page(report(stored()));
+  example.write_evaluation(path, Pairing::row_by_row);
+  check_page(report(stored()));
+  example.write_coupling(path);
+  check_page(report(stored()));
+  example.write_monte_carlo(path);
+  check_page(report(stored()));
+}
+
+TEST_F(HtmlReport, OfAnIdentificationIsWhole) {
+  ReportedResult result = sensitivity();
+  result.stored.kind = "identification";
+  result.stored.groups = {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}};
+  result.stored.identification = {.factors = 2,
+                                  .groups = 2,
+                                  .poses = 4,
+                                  .rounding = 1e-14,
+                                  .required_poses = 4,
+                                  .single_below = {4, 0, 4, 1},
+                                  .single_max = {0.0, 1e-3, 0.0, 1e-2},
+                                  .not_solved = {0, 0, 0, 0},
+                                  .coupled_below = {4, 4, 2, 4},
+                                  .coupled_reduced = {0, 0, 2, 0},
+                                  .single_by_group = {0, 1, 0, 1},
+                                  .coupled_by_group = {0, 1, 0, 1},
+                                  .single = {0, 1},
+                                  .coupled = {0, 1},
+                                  .couplings = {},
+                                  .solves = {}};
+  const std::string html = report(result);
+  check_page(html);
+  const Json page = data(html);
+  EXPECT_EQ(array(page, page["figures"]["deforming"]["quantities"][0]["value"]),
+            (std::vector<float>{0.0F, 100.0F, 0.0F, 75.0F}));
+}
+
+TEST_F(HtmlReport, OfATrajectoryHasCurvesOverTime) {
+  ReportedResult result = sensitivity();
+  result.stored.time = {0.0, 0.5, 1.0, 1.5};
+  const std::string html = report(result);
+  check_page(html);
+  const Json page = data(html);
+  EXPECT_EQ(array(page, page["figures"]["trajectory"]["x"]["value"]), (std::vector<float>{0.0F, 0.5F, 1.0F, 1.5F}));
+}
+
+TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
+  const ReportedResult result = sensitivity();
+  const SensitivityResult& found = result.stored.sensitivity;
+  const Json page = data(report(result));
+  const Json& ranking = page["figures"]["ranking"]["quantities"][0];
+  const Json& heat = page["figures"]["heat"];
+  const std::vector<std::string> order = page["figures"]["ranking"]["choices"][0]["options"];
+  for (std::size_t shown = 0; shown < 2; ++shown) {
+    const std::size_t r = order[shown] == result.stored.responses[0].name ? 0 : 1;
+    EXPECT_EQ(heat["layers"][shown]["label"], "effect on " + result.stored.responses[r].name);
+    const double unit = display(result.stored.responses[r]).si;
+    const std::vector<float> local = array(page, heat["layers"][shown]["value"]);
+    for (std::size_t p = 0; p < 2; ++p) {
+      const double scale = result.stored.factor_sigma[p] / unit;
+      const std::vector<float> global = array(page, ranking["value"]);
+      expect_shown(global[shown * 2 + p], found.global[r * 2 + p] * scale);
+      for (std::size_t m = 0; m < 4; ++m) expect_shown(local[p * 4 + m], found.local[(r * 2 + p) * 4 + m] * scale);
+    }
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float> shown = array(page, page["figures"]["workspace"]["coordinates"][c]["value"]);
+    const std::vector<double> column = result.stored.poses.column(c);
+    const double unit = display(result.stored.pose_coordinates[c]).si;
+    for (std::size_t m = 0; m < 4; ++m) EXPECT_FLOAT_EQ(shown[m], static_cast<float>(column[m] / unit));
+  }
+}
+
+TEST_F(HtmlReport, ShowsQuantilesAndWorstPoseOfAMonteCarloResult) {
+  example.write_monte_carlo(path);
+  const ReportedResult result = stored();
+  const MonteCarloResult& found = result.stored.monte_carlo;
+  const Json page = data(report(result));
+  const Json& panel = page["figures"]["distribution"]["panels"][0];
+  const std::size_t r = panel["label"] == result.stored.responses[0].name ? 0 : 1;
+  const std::vector<float> shown = array(page, panel["series"][0]["value"]);
+  const double unit = display(result.stored.responses[r]).si;
+  expect_shown(shown[0], found.overall_min[r] / unit);
+  expect_shown(shown[1], found.overall_quantiles[2 * r] / unit);
+  EXPECT_EQ(array(page, page["figures"]["distribution"]["x"]["value"]),
+            (std::vector<float>{0.0F, 5.0F, 99.5F, 100.0F}));
+}
+
+TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
+  ReportedResult result = sensitivity();
+  EXPECT_FALSE(data(report(result))["figures"].contains("convergence"));
+  IndexHistory history{
+      {10, 100}, std::vector<double>(8, 0.5), std::vector<double>(8, 0.25), std::vector<double>(8, 1.0)};
+  result.stored.sensitivity.history = history;
+  result.stored.sensitivity.global.assign(4, 0.5);
+  const std::string html = report(result);
+  check_page(html);
+  const Json page = data(html);
+  const Json& lines = page["figures"]["convergence"];
+  EXPECT_EQ(array(page, lines["x"]["value"]), (std::vector<float>{10.0F, 100.0F}));
+  EXPECT_EQ(lines["panels"][0]["series"].size(), 2U);
+}
+
+TEST_F(HtmlReport, EscapesWhateverComesFromTheFile) {
+  const std::string evil = "<script>alert(1)</script><!-- \" ' & \xFF";
+  ReportedResult result = sensitivity();
+  result.path = evil;
+  StoredResult& stored = result.stored;
+  for (std::string* text : {&stored.title, &stored.model, &stored.study_text, &stored.poesy_version, &stored.git_commit,
+                            &stored.content_sha256, &stored.facts.created, &stored.facts.host, &stored.facts.cpu,
+                            &stored.factors[0].name, &stored.responses[0].name, &stored.pose_coordinates[0].name}) {
+    *text = evil;
+  }
+  const std::string html = report(result);
+  check_page(html);
+  EXPECT_EQ(body(html).find("<script"), std::string::npos);
+  EXPECT_EQ(body(html).find("<!--"), std::string::npos);
+  EXPECT_EQ(html.find('\xFF'), std::string::npos);
+  const std::string json = data(html).dump(-1, ' ', false, Json::error_handler_t::replace);
+  EXPECT_NE(json.find("<script>alert(1)</script><!--"), std::string::npos);  // as it was, to whom reads the JSON
+  EXPECT_NE(html.find("&lt;script&gt;alert(1)&lt;/script&gt;&lt;!-- &quot; &#39; &amp; \xEF\xBF\xBD"),
+            std::string::npos);
+}
+
+TEST_F(HtmlReport, WarnsOfWhatAReaderMustNotMiss) {
+  ReportedResult result = sensitivity();
+  result.stored.changed = true;
+  result.stored.git_commit = "abc-dirty";
+  result.stored.sensitivity.count.assign(16, 1.0);
+  const std::string page = body(report(result));
+  for (const char* text : {"was changed since it was written", "(abc-dirty)", "did not converge",
+                           "That is more than 1 %", "fewer than two samples", "close to singular"}) {
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+  }
+}
+
+TEST_F(HtmlReport, HasNoSectionOfWarningsWithoutAny) {
+  ReportedResult result = sensitivity();
+  StoredResult& stored = result.stored;
+  stored.git_commit = "abc";
+  stored.condition = {1.0, 1.0, 1.0, 1.0};
+  SensitivityResult& found = stored.sensitivity;
+  found.global = found.global_ci_low = found.global_ci_high = {1.0, 1.0, 1.0, 1.0};
+  for (SolveCounts& solves : found.solves) solves.by_status = {100, 0, 0, 0, 0};
+  found.failures.clear();
+  EXPECT_EQ(body(report(result)).find("id=\"warnings\""), std::string::npos);
+}
+
+TEST_F(HtmlReport, ThinsPosesOfALargeResultAndSaysSo) {
+  constexpr std::size_t kPoses = 400'000;
+  ReportedResult result = sensitivity();
+  StoredResult& stored = result.stored;
+  SensitivityResult& found = stored.sensitivity;
+  found.poses = kPoses;
+  for (auto* values :
+       {&found.local, &found.local_ci_low, &found.local_ci_high, &found.count, &found.mean, &found.std}) {
+    values->assign(4 * kPoses, 1.0);
+  }
+  found.background.assign(2 * kPoses, 0.0);
+  found.solves.assign(2 * kPoses, {});
+  stored.poses = PoseSet(3, std::vector<double>(3 * kPoses, 0.5));
+  stored.condition.assign(kPoses, 1.0);
+  const std::string html = report(result);
+  check_page(html);
+  EXPECT_NE(html.find("of the 400 000 poses, evenly spread"), std::string::npos);
+  EXPECT_LT(html.size(), 12'000'000U);
+  const Json page = data(html);
+  const std::vector<float> numbers = array(page, page["figures"]["heat"]["columns"]["numbers"]);
+  EXPECT_LT(numbers.size(), kPoses / 2);
+  EXPECT_EQ(numbers[0], 0.0F);
+  EXPECT_GT(numbers.back(), 0.99 * kPoses);
+  EXPECT_EQ(array(page, page["figures"]["workspace"]["numbers"]), numbers);
+}
+
+TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
+  const ReportedResult a = sensitivity();
+  ReportedResult b = a;
+  b.path = "b.h5";
+  b.stored.sensitivity.global[0] += 10.0;
+  b.stored.factors[1].name = "another";
+  const std::string html = report(a, b);
+  check_page(html);
+  const Json page = data(html);
+  EXPECT_EQ(page["figures"]["side-by-side"]["items"], Json::array({a.stored.factors[0].name}));
+  const std::vector<float> effects = array(page, page["figures"]["side-by-side"]["quantities"][0]["value"]);
+  const double scale = a.stored.factor_sigma[0] / display(a.stored.responses[0]).si;
+  EXPECT_FLOAT_EQ(effects[0], static_cast<float>(a.stored.sensitivity.global[0] * scale));
+  EXPECT_FLOAT_EQ(effects[2], static_cast<float>(b.stored.sensitivity.global[0] * scale));
+  EXPECT_NE(html.find("Only in B: another."), std::string::npos);
+  EXPECT_NE(html.find("<td>differs</td>"), std::string::npos);
+}
+
+TEST_F(HtmlReport, OfTwoResultsOfEveryKindIsWhole) {
+  check_page(report(sensitivity(), sensitivity()));
+  example.write_evaluation(path, Pairing::every_pose_with_every_row);
+  check_page(report(stored(), stored()));
+  example.write_coupling(path);
+  check_page(report(stored(), stored()));
+  const ReportedResult coupling = stored();
+  example.write_monte_carlo(path);
+  check_page(report(stored(), stored()));
+  EXPECT_THROW(report(stored(), coupling), InputError);
+}
+
+TEST_F(HtmlReport, RefusesResultsWithNothingInCommon) {
+  const ReportedResult a = sensitivity();
+  ReportedResult b = a;
+  b.stored.model = "another";
+  EXPECT_THROW(report(a, b), InputError);
+  b = a;
+  b.stored.factors = {{"c", "m"}, {"d", "m"}};
+  EXPECT_THROW(report(a, b), InputError);
+  b = a;
+  b.stored.responses = {{"c", "m"}, {"d", "m"}};
+  EXPECT_THROW(report(a, b), InputError);
+}
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,127 @@
+"""Reports as a user makes them: names, refusals, two results, and the same numbers as `poesy show --json`."""
+
+import json
+from html.parser import HTMLParser
+
+import h5py
+
+from poesy_program import STUDY, ProgramTest, main
+
+MONTE_CARLO = STUDY.replace('kind = "sensitivity"', 'kind = "monte-carlo"').split("background")[0] + "[run]\nseed = 5\n"
+
+
+class Page(HTMLParser):
+    """Tables by name, each a list of rows of cells; ids of sections; keys of figures; the figures' data."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tables, self.sections, self.figures, self.data = {}, [], [], ""
+        self.rows = self.cell = None
+        self.in_data = False
+        self.feed(text)
+        self.data = json.loads(self.data)
+
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        if tag == "section":
+            self.sections.append(given["id"])
+        elif "data-table" in given:
+            self.rows = self.tables.setdefault(given["data-table"], [])
+        elif tag == "figure":
+            self.figures.append(given["data-figure"])
+        elif tag == "tr" and self.rows is not None:
+            self.rows.append([])
+        elif tag in ("td", "th") and self.rows is not None:
+            self.cell = ""
+        self.in_data = given.get("id") == "report-data"
+
+    def handle_data(self, data):
+        if self.cell is not None:
+            self.cell += data
+        if self.in_data:
+            self.data += data
+
+    def handle_endtag(self, tag):
+        if tag in ("td", "th") and self.cell is not None:
+            self.rows[-1].append(self.cell)
+            self.cell = None
+        self.in_data = False
+
+
+class Report(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("study.toml", STUDY)
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+
+    def page(self, name):
+        return Page((self.folder / name).read_text())
+
+    def refused(self, code, *arguments):
+        done = self.poesy("report", *arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(done.stdout, b"")
+        return done.stderr.decode()
+
+    def test_stands_beside_the_result_and_is_named(self):
+        self.assertEqual(self.succeeds("report", "r.h5"), "r.html\n")
+        page = self.page("r.html")
+        self.assertEqual(page.sections[-2:], ["not-solved", "what-was-run"])
+        self.assertIn("which-errors-matter", page.sections)
+        self.assertEqual(sorted(page.figures), sorted(page.data["figures"]))
+        self.assertEqual(self.succeeds("report", "r.h5", "-o", "other.html"), "other.html\n")
+        self.assertEqual((self.folder / "r.html").read_bytes(), (self.folder / "other.html").read_bytes())
+
+    def test_replaces_an_older_report_and_nothing_else(self):
+        self.write("r.html", "an older one")
+        self.succeeds("report", "r.h5")
+        self.assertNotIn("an older one", (self.folder / "r.html").read_text())
+        study = (self.folder / "study.toml").read_bytes()
+        self.assertIn("would be lost", self.refused(2, "r.h5", "-o", "study.toml"))
+        self.assertEqual((self.folder / "study.toml").read_bytes(), study)
+
+    def test_refuses_what_cannot_be(self):
+        result = (self.folder / "r.h5").read_bytes()
+        self.assertIn("also an input", self.refused(2, "r.h5", "-o", "r.h5"))
+        self.assertEqual((self.folder / "r.h5").read_bytes(), result)
+        self.assertIn("does not exist", self.refused(2, "r.h5", "-o", "missing/r.html"))
+        self.refused(3, "missing.h5")
+        self.refused(3, "study.toml")
+        self.assertEqual(list(self.folder.glob("*.html")), [])
+
+    def test_refuses_two_results_of_different_kinds(self):
+        self.write("mc.toml", MONTE_CARLO)
+        self.succeeds("run", "mc.toml", "-o", "mc.h5", "--quiet")
+        self.assertIn("its kind is 'monte-carlo', not 'sensitivity'", self.refused(2, "r.h5", "mc.h5"))
+        self.assertFalse((self.folder / "r.html").exists())
+
+    def test_has_the_cells_of_show(self):
+        self.succeeds("report", "r.h5")
+        tables = self.page("r.html").tables
+        shown = json.loads(self.succeeds("show", "r.h5", "--json"))["tables"]
+        self.assertTrue(shown)
+        for table in shown:
+            with self.subTest(table["name"]):
+                self.assertEqual(tables[table["name"]][1:], table["shown"])
+
+    def test_compares_two_results(self):
+        self.succeeds("run", "study.toml", "-o", "s.h5", "--seed", "6", "--quiet")
+        self.assertEqual(self.succeeds("report", "r.h5", "s.h5", "-o", "change.html"), "change.html\n")
+        page = self.page("change.html")
+        self.assertEqual(page.data["figures"]["side-by-side"]["series"], ["A", "B"])
+        facts = {row[0]: row[1:] for row in page.tables["what_was_run"]}
+        self.assertEqual(facts["seed"], ["5", "6", "differs"])
+        self.assertEqual(facts["kind of study"], ["sensitivity", "sensitivity", "-"])
+        self.assertEqual({row[-1] for row in page.tables["differences_1"][1:]}, {"overlap"})
+
+    def test_warns_of_a_result_that_was_changed(self):
+        with h5py.File(self.folder / "r.h5", "r+") as result:
+            result["sensitivity/global"][0, 0] *= 2.0
+        done = self.poesy("report", "r.h5")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"was changed", done.stderr)
+        self.assertIn("was changed since it was written", (self.folder / "r.html").read_text())
+
+
+if __name__ == "__main__":
+    main()
