@@ -17,15 +17,17 @@ std::string title(const DescribedCommand& command) { return command.name.empty()
 
 std::string see_help(const DescribedCommand& command) { return "see " + title(command) + " --help"; }
 
-/// "did you mean 'run'? " where one is near. A single letter is near to any other.
+bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
+
+/// "did you mean 'run'? " where one is near, or begins like this. An option of one letter
+/// is near to any other.
 std::string nearest_text(const std::string& word, const std::vector<std::string>& known) {
-  if (word.size() <= 2) return {};
+  if (is_option(word) && word.size() == 2) return {};
   const std::vector<std::string_view> views(known.begin(), known.end());
-  const std::string_view best = nearest(word, views);
+  const auto longer = std::ranges::find_if(views, [&](std::string_view name) { return name.starts_with(word); });
+  const std::string_view best = longer != views.end() ? *longer : nearest(word, views);
   return best.empty() ? std::string() : fmt::format("did you mean '{}'? ", best);
 }
-
-bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
 std::string unknown_option(const std::string& word, const DescribedCommand& command) {
   const std::string name = word.substr(0, word.find('='));
@@ -55,6 +57,23 @@ std::vector<std::string> missing(const CLI::App& app, const DescribedCommand& co
   return list;
 }
 
+std::string shown_name(const DescribedOption& option) { return option.by_place() ? option.value : option.names.back(); }
+
+/// Two that do not go together.
+std::optional<std::string> excluded(const CLI::App& app, const DescribedCommand& command) {
+  const auto options = app.get_options();
+  for (std::size_t k = 0; k < options.size(); ++k) {
+    for (std::size_t other = k + 1; other < options.size(); ++other) {
+      if (options[k]->count() == 0 || options[other]->count() == 0) continue;
+      const auto& excludes = options[k]->get_excludes();
+      if (std::ranges::find(excludes, options[other]) == excludes.end()) continue;
+      return fmt::format("{} and {} do not go together; leave one out, {}", shown_name(command.options[k]),
+                         shown_name(command.options[other]), see_help(command));
+    }
+  }
+  return std::nullopt;
+}
+
 /// An option without its value, or one that is there twice.
 std::optional<std::string> wrong_number_of_values(const CLI::App& app, const DescribedCommand& command,
                                                   const CLI::ParseError& error) {
@@ -80,6 +99,7 @@ std::string problem_of_command(const CLI::App& app, const CLI::ParseError& error
   const auto option = std::ranges::find_if(extras, is_option);
   if (option != extras.end()) return unknown_option(*option, command);
   if (const auto problem = wrong_number_of_values(app, command, error)) return *problem;
+  if (const auto problem = excluded(app, command)) return *problem;
   if (const auto list = missing(app, command); !list.empty()) {
     return fmt::format("{} needs {}; write {}, {}", title(command), fmt::join(list, " and "), synopsis(command),
                        see_help(command));

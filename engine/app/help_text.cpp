@@ -1,13 +1,12 @@
 #include "engine/app/help_text.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <sstream>
 
 #include "engine/app/description.h"
+#include "engine/app/output_width.h"
 #include "engine/app/reference.h"
-#include "engine/app/terminal.h"
+#include "engine/report/text_table.h"
 
 namespace poesy::app {
 namespace {
@@ -120,8 +119,8 @@ std::string help_text(const CLI::App& app, std::size_t width) {
 }
 
 std::size_t help_width() {
-  const std::size_t width = terminal_width(STDOUT_FILENO);
-  return width == 0 ? kUsualWidth : std::clamp(width, kNarrowest, kWidest);
+  const std::size_t width = output_width();
+  return width == kUnlimitedWidth ? kUsualWidth : std::clamp(width, kNarrowest, kWidest);
 }
 
 }  // namespace poesy::app

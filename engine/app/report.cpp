@@ -57,7 +57,7 @@ void add_report(CLI::App& program, Action& action) {
   command->add_option("results", options->results, "result file, or two to be compared")
       ->required()
       ->expected(1, 2)
-      ->type_name("RESULT.h5 [OTHER.h5]");
+      ->type_name("RESULT.h5");
   command->add_option("-o,--output", options->report, "report; default: RESULT.html beside the result")
       ->type_name("REPORT.html");
   command->footer(footer("", {{"gives result.html", "poesy report result.h5"},

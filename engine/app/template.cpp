@@ -54,13 +54,14 @@ void add_template(CLI::App& program, Action& action) {
   command->add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
   command->footer(footer("", {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
-                              {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"}}));
+                              {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
+                              {"every key of a study file, as text", "poesy template --reference"}}));
   command->callback([=, &action] {
     if (*reference) {
       action = print_reference;
       return;
     }
-    if (named->count() == 0) throw CLI::RequiredError(named->get_name());
+    if (named->count() == 0) throw CLI::RequiredError(named->get_type_name());
     action = [model, kind] { return print_template(*model, *kind); };
   });
 }

@@ -23,7 +23,7 @@ class Bash(ProgramTest):
     def setUp(self):
         super().setUp()
         self.write("poesy.bash", self.succeeds("completion", "bash"))
-        for name in ("one.toml", "two words.toml", "r.h5", "s.h5", "p.csv", "a*b.toml"):
+        for name in ("one.toml", "two words.toml", "r.h5", "s.h5", "p.csv", "p.html", "a*b.toml"):
             self.write(name, "")
         (self.folder / "studies").mkdir()
 
@@ -55,6 +55,8 @@ class Bash(ProgramTest):
         self.assertEqual(self.offers("merge", "r.h5", "s"), {"s.h5", "studies"})
         self.assertEqual(self.offers("evaluate", "one.toml", "--poses", ""), {"p.csv", "studies"})
         self.assertEqual(self.offers("export", "r.h5", "-d", ""), {"studies"})
+        self.assertEqual(self.offers("report", "r.h5", "s"), {"s.h5", "studies"})
+        self.assertEqual(self.offers("report", "r.h5", "-o", ""), {"p.html", "studies"})
 
     def test_words(self):
         self.assertEqual(self.offers("template", ""), {"2upr-rpu", "3-prs", "xy-3-prs"})

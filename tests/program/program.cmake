@@ -44,6 +44,7 @@ program_test(tolerances unit)
 program_test(trajectory unit)
 program_test(coupling unit)
 program_test(show unit)
+program_test(command_line unit)
 program_test(reference unit)
 program_test(tutorial unit)
 

@@ -177,8 +177,8 @@ cases = [{ name = "small", errors = { delta_1_1_y = "0.1 mm" } }, { name = "larg
                                (("delta_1_1_y", 4, 0), b"from 0 to 3"),
                                (("delta_1_1_y", 0, 60), b"from 0 to 59"),
                                (("delta_1_1_y", 0), b"from 0 to 59"),
-                               (("delta_1_1_y", "x", 0), b"pose"),
-                               (("delta_1_1_y", "1.5", 0), b"pose")):
+                               (("delta_1_1_y", "x", 0), b"POSE is 'x'"),
+                               (("delta_1_1_y", "1.5", 0), b"POSE is '1.5'")):
             done = self.poesy("replay", "out.h5", *address)
             self.assertEqual((done.returncode, done.stdout), (2, b""), address)
             self.assertIn(words, done.stderr, address)

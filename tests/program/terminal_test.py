@@ -40,7 +40,7 @@ class Terminal(ProgramTest):
         shown = []
         while terminal.read(0.05):
             rows = terminal.rows()
-            if rows and not rows[0].startswith("poesy:"):
+            if rows and not rows[0].startswith("poesy"):
                 self.assertEqual(len(rows), 1, rows)  # nothing wrapped
                 self.assertEqual(terminal.screen.cursor.y, 0)
                 shown.append(rows[0])
@@ -89,7 +89,7 @@ class Terminal(ProgramTest):
         self.assertTrue(all(len(frame) < 60 for frame in later[1:]), later)
 
     def test_finished_run_leaves_an_empty_line(self):
-        self.write("study.toml", STUDY.replace("samples = 1500", "samples = 300000"))
+        self.write("study.toml", STUDY.replace("samples = 1500", "samples = 100000"))
         with (self.folder / "out.txt").open("wb") as out:
             terminal = self.terminal(80, "run", "study.toml", stdout=out)
             self.assertEqual(terminal.finish(), 0)
@@ -97,7 +97,7 @@ class Terminal(ProgramTest):
         self.assertEqual(terminal.screen.cursor.x, 0)
 
     def test_quiet_run_says_nothing(self):
-        self.write("study.toml", STUDY.replace("samples = 1500", "samples = 300000"))
+        self.write("study.toml", STUDY.replace("samples = 1500", "samples = 100000"))
         with (self.folder / "out.txt").open("wb") as out:
             terminal = self.terminal(80, "run", "study.toml", "--quiet", stdout=out)
             self.assertEqual(terminal.finish(), 0)

@@ -1,0 +1,47 @@
+"""What the program says of command lines that it does not understand."""
+
+from poesy_program import ProgramTest, main
+
+
+class CommandLine(ProgramTest):
+    def refuses(self, line, message):
+        with self.subTest(line=line):
+            done = self.poesy(*line.split())
+            self.assertEqual((done.returncode, done.stdout), (2, b""))
+            self.assertEqual(done.stderr.decode(), f"poesy: {message}\n")
+
+    def test_commands(self):
+        self.refuses("", "no command given; see poesy --help")
+        self.refuses("rn study.toml", "no command 'rn'; did you mean 'run'? see poesy --help")
+        self.refuses("toler r.h5", "no command 'toler'; did you mean 'tolerances'? see poesy --help")
+        self.refuses("frobnicate --help", "no command 'frobnicate'; see poesy --help")
+
+    def test_options(self):
+        self.refuses("--versio", "poesy has no option '--versio'; did you mean '--version'? see poesy --help")
+        self.refuses("run --thread 2 s.toml", "poesy run has no option '--thread'; did you mean '--threads'? see poesy run --help")
+        self.refuses("run s.toml --thred=2", "poesy run has no option '--thred'; did you mean '--threads'? see poesy run --help")
+        self.refuses("run s.toml -x", "poesy run has no option '-x'; see poesy run --help")
+        self.refuses("show r.h5 --frobnicate", "poesy show has no option '--frobnicate'; see poesy show --help")
+
+    def test_values(self):
+        for value in ("x", "0", "1025", "2threads", ""):
+            self.refuses(f"run s.toml --threads={value}" if value else "run s.toml --threads",
+                         f"--threads is '{value}'; give a whole number from 1 to 1024" if value else
+                         "--threads needs a value; write --threads N, see poesy run --help")
+        self.refuses("run s.toml --seed -1", "--seed is '-1'; give a whole number from 0 to 9223372036854775807")
+        self.refuses("run s.toml -o a.h5 -o b.h5", "--output is there 2 times; give it once, see poesy run --help")
+        self.refuses("replay r.h5 all one", "POSE is 'one'; give a whole number from 0 to 9223372036854775807")
+
+    def test_arguments(self):
+        self.refuses("show", "poesy show needs RESULT.h5; write poesy show RESULT.h5 [options], see poesy show --help")
+        self.refuses("evaluate s.toml --errors e.csv", "poesy evaluate needs --poses P.csv; write poesy evaluate STUDY.toml "
+                     "--poses P.csv --errors E.csv [options], see poesy evaluate --help")
+        self.refuses("check a.toml b.toml", "'b.toml' is one too many; write poesy check STUDY.toml [options], see poesy check --help")
+        self.refuses("template", "MODEL is required; see poesy template --help")
+        self.refuses("template --reference 3-prs", "MODEL and --reference do not go together; leave one out, "
+                     "see poesy template --help")
+        self.refuses("template 3-prs copling", "no template of kind 'copling'; did you mean 'coupling'?")
+        self.refuses("completion fish", "no completion for 'fish'; give bash or zsh")
+
+
+main()
