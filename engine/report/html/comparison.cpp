@@ -144,7 +144,7 @@ void add_comparison(const Comparison& compared, Page& page) {
   for (std::size_t option = 0; option < compared.options.size(); ++option) tables.push_back(table_of(compared, option));
   section.table(tables.front());
   tables.erase(tables.begin());
-  section.folded(fmt::format("The other {} tables", tables.size()), tables);
+  section.folded(fmt::format("The same for every other {}", compared.option_word), tables);
   page.sections.push_back(std::move(section));
   if (compared.items.size() < 2) return;
   Section agreement("agreement", "Where A and B agree");

@@ -13,7 +13,7 @@
 namespace poesy {
 namespace {
 
-/// Two results of one kind, and which responses both have; those of A's headline first.
+/// Two results of one kind, and which responses both have, in the order of response_order of A.
 struct Pair {
   const StoredResult& a;
   const StoredResult& b;
@@ -28,10 +28,9 @@ struct Pair {
 Pair pair_of(const ReportedResult& a, const ReportedResult& b) {
   Pair pair{a.stored, b.stored, common(names_of(a.stored.responses), names_of(b.stored.responses))};
   if (pair.responses.empty()) refuse(b, a, "response");
-  const auto not_of_headline = [&](const auto& both) {
-    return std::ranges::find(a.stored.headline, both.first) == a.stored.headline.end();
-  };
-  std::ranges::stable_sort(pair.responses, {}, not_of_headline);
+  const std::vector<std::size_t> order = response_order(a.stored);
+  std::ranges::sort(pair.responses, {},
+                    [&](const auto& both) { return std::ranges::find(order, both.first) - order.begin(); });
   return pair;
 }
 

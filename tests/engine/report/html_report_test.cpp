@@ -363,8 +363,10 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   EXPECT_EQ(page["figures"]["side-by-side"]["items"], Json::array({a.stored.factors[0].name}));
   const std::vector<float> effects = array(page, page["figures"]["side-by-side"]["quantities"][0]["value"]);
   const double scale = a.stored.factor_sigma[0] / display(a.stored.responses[0]).si;
-  EXPECT_FLOAT_EQ(effects[0], static_cast<float>(a.stored.sensitivity.global[0] * scale));
-  EXPECT_FLOAT_EQ(effects[2], static_cast<float>(b.stored.sensitivity.global[0] * scale));
+  const std::vector<std::string> responses = page["figures"]["side-by-side"]["choices"][0]["options"];
+  const std::size_t r = responses[0] == a.stored.responses[0].name ? 0 : 1;
+  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(a.stored.sensitivity.global[0] * scale));
+  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(b.stored.sensitivity.global[0] * scale));
   EXPECT_NE(html.find("Only in B: another."), std::string::npos);
   EXPECT_NE(html.find("<td>differs</td>"), std::string::npos);
 }
