@@ -58,7 +58,8 @@ class Browser:
     def settle(self):
         """Waits until figures that follow a change of size are drawn: they are within two frames."""
         self.driver.execute_async_script(
-            "const done = arguments[0]; let k = 5; const next = () => k-- ? requestAnimationFrame(next) : done(); next();")
+            "const done = arguments[0]; let k = 5;"
+            "const next = () => k-- ? requestAnimationFrame(next) : done(); next();")
 
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)

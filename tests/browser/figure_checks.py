@@ -12,9 +12,11 @@ EMPTY = """
 const seen = (e) => { const r = e.getBoundingClientRect(); return r.width + r.height > 0; };
 const marks = "g[data-mark=rect], g[data-mark=dot], g[data-mark=line], image";
 const drawn = (svg) => seen(svg) && [...svg.querySelectorAll(marks)].some((mark) => seen(mark));
-const pictures = (figure) => [...figure.querySelectorAll(".plot svg[role=img]")].filter((svg) => !svg.closest(".legend"));
+const pictures = (figure) =>
+  [...figure.querySelectorAll(".plot svg[role=img]")].filter((svg) => !svg.closest(".legend"));
 return (arguments[0] ? [arguments[0]] : [...document.querySelectorAll("figure[data-figure]")])
-  .filter((figure) => !pictures(figure).length || !pictures(figure).every(drawn) || figure.querySelector(".plot-nothing"))
+  .filter((figure) => !pictures(figure).length || !pictures(figure).every(drawn) ||
+    figure.querySelector(".plot-nothing"))
   .map((figure) => figure.dataset.figure);
 """
 
@@ -24,10 +26,12 @@ const problems = [];
 const width = document.documentElement.clientWidth;
 for (const svg of (arguments[0] ?? document).querySelectorAll("figure[data-figure] svg")) {
   const key = svg.closest("figure").dataset.figure;
-  if (svg.getAttribute("role") !== "img" || !(svg.getAttribute("aria-label")?.length > 20)) problems.push(`${key}: not described`);
-  if (/NaN|undefined|null|unknown/.test(svg.getAttribute("aria-label"))) problems.push(`${key}: ${svg.getAttribute("aria-label")}`);
+  const said = svg.getAttribute("aria-label") ?? "";
+  if (svg.getAttribute("role") !== "img" || said.length < 20) problems.push(`${key}: not described`);
+  if (/NaN|undefined|null|unknown/.test(said)) problems.push(`${key}: ${said}`);
   const texts = [...svg.querySelectorAll("text")].filter((text) => !text.closest("[pointer-events=none]"))
-    .map((text) => ({ text: text.textContent, box: text.getBoundingClientRect() })).filter(({ text, box }) => text && box.width);
+    .map((text) => ({ text: text.textContent, box: text.getBoundingClientRect() }))
+    .filter(({ text, box }) => text && box.width);
   for (const { text, box } of texts) {
     if (box.left < -1 || box.right > width + 1) problems.push(`${key}: "${text}" is cut off`);
     if (/NaN|undefined/.test(text)) problems.push(`${key}: "${text}"`);
@@ -99,7 +103,7 @@ class FigureChecks:
             k += 1
 
     def options(self, figure, select):
-        self.test.assertTrue(self.browser.run("return arguments[0].labels.length && arguments[0].labels[0].innerText.trim()", select))
+        self.test.assertTrue(self.browser.run("return arguments[0].labels[0]?.innerText.trim()", select))
         choice = Select(select)
         count = len(choice.options)
         chosen = self.browser.run("return arguments[0].selectedIndex", select)

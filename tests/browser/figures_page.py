@@ -28,7 +28,8 @@ class Page:
 
     def interval(self, numbers, width=0.08):
         numbers = np.asarray(numbers)
-        return {"value": self.array(numbers), "low": self.array(numbers * (1 - width)), "high": self.array(numbers * (1 + width))}
+        ends = {"low": 1 - width, "high": 1 + width}
+        return {"value": self.array(numbers)} | {end: self.array(numbers * scale) for end, scale in ends.items()}
 
 
 def errors(count):
@@ -47,13 +48,19 @@ def add_bars(page):
         ],
         "items": errors(71), "sort": "value", "log": False}
     page.figures["compared"] = {
-        "type": "bars", "quantities": [{"label": "Global index", "units": ["mm per mm"], **page.interval(page.random.gamma(1, 1, (2, 1, 9)))}],
+        "type": "bars",
+        "quantities": [
+            {"label": "Global index", "units": ["mm per mm"], **page.interval(page.random.gamma(1, 1, (2, 1, 9)))}],
         "items": errors(9), "series": ["gauss-newton", "first-order"], "sort": "value", "log": False}
     page.figures["removable"] = {
-        "type": "bars", "quantities": [{"label": "Change", "units": [""], "value": page.array([0.3, -0.2, 0.1, 0]), "low": None, "high": None}],
+        "type": "bars",
+        "quantities": [
+            {"label": "Change", "units": [""], "value": page.array([0.3, -0.2, 0.1, 0]), "low": None, "high": None}],
         "items": ["a", "b", "c", "d"], "sort": "none", "log": False}
     page.figures["decades"] = {
-        "type": "bars", "quantities": [{"label": "Nonlinearity", "units": ["1"], **page.interval(10 ** page.random.uniform(-7, 1, 20))}],
+        "type": "bars",
+        "quantities": [
+            {"label": "Nonlinearity", "units": ["1"], **page.interval(10 ** page.random.uniform(-7, 1, 20))}],
         "items": errors(20), "sort": "value", "log": True}
 
 
@@ -69,11 +76,14 @@ def add_fields(page, key, rows, poses, coordinate_count):
     field = np.abs(np.sin(np.linspace(0, 9, poses))[None, :] * np.linspace(0.1, 2, rows)[:, None]) + 0.02
     field[3 % rows, : poses // 5] = np.nan
     columns = coordinates(page, poses, coordinate_count)
+    thinned = {"numbers": page.array(np.arange(poses) * 3)} if key == "large" else {}
     page.figures[f"map_{key}"] = {
-        "type": "heatmap", "rows": errors(rows), "columns": {"label": "pose", "coordinates": columns}, "log": key == "large",
-        "layers": [{"label": label, "unit": unit, "value": page.array(field * scale)} for label, unit, scale in zip(RESPONSES, UNITS, [1, 1e-5])]}
+        "type": "heatmap", "rows": errors(rows), "log": key == "large",
+        "columns": {"label": "pose", "coordinates": columns, **thinned},
+        "layers": [{"label": label, "unit": unit, "value": page.array(field * scale)}
+                   for label, unit, scale in zip(RESPONSES, UNITS, [1, 1e-5])]}
     page.figures[f"workspace_{key}"] = {
-        "type": "workspace", "coordinates": columns,
+        "type": "workspace", "coordinates": columns, **thinned,
         "fields": [{"label": "Mean linear deformation", "unit": "mm", "value": page.array(field[-1])},
                    {"label": "Signed change", "unit": "1", "value": page.array(1e-5 * (field[0] - field[-1]))},
                    {"label": "Local index", "unit": "mm per mm", "rows": errors(rows), "value": page.array(field)}]}
@@ -85,17 +95,20 @@ def add_lines(page):
         end = page.random.gamma(1, 1)
         numbers = end * (1 + page.random.normal(0, 1, 12) / np.sqrt(samples))
         band = end * 2 / np.sqrt(samples)
-        return {"label": label, "style": style, "value": page.array(numbers), "low": page.array(numbers - band), "high": page.array(numbers + band)}
+        return {"label": label, "style": style, "value": page.array(numbers),
+                "low": page.array(numbers - band), "high": page.array(numbers + band)}
     page.figures["history"] = {
         "type": "lines", "x": {"label": "samples", "unit": "", "value": page.array(samples), "log": True}, "most": 8,
-        "panels": [{"label": label, "unit": unit, "series": [series(name) for name in errors(25)]} for label, unit in zip(RESPONSES, UNITS)]}
+        "panels": [{"label": label, "unit": unit, "series": [series(name) for name in errors(25)]}
+                   for label, unit in zip(RESPONSES, UNITS)]}
     time = np.linspace(0, 2, 158)
     curve = lambda phase: {"value": page.array(1e-4 * np.sin(3 * time + phase))}
     page.figures["trajectory"] = {
         "type": "lines", "x": {"label": "time", "unit": "s", "value": page.array(time), "log": False}, "most": 4,
         "panels": [{"label": f"tip_{name}", "unit": "mm", "series": [
             {"label": label, "style": style, **curve(k)} for k, (label, style) in
-            enumerate([("FS", "solid"), ("FS+T", "dashed"), ("FS+T+R, a set with quite a long name", "dotted")])]} for name in "xyzabc"]}
+            enumerate([("FS", "solid"), ("FS+T", "dashed"), ("FS+T+R, a set with quite a long name", "dotted")])]}
+            for name in "xyzabc"]}
 
 
 def add_scatter(page):
@@ -117,7 +130,7 @@ def figures_page(web):
     add_lines(page)
     add_scatter(page)
     sections = "".join(
-        f'<section id="{key}" aria-labelledby="{key}-h"><h2 id="{key}-h">{key}</h2><p>Which errors matter, and where.</p>'
+        f'<section id="{key}" aria-labelledby="{key}-h"><h2 id="{key}-h">{key}</h2><p>Which errors matter.</p>'
         f'<figure data-figure="{key}"><div class="plot"></div><figcaption>What is seen.</figcaption></figure></section>'
         for key in page.figures)
     read = lambda name: (Path(web) / name).read_text()
@@ -127,7 +140,8 @@ def figures_page(web):
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f'<meta http-equiv="Content-Security-Policy" content="{html.escape(policy)}">'
-        f'<title>Figures</title><style>{read("report.css")}</style></head><body><a class="skip" href="#main">Skip to the results</a>'
+        f'<title>Figures</title><style>{read("report.css")}</style></head>'
+        '<body><a class="skip" href="#main">Skip to the results</a>'
         f'<header><h1>Figures</h1></header><main id="main">{sections}</main><footer>poesy</footer>'
         f'<script type="application/json" id="report-data">{data}</script>'
         + "".join(f"<script>{read(name)}</script>" for name in ("d3.js", "plot.js", "report.js"))

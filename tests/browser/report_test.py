@@ -107,7 +107,8 @@ class Figures(PageTest):
 
 class Reports(PageTest):
     def poesy(self, *arguments):
-        done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=600, check=False)
+        command = [PROGRAM, *map(str, arguments)]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, timeout=600, check=False)
         self.assertEqual(done.returncode, 0, done.stderr.decode(errors="replace"))
         return done.stdout.decode()
 

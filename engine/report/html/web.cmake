@@ -23,7 +23,8 @@ add_custom_command(OUTPUT ${packages}
                    COMMENT "Getting the packages that reports draw with (npm ci)" VERBATIM)
 
 # In the order in which report.js joins them.
-set(scripts data.js numbers.js page.js drawing.js colours.js bars.js heatmap.js workspace.js lines.js scatter.js main.js)
+set(scripts data.js numbers.js page.js drawing.js colours.js bars.js heatmap.js workspace.js lines.js scatter.js
+    main.js)
 list(TRANSFORM scripts PREPEND ${web_source}/)
 set(assets_cpp ${POESY_WEB}/assets.cpp)
 add_custom_command(OUTPUT ${assets_cpp}

@@ -108,7 +108,8 @@ function bars(figure, data) {
     const best = rows[d3.maxIndex(rows, ({ value }) => Math.abs(value))];
     const of = choices.text ? ` of ${choices.text}` : "";
     const whose = series.length > 1 ? ` (${series[best.series]})` : "";
-    return `Bars: ${quantity.label}${of}. The largest of ${names.length} is ${best.name}${whose} with ${withUnit(number(best.value), best.unit)}.`;
+    const largest = `${best.name}${whose} with ${withUnit(number(best.value), best.unit)}`;
+    return `Bars: ${quantity.label}${of}. The largest of ${names.length} is ${largest}.`;
   }
 }
 

@@ -18,6 +18,11 @@ function row(array, r, length) {
   return array.length === length ? array : array.subarray(r * length, (r + 1) * length);
 }
 
+/// Where pose m lies: the text of each coordinate with its name and unit.
+function positionOf(m, coordinates) {
+  return coordinates.map(({ name, unit, value }) => `${name} ${withUnit(plain(values(value)[m]), unit)}`);
+}
+
 /// The entries that are numbers, and where they stand.
 function known(array) {
   return d3.range(array.length).filter((i) => Number.isFinite(array[i]));

@@ -49,10 +49,14 @@ function nothing() {
   return element("p", { class: "plot-nothing" }, "No value is known here.");
 }
 
+function setAttributes(made, attributes) {
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+}
+
 /// An SVG element, for marks that Plot does not have.
 function svgElement(tag, attributes, text) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  setAttributes(made, attributes);
   if (text !== undefined) made.textContent = text;
   return made;
 }

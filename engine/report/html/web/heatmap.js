@@ -102,8 +102,9 @@ function heatmap(figure, data) {
 
   function sentence(array) {
     const i = d3.maxIndex(array);
-    const largest = `${rows[Math.floor(i / count)]} at ${noun} ${numberOf(i % count)} with ${withUnit(number(array[i]), layer.unit)}`;
-    return `Heat map: ${layer.label} for ${rows.length} rows and ${count} ${noun}s. The largest value is that of ${largest}.`;
+    const where = `${rows[Math.floor(i / count)]} at ${noun} ${numberOf(i % count)}`;
+    const largest = `${where} with ${withUnit(number(array[i]), layer.unit)}`;
+    return `Heat map: ${layer.label}, ${rows.length} rows, ${count} ${noun}s. The largest value is that of ${largest}.`;
   }
 
   function follow(map, svg, box, poses, array) {
@@ -119,17 +120,12 @@ function heatmap(figure, data) {
         y.apply(cursor.row + 1),
       ];
       const wide = Math.max(3, right - left);
-      for (const [name, value] of Object.entries({
-        x: (left + right - wide) / 2,
-        y: top,
-        width: wide,
-        height: bottom - top,
-        visibility: "visible",
-      }))
-        box.setAttribute(name, value);
+      const frame = { x: (left + right - wide) / 2, y: top, width: wide, height: bottom - top, visibility: "visible" };
+      setAttributes(box, frame);
       const pose = poses[cursor.column];
-      const where = coordinates.map(({ name, unit, value }) => `${name} ${withUnit(plain(values(value)[pose]), unit)}`);
-      said.textContent = `${rows[cursor.row]}, ${noun} ${numberOf(pose)}${where.length ? ` (${where.join(", ")})` : ""}: ${withUnit(number(array[cursor.row * count + pose]), layer.unit)}`;
+      const where = coordinates.length ? ` (${positionOf(pose, coordinates).join(", ")})` : "";
+      const value = withUnit(number(array[cursor.row * count + pose]), layer.unit);
+      said.textContent = `${rows[cursor.row]}, ${noun} ${numberOf(pose)}${where}: ${value}`;
     };
     map.addEventListener("pointermove", (event) => {
       const scale = svg.viewBox.baseVal.width / svg.getBoundingClientRect().width;

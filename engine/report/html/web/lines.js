@@ -140,7 +140,8 @@ function lines(figure, data) {
       y: points.findLast(({ y }) => Number.isFinite(y))?.y ?? NaN,
     }));
     const best = ends[d3.maxIndex(ends, ({ y }) => y)] ?? ends[0];
-    return `Lines: ${one.label} over ${data.x.label}, ${shown.length} lines. At its end the highest is ${best.label} with ${withUnit(number(best.y), unit)}.`;
+    const highest = `${best.label} with ${withUnit(number(best.y), unit)}`;
+    return `Lines: ${one.label} over ${data.x.label}, ${shown.length} lines. At its end the highest is ${highest}.`;
   }
 }
 

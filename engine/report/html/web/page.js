@@ -11,7 +11,7 @@ function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-/// A select with a visible label; change(index) is called when another option is chosen. Hidden where there is no choice.
+/// A select with a visible label; change(index) is called when another option is chosen. Hidden where nothing can be.
 function select(label, options, change) {
   const made = element("select", { onchange: () => change(made.selectedIndex) });
   made.append(...options.map((option) => element("option", {}, option)));
@@ -23,7 +23,7 @@ function select(label, options, change) {
   );
 }
 
-/// Selects for a figure's choices, whose options together number the rows of its arrays; the first choice varies slowest.
+/// Selects for a figure's choices, whose options number the rows of its arrays; the first choice varies slowest.
 class Choices {
   constructor(choices, change) {
     this.choices = choices ?? [];

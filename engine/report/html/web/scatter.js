@@ -1,4 +1,4 @@
-// Two results against each other, a dot for each item; those that differ most from the diagonal, and the largest, are named.
+// Two results against each other, a dot for each item; the largest, and those farthest from the diagonal, are named.
 
 const MOST_NAMES = 12;
 
@@ -59,7 +59,8 @@ function scatter(figure, data) {
   function sentence(points, unit) {
     const best = points[d3.maxIndex(points, (point) => Math.max(point.x, point.y))];
     const of = choices.text ? ` for ${choices.text}` : "";
-    return `Dots: ${data.y.label} against ${data.x.label}${of}, ${points.length} items. The largest is ${best.name} with ${withUnit(number(best.x), unit)} and ${withUnit(number(best.y), unit)}.`;
+    const largest = `${best.name} with ${withUnit(number(best.x), unit)} and ${withUnit(number(best.y), unit)}`;
+    return `Dots: ${data.y.label} against ${data.x.label}${of}, ${points.length} items. The largest is ${largest}.`;
   }
 }
 

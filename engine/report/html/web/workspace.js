@@ -79,14 +79,11 @@ function workspace(figure, data) {
     const chosen = axes.map((k) => data.coordinates[k]);
     const size = width < 620 ? width : Math.floor((width - 24) / 2);
     const pairs = d3.cross(d3.range(axes.length), d3.range(axes.length)).filter(([a, b]) => a < b);
-    const text = ({ m, value, at }) =>
-      [
-        `pose ${numberOf(m)}`,
-        ...chosen.map(({ name, unit }, k) => `${name} ${withUnit(plain(at[k]), unit)}`),
-        withUnit(number(value), field.unit),
-      ].join("\n");
+    const text = ({ m, value }) =>
+      [`pose ${numberOf(m)}`, ...positionOf(m, chosen), withUnit(number(value), field.unit)].join("\n");
     const highest = poses[d3.maxIndex(poses, ({ value }) => value)];
-    const sentence = `${what} at ${count} poses; the largest is ${withUnit(number(highest.value), field.unit)} at ${chosen.map(({ name, unit }, k) => `${name} ${withUnit(plain(highest.at[k]), unit)}`).join(", ")}.`;
+    const largest = `${withUnit(number(highest.value), field.unit)} at ${positionOf(highest.m, chosen).join(", ")}`;
+    const sentence = `${what} at ${count} poses; the largest is ${largest}.`;
 
     const flat = (pairs.length ? pairs : [[0, 0]]).map(([a, b]) =>
       projection(poses, chosen, a, b, size, text, sentence),
