@@ -1,5 +1,5 @@
-// A result file, or a shard of one. What reads is printed, reported and exported. A crash or a hang of HDF5 in the child that
-// reads first (engine/io/trial_read.h) is no finding; one in this process is.
+// A result file, or a shard of one. What reads is printed, reported and exported. A crash or a hang of HDF5 in the
+// child that reads first (engine/io/trial_read.h) is no finding; one in this process is.
 #include <sys/resource.h>
 
 #include <filesystem>
