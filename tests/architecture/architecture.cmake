@@ -11,9 +11,14 @@ add_test(NAME architecture.page_links
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/page_links.py ${PROJECT_SOURCE_DIR})
 add_test(NAME architecture.page_links_finds_violations
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/page_links_test.py)
+add_test(NAME architecture.type_names
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/type_names.py ${PROJECT_SOURCE_DIR})
+add_test(NAME architecture.type_names_finds_violations
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/type_names_test.py)
 set_tests_properties(architecture.include_table architecture.include_table_finds_violations
                      architecture.readme_commands architecture.readme_commands_finds_violations
                      architecture.page_links architecture.page_links_finds_violations
+                     architecture.type_names architecture.type_names_finds_violations
                      PROPERTIES LABELS architecture)
 
 # Every public header compiles alone, with nothing but what the exported targets offer: one source a header.
