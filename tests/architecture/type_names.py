@@ -14,7 +14,7 @@ from pathlib import Path
 
 SPACE = re.compile(r"(?:inline )?namespace ?([\w:]*) ?\{")
 SPACE_ENDS = re.compile(r"\}  // namespace")
-TYPE = re.compile(r"(?:struct|class|union|enum|enum class) (?:\[\[\w+\]\] |alignas\(\w+\) )?(\w+)\b(?!::)[^;()]*\{")
+TYPE = re.compile(r"(?:struct|class|union|enum class|enum) (?:\[\[\w+\]\] |alignas\(\w+\) )?(\w+)\b(?!::)[^;()]*\{")
 
 
 def types(text):

@@ -27,7 +27,8 @@ class TypeNamesTest(unittest.TestCase):
 
     def test_names_of_their_own(self):
         for second in (FIRST.replace("poesy", "poesy::simd"), FIRST.replace("Box {", "Box;"), HIDDEN,
-                       FIRST.replace("struct Box {", "struct Box::State {"), "struct Box {\n};\n"):
+                       FIRST.replace("struct Box {", "struct Box::State {"), "struct Box {\n};\n",
+                       FIRST.replace("struct Box {", "enum class Kind { box };\nenum class Colour {")):
             self.assertEqual(self.found(second), [])
 
 
