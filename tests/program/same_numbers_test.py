@@ -1,0 +1,116 @@
+"""The file, `poesy show`, its JSON, the exported tables and the report's tables and figures say the same numbers.
+
+The expected ones are computed here from the file's SI numbers, with this test's own factors for mm, deg and %.
+"""
+
+import base64
+import csv
+import json
+import math
+import struct
+
+import h5py
+
+from poesy_program import STUDY, ProgramTest, main
+from report_test import Page
+
+DISPLAY = {"m": 1e-3, "rad": math.pi / 180.0, "1": 1.0}
+BELOW_ROUNDING = 1e-10  # an index this small is shown as 0
+FLOAT = 2.0**-23
+
+
+def shown_alike(text, value):
+    """Whether a text is the value, rounded to the digits that it shows."""
+    if text == "0":
+        return abs(value) < BELOW_ROUNDING
+    digits = text.lower().split("e")[0].lstrip("-").replace(".", "").lstrip("0")
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - max(len(digits), 4) + 1)
+    return abs(float(text) - value) <= 0.501 * unit
+
+
+def floats(page, name):
+    data = base64.b64decode(page.data["arrays"][name])
+    return struct.unpack(f"<{len(data) // 4}f", data)
+
+
+class SameNumbers(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("study.toml", STUDY)
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+        self.succeeds("report", "r.h5")
+        self.succeeds("export", "r.h5", "-d", "tables")
+        self.page = Page((self.folder / "r.html").read_text())
+        self.json = {table["name"]: table for table in json.loads(self.succeeds("show", "r.h5", "--json"))["tables"]}
+        with h5py.File(self.folder / "r.h5") as result:
+            self.factors = list(result["factors/name"].asstr()[:])
+            self.responses = list(result["responses/name"].asstr()[:])
+            self.factor_display = [DISPLAY[unit] for unit in result["factors/unit"].asstr()[:]]
+            self.response_display = [DISPLAY[unit] for unit in result["responses/unit"].asstr()[:]]
+            self.sigma = result["factors/sigma"][:]
+            self.found = {name: result["sensitivity"][name][:] for name in ("global", "global_ci_low", "global_ci_high")}
+            self.not_converged = result["solver/not_converged"][:].sum(axis=1)
+            self.count = result["poses/z"].shape[0] * 1500
+
+    def index(self, name, response, factor):
+        """In the units shown."""
+        return self.found[name][response, factor] * self.factor_display[factor] / self.response_display[response]
+
+    def effect(self, name, response, factor):
+        return self.found[name][response, factor] * self.sigma[factor] / self.response_display[response]
+
+    def expected_row(self, response, factor):
+        return {"effect": self.effect("global", response, factor), "index": self.index("global", response, factor),
+                "index_low": self.index("global_ci_low", response, factor),
+                "index_high": self.index("global_ci_high", response, factor),
+                "sigma": self.sigma[factor] / self.factor_display[factor],
+                "not_converged": 100.0 * self.not_converged[factor] / self.count}
+
+    def test_ranked_table(self):
+        response = self.responses.index("linear_deformation")
+        table = self.json["ranked"]
+        names = [column["name"] for column in table["columns"]]
+        text = [line.split() for line in self.succeeds("show", "r.h5").splitlines()]
+        self.assertEqual({row["error"] for row in table["rows"]}, set(self.factors))
+        for row, shown in zip(table["rows"], table["shown"]):
+            factor = self.factors.index(row["error"])
+            self.assertIn(shown, text)
+            self.assertIn(shown, self.page.tables["ranked"])
+            for name, expected in self.expected_row(response, factor).items():
+                with self.subTest(error=row["error"], column=name):
+                    self.assertTrue(math.isclose(row[name], expected, rel_tol=1e-12, abs_tol=BELOW_ROUNDING))
+                    self.assertTrue(shown_alike(shown[names.index(name)], expected), shown[names.index(name)])
+
+    def test_exported_indices(self):
+        with open(self.folder / "tables/global.csv", newline="", encoding="utf-8") as file:
+            head, *rows = csv.reader(file)
+        columns = {name.split(" [")[0]: n for n, name in reversed(list(enumerate(head)))}  # the first of each: SI
+        for factor, row in enumerate(rows):
+            self.assertEqual(row[0], self.factors[factor])
+            for response, name in enumerate(self.responses):
+                for part, suffix in (("global", ""), ("global_ci_low", "_ci_low"), ("global_ci_high", "_ci_high")):
+                    self.assertEqual(float(row[columns[name + suffix]]), self.found[part][response, factor])
+
+    def test_bars_of_the_report(self):
+        figure = self.page.data["figures"]["ranking"]
+        order = [self.responses.index(name) for name in figure["choices"][0]["options"]]
+        factors = [self.factors.index(name) for name in figure["items"]]
+        parts = {"value": "global", "low": "global_ci_low", "high": "global_ci_high"}
+        for quantity, expected in zip(figure["quantities"], (self.effect, self.index)):
+            for key, part in parts.items():
+                drawn = floats(self.page, quantity[key])
+                wanted = [expected(part, response, factor) for response in order for factor in factors]
+                self.assertEqual(len(drawn), len(wanted))
+                for one, other in zip(drawn, wanted):
+                    self.assertTrue(math.isclose(one, other, rel_tol=FLOAT, abs_tol=BELOW_ROUNDING), (one, other))
+
+    def test_rounding_is_told_apart(self):
+        self.assertTrue(shown_alike("2.809", 2.80938))
+        self.assertTrue(shown_alike("2.81", 2.80996))
+        self.assertFalse(shown_alike("2.81", 2.80938))
+        self.assertFalse(shown_alike("2.808", 2.80938))
+        self.assertTrue(shown_alike("1.1e-07", 1.1e-7))
+
+
+if __name__ == "__main__":
+    main()
