@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
-#include <system_error>
+#include <fstream>
+#include <string>
 #include <vector>
 
 #include "engine/app/changed_result.h"
@@ -19,16 +20,23 @@ struct Options {
   std::string report;
 };
 
-/// result.h5 gives result.html beside it.
-std::string default_path(const std::string& result) {
-  return std::filesystem::path(result).replace_extension(".html").string();
+/// result.h5 gives result.html beside it; before.h5 and after.h5 give before-after.html beside the first.
+std::string default_path(const std::vector<std::string>& results) {
+  const std::filesystem::path first(results.front());
+  std::string name = first.stem().string();
+  if (results.size() == 2) name += "-" + std::filesystem::path(results.back()).stem().string();
+  return (first.parent_path() / (name + ".html")).string();
 }
 
-/// Whether a file is named like a report; an empty one holds nothing.
+/// Whether a file is a report, or empty.
 bool may_be_replaced(const std::string& path) {
-  const std::filesystem::path extension = std::filesystem::path(path).extension();
-  std::error_code ignored;
-  return extension == ".html" || extension == ".htm" || std::filesystem::file_size(path, ignored) == 0;
+  constexpr std::size_t kHead = 1024;
+  std::string head(kHead, '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return false;
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.empty() || head.find(kReportMark) != std::string::npos;
 }
 
 void write_whole(const std::string& path, const std::string& html) {
@@ -39,7 +47,7 @@ void write_whole(const std::string& path, const std::string& html) {
 }
 
 int report(const Options& options) {
-  const std::string path = options.report.empty() ? default_path(options.results.front()) : options.report;
+  const std::string path = options.report.empty() ? default_path(options.results) : options.report;
   check_output_path(path, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back({read_result_warily(result), result});
@@ -58,10 +66,12 @@ void add_report(CLI::App& program, Action& action) {
       ->required()
       ->expected(1, 2)
       ->type_name("RESULT.h5");
-  command->add_option("-o,--output", options->report, "report; default: RESULT.html beside the result")
+  command
+      ->add_option("-o,--output", options->report,
+                   "report; default: RESULT.html beside the result, A-B.html beside A for two")
       ->type_name("REPORT.html");
   command->footer(footer("", {{"gives result.html", "poesy report result.h5"},
-                              {"two results compared", "poesy report before.h5 after.h5 -o change.html"}}));
+                              {"two compared, before-after.html", "poesy report before.h5 after.h5"}}));
   command->callback([options, &action] { action = [options] { return report(*options); }; });
 }
 

@@ -73,12 +73,41 @@ class Report(ProgramTest):
         self.assertEqual((self.folder / "r.html").read_bytes(), (self.folder / "other.html").read_bytes())
 
     def test_replaces_an_older_report_and_nothing_else(self):
-        self.write("r.html", "an older one")
         self.succeeds("report", "r.h5")
-        self.assertNotIn("an older one", (self.folder / "r.html").read_text())
-        study = (self.folder / "study.toml").read_bytes()
-        self.assertIn("would be lost", self.refused(2, "r.h5", "-o", "study.toml"))
-        self.assertEqual((self.folder / "study.toml").read_bytes(), study)
+        fresh = (self.folder / "r.html").read_text()
+        self.write("r.html", fresh.replace("What was run", "an older one"))
+        self.succeeds("report", "r.h5")
+        self.assertEqual((self.folder / "r.html").read_text(), fresh)
+        self.write("empty.html", "")
+        self.succeeds("report", "r.h5", "-o", "empty.html")
+        self.write("foreign.html", "<!doctype html><title>foreign</title>")
+        for name in ("study.toml", "foreign.html"):
+            kept = (self.folder / name).read_bytes()
+            self.assertIn("would be lost", self.refused(2, "r.h5", "-o", name))
+            self.assertEqual((self.folder / name).read_bytes(), kept)
+
+    def test_says_what_was_run_and_no_more(self):
+        def facts():
+            return {row[0]: row[1] for row in self.page("r.html").tables["what_was_run"]}
+
+        self.succeeds("report", "r.h5")
+        drawn = facts()
+        self.assertEqual(drawn["seed"], "5")
+        self.assertIn("normal", drawn["linear errors"])
+        self.assertNotIn("on any machine", (self.folder / "r.html").read_text())
+        self.write("own.toml", STUDY + '[errors.override]\ndelta_1_1_y = { distribution = "normal", sigma = "2 mm" }\n')
+        self.succeeds("run", "own.toml", "-o", "r.h5", "--quiet")
+        self.succeeds("report", "r.h5")
+        self.assertEqual(facts()["other errors"], "1 of 3 errors have a distribution of their own")
+        self.write("p.csv", "z,beta,gamma\n-0.2,0.1,0.05\n")
+        self.write("e.csv", "delta_1_1_y\n0.001\n")
+        self.succeeds("evaluate", "study.toml", "--poses", "p.csv", "--errors", "e.csv", "-o", "r.h5", "--quiet")
+        self.succeeds("report", "r.h5")
+        table = facts()
+        self.assertEqual(table["poses"], "1, from a table")
+        self.assertEqual(table["samples at each pose"], "1 row of errors")
+        self.assertEqual([table[name] for name in ("seed", "linear errors", "angular errors")], ["-", "-", "-"])
+        self.assertIn("poses and errors came from tables", (self.folder / "r.html").read_text())
 
     def test_refuses_what_cannot_be(self):
         result = (self.folder / "r.h5").read_bytes()
@@ -93,7 +122,7 @@ class Report(ProgramTest):
         self.write("mc.toml", MONTE_CARLO)
         self.succeeds("run", "mc.toml", "-o", "mc.h5", "--quiet")
         self.assertIn("its kind is 'monte-carlo', not 'sensitivity'", self.refused(2, "r.h5", "mc.h5"))
-        self.assertFalse((self.folder / "r.html").exists())
+        self.assertEqual(list(self.folder.glob("*.html")), [])
 
     def test_has_the_cells_of_show(self):
         self.succeeds("report", "r.h5")
@@ -106,8 +135,8 @@ class Report(ProgramTest):
 
     def test_compares_two_results(self):
         self.succeeds("run", "study.toml", "-o", "s.h5", "--seed", "6", "--quiet")
-        self.assertEqual(self.succeeds("report", "r.h5", "s.h5", "-o", "change.html"), "change.html\n")
-        page = self.page("change.html")
+        self.assertEqual(self.succeeds("report", "r.h5", "s.h5"), "r-s.html\n")
+        page = self.page("r-s.html")
         self.assertEqual(page.data["figures"]["side-by-side"]["series"], ["A", "B"])
         facts = {row[0]: row[1:] for row in page.tables["what_was_run"]}
         self.assertEqual(facts["seed"], ["5", "6", "differs"])

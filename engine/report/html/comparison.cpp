@@ -56,6 +56,13 @@ std::vector<std::size_t> ranks(std::span<const double> values) {
   return rank;
 }
 
+/// From a to b, of a. What solvers leave of equal values, to about 1e-14 rad or m of 1e-3, is none.
+double change_of(double a, double b) {
+  constexpr double kRounding = 1e-10;
+  const double change = (b - a) / std::abs(a);
+  return std::abs(change) < kRounding ? 0.0 : change;
+}
+
 std::string_view overlap(const ComparedQuantity& quantity, std::size_t at) {
   if (std::isnan(quantity.a.low[at] + quantity.a.high[at] + quantity.b.low[at] + quantity.b.high[at])) return "-";
   return quantity.a.low[at] <= quantity.b.high[at] && quantity.b.low[at] <= quantity.a.high[at] ? "overlap" : "apart";
@@ -90,7 +97,7 @@ Table table_of(const Comparison& compared, std::size_t option) {
               .notes = {}};
   for (std::size_t p = 0; p < items; ++p) {
     const std::size_t at = option * items + p;
-    const double change = (quantity.b.value[at] - quantity.a.value[at]) / std::abs(quantity.a.value[at]);
+    const double change = change_of(quantity.a.value[at], quantity.b.value[at]);
     std::vector<Cell> row;
     if (compared.ranked) row = {count_cell(rank_a[p]), count_cell(rank_b[p])};
     const std::vector<std::string>& unit = quantity.units[option];
@@ -109,6 +116,19 @@ std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
+}
+
+/// What the caption of the bars says of their order; quantities whose units differ by item follow the first.
+std::string order_of(const Comparison& compared) {
+  const auto differ = [](const ComparedQuantity& quantity) {
+    return std::ranges::any_of(quantity.units, [](const std::vector<std::string>& units) {
+      return std::ranges::adjacent_find(units, std::ranges::not_equal_to()) != units.end();
+    });
+  };
+  if (!compared.ranked) return {};
+  const bool mixed = std::ranges::any_of(compared.quantities, differ);
+  return std::string(", by their effect, the largest first") +
+         (mixed ? "; indices per mm and per deg do not compare" : "");
 }
 
 }  // namespace
@@ -139,7 +159,7 @@ void add_comparison(const Comparison& compared, Page& page) {
   for (const auto& [letter, only] : {std::pair("A", &compared.only_a), std::pair("B", &compared.only_b)}) {
     if (!only->empty()) section.paragraph(fmt::format("Only in {}: {}.", letter, joined(*only)));
   }
-  add_figure(page, section, "side-by-side", bars_of(compared, pool), "A and B side by side.");
+  add_figure(page, section, "side-by-side", bars_of(compared, pool), "A and B side by side" + order_of(compared) + ".");
   std::vector<Table> tables;
   for (std::size_t option = 0; option < compared.options.size(); ++option) tables.push_back(table_of(compared, option));
   section.table(tables.front());

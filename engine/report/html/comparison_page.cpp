@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/error.h"
@@ -9,6 +10,8 @@
 #include "engine/report/html/parts.h"
 #include "engine/report/html/warnings.h"
 #include "engine/report/html/what_was_run.h"
+#include "engine/report/ranking.h"
+#include "engine/report/tables.h"
 
 namespace poesy {
 namespace {
@@ -36,15 +39,26 @@ bool same_poses(const StoredResult& a, const StoredResult& b) {
 std::vector<double> local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
                                       std::pair<std::size_t, std::size_t> response) {
   const auto effect = [](const StoredResult& of, std::size_t r, std::size_t p, std::size_t m) {
-    return of.sensitivity.local[(r * of.factors.size() + p) * of.poses.size() + m] * of.factor_sigma[p];
+    const double index = of.sensitivity.local[(r * of.factors.size() + p) * of.poses.size() + m];
+    return without_rounding(index) * of.factor_sigma[p];
   };
   std::vector<double> list;
   for (const auto& [pa, pb] : factors) {
+    const double sigma = std::max(a.factor_sigma[pa], b.factor_sigma[pb]);
     for (std::size_t m = 0; m < a.poses.size(); ++m) {
-      list.push_back(effect(b, response.second, pb, m) - effect(a, response.first, pa, m));
+      const double difference = effect(b, response.second, pb, m) - effect(a, response.first, pa, m);
+      list.push_back(without_rounding(difference / sigma) * sigma);
     }
   }
   return list;
+}
+
+/// The errors that both have, the one that is most important in A first.
+Common ranked_common(const StoredResult& a, const StoredResult& b) {
+  Common factors = common(names_of(a.factors), names_of(b.factors));
+  const std::vector<std::size_t> ranks = ranked_errors(a, default_ranking(a)).ranks;
+  std::ranges::sort(factors, {}, [&](const auto& both) { return ranks[both.first]; });
+  return factors;
 }
 
 /// Where indices differ, of results at the same poses.
@@ -57,7 +71,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   }
   ArrayPool& pool = page.figures.pool;
   const ShownCells shown = shown_cells(a);
-  const Common factors = common(names_of(a.factors), names_of(b.factors));
+  const Common factors = ranked_common(a, b);
   HeatMap map{{}, {}, "pose", column_coordinates(a, shown, pool), pose_numbers(shown, pool)};
   for (const auto& both : factors) map.rows.push_back(a.factors[both.first].name);
   std::vector<Field> fields;
@@ -69,9 +83,11 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
     map.layers.push_back({"B - A, effect on " + response.name, unit_text(response), array});
     fields.push_back({map.layers.back().label, map.layers.back().unit, array, map.rows});
   }
+  if (map.layers.empty()) return;
   section.paragraph("The effect of each error at each pose in B, less that in A.");
   if (!shown.note().empty()) section.paragraph(shown.note());
-  add_figure(page, section, "heat", std::move(map), "A row for each error that both have, a column for each pose.");
+  add_figure(page, section, "heat", std::move(map),
+             "A row for each error that both have, the most important in A first, a column for each pose.");
   add_figure(page, section, "workspace",
              Workspace{pose_coordinates(a, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Each dot is a pose, coloured by what is chosen.");

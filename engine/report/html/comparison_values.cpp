@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/report/display.h"
 #include "engine/report/html/comparison.h"
 #include "engine/report/html/parts.h"
-#include "engine/stats/tolerance.h"
 
 namespace poesy {
 namespace {
@@ -55,23 +53,15 @@ std::vector<double> gather(const Common& responses, const Common& items, bool of
   return list;
 }
 
-std::vector<std::vector<std::string>> response_units(const Pair& pair) {
-  std::vector<std::vector<std::string>> units;
-  for (const auto& both : pair.responses) units.push_back({unit_text(pair.a.responses[both.first])});
-  return units;
+/// The positions in A.
+std::vector<std::size_t> of_a(const Common& both) {
+  std::vector<std::size_t> list;
+  for (const auto& one : both) list.push_back(one.first);
+  return list;
 }
 
-std::vector<std::vector<std::string>> index_units(const Pair& pair, const Common& factors) {
-  std::vector<std::vector<std::string>> units;
-  for (const auto& both : pair.responses) {
-    std::vector<std::string> of_items;
-    for (const auto& item : factors) {
-      of_items.push_back(
-          fmt::format("{}/{}", display(pair.a.responses[both.first]).name, display(pair.a.factors[item.first]).name));
-    }
-    units.push_back(std::move(of_items));
-  }
-  return units;
+std::vector<std::vector<std::string>> response_units(const Pair& pair) {
+  return response_units(pair.a, of_a(pair.responses));
 }
 
 ComparedValues indices(const StoredResult& result, const Pair& pair, const Common& factors, bool as_effect) {
@@ -80,7 +70,7 @@ ComparedValues indices(const StoredResult& result, const Pair& pair, const Commo
     return gather(pair.responses, factors, &result == &pair.a, [&](std::size_t r, std::size_t p) {
       const double index = of[r * found.factors + p];
       const double scale = as_effect ? result.factor_sigma[p] : display(result.factors[p]).si;
-      return (std::abs(index) < kIndexRounding ? 0.0 : index) * scale / display(result.responses[r]).si;
+      return without_rounding(index) * scale / display(result.responses[r]).si;
     });
   };
   return {shown(found.global), shown(found.global_ci_low), shown(found.global_ci_high)};
@@ -94,8 +84,8 @@ Comparison sensitivity(const Pair& pair) {
   for (const auto& both : pair.responses) compared.options.push_back(pair.a.responses[both.first].name);
   compared.quantities = {{"effect at the size each study sets (index x sigma)", "effect", response_units(pair),
                           indices(pair.a, pair, factors, true), indices(pair.b, pair, factors, true)},
-                         {"global index", "index", index_units(pair, factors), indices(pair.a, pair, factors, false),
-                          indices(pair.b, pair, factors, false)}};
+                         {"global index", "index", index_units(pair.a, of_a(pair.responses), of_a(factors)),
+                          indices(pair.a, pair, factors, false), indices(pair.b, pair, factors, false)}};
   return compared;
 }
 
@@ -149,6 +139,7 @@ Comparison identification(const Pair& pair, const ReportedResult& second, const 
   if (groups.empty()) refuse(second, first, "size of the errors");
   const Common factors = common(names_a, names_b);
   Comparison compared = start("size of the errors", "error", names_a, names_b);
+  compared.ranked = false;  // most errors share a number of poses
   for (const auto& both : groups) compared.options.push_back(pair.a.groups[both.first].name);
   const auto values = [&](const StoredResult& result) {
     const IdentificationResult& found = result.identification;
@@ -197,31 +188,13 @@ Comparison coupling(const Pair& pair) {
   for (const auto& both : pair.responses) compared.options.push_back(pair.a.responses[both.first].name);
   const auto values = [&](const StoredResult& result) {
     return ComparedValues{gather(pair.responses, subsets, &result == &pair.a, [&](std::size_t r, std::size_t n) {
-      const double value = result.coupling.found.effect_max[r * sized_subsets(result.coupling).size() + n];
-      return value / display(result.responses[r]).si;
+      const CouplingResult& found = result.coupling.found;
+      return found.effect_max[r * found.sizes * found.subsets + n] / display(result.responses[r]).si;
     })};
   };
   compared.quantities = {
       {"largest effect over the poses", "effect_max", response_units(pair), values(pair.a), values(pair.b)}};
   return compared;
-}
-
-/// Order statistics of a response over all solved samples of rows.
-std::vector<double> order_statistics(const StoredResult& result, std::size_t r, std::span<const double> levels) {
-  const EvaluationResult& found = result.evaluation;
-  const std::size_t all = found.poses * found.samples;
-  std::vector<double> values;
-  for (std::size_t at = 0; at < all; ++at) {
-    if (solved(found.status[at])) values.push_back(found.response[r * all + at]);
-  }
-  std::ranges::sort(values);
-  std::vector<double> list;
-  for (const double level : levels) {
-    list.push_back(values.empty()
-                       ? std::nan("")
-                       : values[static_cast<std::size_t>(std::lround(level * static_cast<double>(values.size() - 1)))]);
-  }
-  return list;
 }
 
 Comparison rows(const Pair& pair) {
@@ -235,7 +208,8 @@ Comparison rows(const Pair& pair) {
     ComparedValues list;
     for (const auto& both : pair.responses) {
       const std::size_t r = &result == &pair.a ? both.first : both.second;
-      for (const double value : order_statistics(result, r, kLevels)) {
+      const EvaluationResult& found = result.evaluation;
+      for (const double value : order_statistics(found, r, 0, found.poses * found.samples, kLevels)) {
         list.value.push_back(value / display(result.responses[r]).si);
       }
     }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <numeric>
-
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
 
@@ -120,19 +118,37 @@ SolveTally tally_of(const StoredResult& result) {
   return evaluation_tally(result);
 }
 
+std::optional<SecondFidelity> second_fidelity(const StoredResult& result) {
+  const std::optional<FidelityResult>& compared = result.sensitivity.fidelity;
+  if (!compared) return std::nullopt;
+  SecondFidelity second{0, result.sensitivity.total().total()};
+  for (const std::uint64_t count : compared->not_converged) second.not_converged += count;
+  return second;
+}
+
+std::string at_first_fidelity(const StoredResult& result) {
+  return result.sensitivity.fidelity ? fmt::format(" at fidelity \"{}\"", result.fidelities[0]) : std::string();
+}
+
 void add_outcomes(const ReportedResult& result, Page& page) {
   const SolveTally outcomes = tally_of(result.stored);
   const SolveCounts total = sum_of(outcomes.cells);
+  const std::string at_first = at_first_fidelity(result.stored);
   Section section("not-solved", "What was not solved");
   if (total.not_converged() == 0) {
-    section.paragraph(fmt::format("All {} solves converged.", count_text(total.total())));
+    section.paragraph(fmt::format("All {} solves{} converged.", count_text(total.total()), at_first));
   } else {
-    section.paragraph(
-        fmt::format("{} of {} solves ({:.3g} %) did not converge. Each is counted where it happened; what the numbers "
-                    "above make of "
-                    "them is the study's choice, not_converged under [solver].",
-                    count_text(total.not_converged()), count_text(total.total()), 100.0 * share_not_converged(total)));
+    section.paragraph(fmt::format(
+        "{} of {} solves{} ({:.3g} %) did not converge. Each is counted where it happened; what the "
+        "numbers above make of them is the study's choice, not_converged under [solver].",
+        count_text(total.not_converged()), count_text(total.total()), at_first, 100.0 * share_not_converged(total)));
     add_figures(result.stored, outcomes, page, section);
+  }
+  if (const auto second = second_fidelity(result.stored)) {
+    section.paragraph(fmt::format(
+        "At fidelity \"{}\", {} of {} solves did not converge{}", result.stored.fidelities[1],
+        count_text(second->not_converged), count_text(second->total),
+        second->not_converged == 0 ? "." : ": what is said of it rests on the others. The table is of the first."));
   }
   section.table(status_table(total));
   if (!listed_failures(result.stored).empty()) {

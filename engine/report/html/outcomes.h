@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +28,18 @@ struct SolveTally {
 
 /// Of all solves of the result.
 SolveTally tally_of(const StoredResult& result);
+
+/// How solves at the second of two fidelities ended (run/fidelity.h).
+struct SecondFidelity {
+  std::uint64_t not_converged = 0;  ///< of its solves
+  std::uint64_t total = 0;          ///< its solves: the same draws as the first's
+};
+
+/// None where the result does not compare two.
+std::optional<SecondFidelity> second_fidelity(const StoredResult& result);
+
+/// " at fidelity \"full\"", the first of two; empty where the result does not compare two.
+std::string at_first_fidelity(const StoredResult& result);
 
 /// The section that tells what was not solved: how solves ended, which rows and poses have how many that did not
 /// converge, and the listed failures with the commands that replay them.

@@ -6,6 +6,7 @@
 #include "engine/report/html/assets.h"
 #include "engine/report/html/html_table.h"
 #include "engine/report/html/markup.h"
+#include "engine/report/html/report.h"
 
 namespace poesy {
 namespace {
@@ -16,10 +17,10 @@ constexpr std::string_view kPolicy =
 
 std::string head(const Page& page) {
   return fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n{}\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n{}\n<style>\n{}\n</style>\n</head>\n",
-      kPolicy, element("title", page.title), asset("report.css"));
+      kReportMark, kPolicy, element("title", page.title), asset("report.css"));
 }
 
 /// The warnings as a section of their own.
@@ -72,11 +73,6 @@ std::string scripts(const Page& page) {
 
 Section& Section::paragraph(std::string_view text) {
   body_ += element("p", text) + "\n";
-  return *this;
-}
-
-Section& Section::subheading(std::string_view text) {
-  body_ += element("h3", text) + "\n";
   return *this;
 }
 

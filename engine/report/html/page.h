@@ -17,8 +17,6 @@ class Section {
 
   /// Adds one.
   Section& paragraph(std::string_view text);
-  /// Adds one.
-  Section& subheading(std::string_view text);
   /// The place of a figure of the page, which is drawn by its script.
   Section& figure(std::string_view key, std::string_view caption);
   /// Adds it, open.

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/base/units.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
+#include "engine/stats/tolerance.h"
 
 namespace poesy {
 namespace {
@@ -67,6 +69,73 @@ std::vector<std::size_t> response_order(const StoredResult& result) {
 
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count_text(count), count == 1 ? one : many);
+}
+
+std::string some_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 5;
+  std::string text;
+  for (std::size_t n = 0; n < std::min(names.size(), kMost); ++n) text += (n == 0 ? "" : ", ") + names[n];
+  return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
+}
+
+std::string pose_text(const StoredResult& result, std::size_t pose) {
+  return result.time.empty() ? fmt::format("pose {}", pose)
+                             : fmt::format("pose {} (t = {:.4g} s)", pose, result.time[pose]);
+}
+
+std::string place_text(const StoredResult& result, std::size_t pose) {
+  if (!result.time.empty() || result.pose_coordinates.empty()) return pose_text(result, pose);
+  std::string text;
+  for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
+    const NamedUnit& named = result.pose_coordinates[c];
+    const std::string unit = unit_text(named);
+    text += fmt::format("{}{} = {:.4g}{}{}", c == 0 ? "" : ", ", named.name,
+                        result.poses.column(c)[pose] / display(named).si, unit.empty() ? "" : " ", unit);
+  }
+  return fmt::format("pose {} ({})", pose, text);
+}
+
+double without_rounding(double index) { return std::abs(index) < kIndexRounding ? 0.0 : index; }
+
+std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
+                                                  std::span<const std::size_t> factors) {
+  std::vector<std::vector<std::string>> units;
+  for (const std::size_t r : responses) {
+    std::vector<std::string> of_items;
+    for (const std::size_t p : factors) {
+      of_items.push_back(fmt::format("{}/{}", display(result.responses[r]).name, display(result.factors[p]).name));
+    }
+    units.push_back(std::move(of_items));
+  }
+  return units;
+}
+
+std::vector<std::vector<std::string>> response_units(const StoredResult& result,
+                                                     std::span<const std::size_t> responses) {
+  std::vector<std::vector<std::string>> units;
+  for (const std::size_t r : responses) units.push_back({unit_text(result.responses[r])});
+  return units;
+}
+
+std::string order_by_effect(const std::vector<NamedUnit>& factors) {
+  const bool mixed = std::ranges::any_of(factors, [&](const NamedUnit& one) { return one.unit != factors[0].unit; });
+  return std::string("by their effect, the largest first") +
+         (mixed ? "; indices per mm and per deg do not compare" : "");
+}
+
+std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,
+                                     std::size_t count, std::span<const double> levels) {
+  std::vector<double> values;
+  for (std::size_t at = first; at < first + count; ++at) {
+    if (solved(found.status[at])) values.push_back(found.response[response * found.poses * found.samples + at]);
+  }
+  std::ranges::sort(values);
+  std::vector<double> list;
+  for (const double level : levels) {
+    const double at = std::round(level * (static_cast<double>(values.size()) - 1.0));
+    list.push_back(values.empty() ? std::nan("") : values[static_cast<std::size_t>(at)]);
+  }
+  return list;
 }
 
 double share_not_converged(const SolveCounts& solves) {

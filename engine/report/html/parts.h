@@ -27,6 +27,28 @@ std::vector<std::size_t> response_order(const StoredResult& result);
 /// "1 pose", "3 poses".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 
+/// "a, b, c and 3 more".
+std::string some_names(const std::vector<std::string>& names);
+/// "pose 14"; on a trajectory "pose 14 (t = 1.18 s)".
+std::string pose_text(const StoredResult& result, std::size_t pose);
+/// The same, with the pose's coordinates where it has no time: "pose 14 (z = -190 mm)".
+std::string place_text(const StoredResult& result, std::size_t pose);
+
+/// An index, in SI; 0 where it is rounding (kIndexRounding).
+double without_rounding(double index);
+/// "mm/deg", for each of these responses and each of these errors.
+std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
+                                                  std::span<const std::size_t> factors);
+/// "mm", for each of these responses.
+std::vector<std::vector<std::string>> response_units(const StoredResult& result,
+                                                     std::span<const std::size_t> responses);
+/// What a caption of bars by errors says of their order.
+std::string order_by_effect(const std::vector<NamedUnit>& factors);
+
+/// Order statistics of a response over these samples (positions pose x samples + sample) that were solved, NaN of none.
+std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,
+                                     std::size_t count, std::span<const double> levels);
+
 /// The share of solves that did not converge; NaN where there is none.
 double share_not_converged(const SolveCounts& solves);
 /// The sum of these.

@@ -2,10 +2,14 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "engine/io/result_file.h"
 
 namespace poesy {
+
+/// What tells a report from other pages; it stands in the first kilobyte of its file.
+inline constexpr std::string_view kReportMark = "<meta name=\"generator\" content=\"poesy report\">";
 
 /// A result and the file where it was found, as the reader may name it.
 struct ReportedResult {

@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "engine/report/display.h"
-#include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/sections.h"
 #include "engine/report/tables.h"
@@ -23,22 +20,6 @@ std::vector<double> response_to(const EvaluationResult& found, std::size_t r, st
     values[m] = solved(found.status[at]) ? found.response[r * found.poses * found.samples + at] : kNaN;
   }
   return values;
-}
-
-/// The solved values of a response at one pose, ascending.
-std::vector<double> sorted_at(const EvaluationResult& found, std::size_t r, std::size_t pose) {
-  std::vector<double> values;
-  for (std::size_t at = pose * found.samples; at < (pose + 1) * found.samples; ++at) {
-    if (solved(found.status[at])) values.push_back(found.response[r * found.poses * found.samples + at]);
-  }
-  std::ranges::sort(values);
-  return values;
-}
-
-/// The order statistic at a level from 0 to 1; NaN of no values.
-double quantile(const std::vector<double>& sorted, double level) {
-  if (sorted.empty()) return kNaN;
-  return sorted[static_cast<std::size_t>(std::lround(level * static_cast<double>(sorted.size() - 1)))];
 }
 
 std::string array_of(std::string_view what, std::size_t response) { return fmt::format("{}/{}", what, response); }
@@ -79,13 +60,14 @@ constexpr double kLow = 0.05;
 constexpr double kHigh = 0.95;
 
 PoseQuantiles quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
+  constexpr double kLevels[] = {kLow, 0.5, kHigh, 1.0};
   PoseQuantiles quantiles;
   for (std::size_t m = 0; m < found.poses; ++m) {
-    const std::vector<double> values = sorted_at(found, r, m);
-    quantiles.low.push_back(quantile(values, kLow));
-    quantiles.median.push_back(quantile(values, 0.5));
-    quantiles.high.push_back(quantile(values, kHigh));
-    quantiles.max.push_back(quantile(values, 1.0));
+    const std::vector<double> values = order_statistics(found, r, m * found.samples, found.samples, kLevels);
+    quantiles.low.push_back(values[0]);
+    quantiles.median.push_back(values[1]);
+    quantiles.high.push_back(values[2]);
+    quantiles.max.push_back(values[3]);
   }
   return quantiles;
 }
@@ -93,15 +75,8 @@ PoseQuantiles quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
 /// The distribution of a response over all poses and rows.
 Series distribution(const StoredResult& result, std::size_t r, std::span<const double> levels, ArrayPool& pool) {
   const EvaluationResult& found = result.evaluation;
-  std::vector<double> values;
-  const std::size_t all = found.poses * found.samples;
-  for (std::size_t at = 0; at < all; ++at) {
-    if (solved(found.status[at])) values.push_back(found.response[r * all + at]);
-  }
-  std::ranges::sort(values);
-  std::vector<double> at_levels;
-  for (const double level : levels) at_levels.push_back(quantile(values, level));
-  return {"all poses and rows", pool.add(array_of("distribution", r), at_levels, display(result.responses[r]).si)};
+  const std::vector<double> values = order_statistics(found, r, 0, found.poses * found.samples, levels);
+  return {"all poses and rows", pool.add(array_of("distribution", r), values, display(result.responses[r]).si)};
 }
 
 void add_distribution(const StoredResult& result, Page& page, Section& section) {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "engine/report/display.h"
 #include "engine/report/html/outcomes.h"
@@ -12,8 +14,6 @@
 
 namespace poesy {
 namespace {
-
-double without_rounding(double index) { return std::abs(index) < kIndexRounding ? 0.0 : index; }
 
 /// Indices [R x P] in the units shown and the order of response_order: as effects, index x sigma, or as they are.
 std::vector<double> shown_indices(const StoredResult& result, const std::vector<double>& indices, bool as_effect) {
@@ -28,23 +28,11 @@ std::vector<double> shown_indices(const StoredResult& result, const std::vector<
   return list;
 }
 
-/// "mm/deg", for each response and error.
-std::vector<std::vector<std::string>> index_units(const StoredResult& result) {
-  std::vector<std::vector<std::string>> units;
-  for (const std::size_t r : response_order(result)) {
-    std::vector<std::string> of_items;
-    for (const NamedUnit& factor : result.factors) {
-      of_items.push_back(fmt::format("{}/{}", display(result.responses[r]).name, display(factor).name));
-    }
-    units.push_back(std::move(of_items));
-  }
-  return units;
-}
-
-std::vector<std::vector<std::string>> response_units(const StoredResult& result) {
-  std::vector<std::vector<std::string>> units;
-  for (const std::size_t r : response_order(result)) units.push_back({unit_text(result.responses[r])});
-  return units;
+/// Positions of all errors.
+std::vector<std::size_t> all_errors(const StoredResult& result) {
+  std::vector<std::size_t> all(result.factors.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
 }
 
 BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& pool) {
@@ -54,7 +42,8 @@ BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& 
     return pool.add(name + suffix, shown_indices(result, indices, as_effect));
   };
   return {.label = as_effect ? "effect at the size the study sets (index x sigma)" : "global index",
-          .units = as_effect ? response_units(result) : index_units(result),
+          .units = as_effect ? response_units(result, response_order(result))
+                             : index_units(result, response_order(result), all_errors(result)),
           .value = add("", found.global),
           .low = add("_low", found.global_ci_low),
           .high = add("_high", found.global_ci_high)};
@@ -70,7 +59,7 @@ Section which_errors_matter(const StoredResult& result, std::vector<Table>& tabl
   Bars bars{{{"response", names_of(result.responses, response_order(result))}},
             {bar_quantity(result, true, page.figures.pool), bar_quantity(result, false, page.figures.pool)},
             names_of(result.factors)};
-  add_figure(page, section, "ranking", std::move(bars), "The errors, the one that matters most first.");
+  add_figure(page, section, "ranking", std::move(bars), "The errors " + order_by_effect(result.factors) + ".");
   for (const Table& table : take_tables(tables, std::vector<std::string_view>{"ranked"})) section.table(table);
   return section;
 }
@@ -86,16 +75,30 @@ std::vector<double> local_effects(const StoredResult& result, std::size_t respon
   return effects;
 }
 
-/// Effects at each pose and samples not converged, as layers of rows x poses.
+/// Rows of values [P x M] in this order.
+std::vector<double> in_order(const std::vector<double>& values, std::span<const std::size_t> rows) {
+  const std::size_t columns = rows.empty() ? 0 : values.size() / rows.size();
+  std::vector<double> list;
+  list.reserve(values.size());
+  for (const std::size_t row : rows) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * columns);
+    list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(columns));
+  }
+  return list;
+}
+
+/// Effects at each pose and samples not converged, as layers of rows x poses, the most important error first.
 std::vector<HeatLayer> layers(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
   std::vector<HeatLayer> list;
+  const std::vector<std::size_t> rows = ranked_errors(result, default_ranking(result)).rows;
   for (const std::size_t r : shown.responses) {
     const NamedUnit& response = result.responses[r];
-    const std::vector<double> effects = shown.at_poses(local_effects(result, r));
+    const std::vector<double> effects = shown.at_poses(in_order(local_effects(result, r), rows));
     list.push_back({"effect on " + response.name, unit_text(response),
                     pool.add(fmt::format("effect/{}", r), effects, display(response).si)});
   }
-  list.push_back({"not converged", "%", pool.add("not_converged", shown.at_poses(tally_of(result).shares()), 0.01)});
+  list.push_back({"not converged", "%",
+                  pool.add("not_converged", shown.at_poses(in_order(tally_of(result).shares(), rows)), 0.01)});
   return list;
 }
 
@@ -103,8 +106,8 @@ std::vector<HeatLayer> layers(const StoredResult& result, const ShownCells& show
 std::vector<Field> fields(const StoredResult& result, const std::vector<HeatLayer>& layers, const ShownCells& shown,
                           ArrayPool& pool) {
   std::vector<Field> list;
-  for (const HeatLayer& layer : layers)
-    list.push_back({layer.label, layer.unit, layer.value, names_of(result.factors)});
+  const std::vector<std::string> rows = names_of(result.factors, ranked_errors(result, default_ranking(result)).rows);
+  for (const HeatLayer& layer : layers) list.push_back({layer.label, layer.unit, layer.value, rows});
   for (Field& field : condition_field(result, shown, pool)) list.push_back(std::move(field));
   return list;
 }
@@ -141,9 +144,9 @@ Section where(const StoredResult& result, Page& page) {
                "The effect of each error along the trajectory.");
   }
   add_figure(page, section, "heat",
-             HeatMap{shown_layers, names_of(result.factors), "pose", column_coordinates(result, shown, pool),
-                     pose_numbers(shown, pool)},
-             "A row for each error, a column for each pose.");
+             HeatMap{shown_layers, names_of(result.factors, ranked_errors(result, default_ranking(result)).rows),
+                     "pose", column_coordinates(result, shown, pool), pose_numbers(shown, pool)},
+             "A row for each error, the most important first, a column for each pose.");
   add_figure(page, section, "workspace",
              Workspace{pose_coordinates(result, shown, pool), fields(result, shown_layers, shown, pool),
                        pose_numbers(shown, pool)},

@@ -33,14 +33,14 @@ void warn_of_changes(const ReportedResult& result, Warnings& list) {
 }
 
 /// The row and the pose with the largest share of solves that did not converge.
-std::string worst_text(const SolveTally& outcomes) {
+std::string worst_text(const StoredResult& result, const SolveTally& outcomes) {
   std::vector<std::string> places;
   const auto add = [&](const std::vector<double>& shares, const auto& name) {
     const auto at = std::ranges::max_element(shares, {}, [](double share) { return std::isnan(share) ? -1.0 : share; });
     places.push_back(fmt::format("{} {}", name(static_cast<std::size_t>(at - shares.begin())), percent_text(*at)));
   };
   if (outcomes.names.size() > 1) add(outcomes.shares_by_row(), [&](std::size_t row) { return outcomes.names[row]; });
-  if (outcomes.poses > 1) add(outcomes.shares_by_pose(), [](std::size_t m) { return fmt::format("pose {}", m); });
+  if (outcomes.poses > 1) add(outcomes.shares_by_pose(), [&](std::size_t m) { return pose_text(result, m); });
   return places.empty() ? std::string() : fmt::format(" The largest shares: {}.", fmt::join(places, "; "));
 }
 
@@ -49,23 +49,24 @@ void warn_of_unsolved(const StoredResult& result, Warnings& list) {
   const SolveCounts total = sum_of(outcomes.cells);
   if (total.not_converged() == 0) return;
   const double share = share_not_converged(total);
-  std::string text = fmt::format("{} of {} solves ({}) did not converge.", count_text(total.not_converged()),
-                                 count_text(total.total()), percent_text(share));
+  std::string text = fmt::format("{} of {} solves{} ({}) did not converge.", count_text(total.not_converged()),
+                                 count_text(total.total()), at_first_fidelity(result), percent_text(share));
   if (share > kManyNotConverged) {
     text +=
         " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where "
         "they are many. Left out, they make numbers too small, for they are mostly the large errors; included, they "
         "fill them with unfinished iterates.";
   }
-  list.push_back(text + worst_text(outcomes));
+  list.push_back(text + worst_text(result, outcomes));
 }
 
-/// "a, b, c and 3 more".
-std::string some_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 5;
-  std::string text;
-  for (std::size_t n = 0; n < std::min(names.size(), kMost); ++n) text += (n == 0 ? "" : ", ") + names[n];
-  return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
+void warn_of_unsolved_at_second_fidelity(const StoredResult& result, Warnings& list) {
+  const std::optional<SecondFidelity> second = second_fidelity(result);
+  if (!second || second->not_converged == 0) return;
+  const double share = static_cast<double>(second->not_converged) / static_cast<double>(second->total);
+  list.push_back(fmt::format("{} of {} solves at fidelity \"{}\" ({}) did not converge.",
+                             count_text(second->not_converged), count_text(second->total), result.fidelities[1],
+                             percent_text(share)));
 }
 
 void warn_of_unknown_indices(const StoredResult& result, Warnings& list) {
@@ -118,8 +119,7 @@ void warn_of_wide_intervals(const StoredResult& result, Warnings& list) {
   if (!widest) return;
   list.push_back(
       fmt::format("{} of {} indices have a {:.3g} % interval that reaches more than 10 % away from the index; the "
-                  "widest is that of "
-                  "{} on {}, {}. More samples make them narrower.",
+                  "widest is that of {} on {}, {}. More samples make them narrower.",
                   wide, all, 100.0 * found.conf_level, result.factors[widest->second % found.factors].name,
                   result.responses[widest->second / found.factors].name, percent_text(widest->first)));
 }
@@ -142,12 +142,11 @@ void warn_of_poses(const StoredResult& result, Warnings& list) {
   const auto ill = std::ranges::count_if(result.condition, [](double value) { return value > kIllConditioned; });
   if (ill == 0) return;
   const auto worst = std::ranges::max_element(result.condition);
-  list.push_back(
-      fmt::format("{} close to singular: {} a condition number above {:.0e}, the largest is {:.3g} at pose {}. There "
-                  "small errors do "
-                  "much, and linear estimates say little.",
-                  ill == 1 ? "1 pose is" : fmt::format("{} poses are", ill), ill == 1 ? "it has" : "they have",
-                  kIllConditioned, *worst, worst - result.condition.begin()));
+  list.push_back(fmt::format(
+      "{} close to singular: {} a condition number above {:.0e}, the largest is {:.3g} at {}. There small errors do "
+      "much, and linear estimates say little.",
+      ill == 1 ? "1 pose is" : fmt::format("{} poses are", ill), ill == 1 ? "it has" : "they have", kIllConditioned,
+      *worst, pose_text(result, static_cast<std::size_t>(worst - result.condition.begin()))));
 }
 
 void warn_of_fidelity(const StoredResult& result, Warnings& list) {
@@ -184,6 +183,7 @@ std::vector<std::string> warnings(const ReportedResult& result) {
   Warnings list;
   warn_of_changes(result, list);
   warn_of_unsolved(stored, list);
+  warn_of_unsolved_at_second_fidelity(stored, list);
   warn_of_unsolved_poses(stored, list);
   if (stored.kind == "sensitivity") warn_of_sensitivity(stored, list);
   if (const auto& found = stored.monte_carlo.convergence) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/report/display.h"
@@ -32,8 +33,15 @@ class Facts {
   std::vector<RunFact> list_;
 };
 
+/// Whether poses and errors came from tables, as `poesy evaluate` takes them, and not from the study.
+bool from_tables(const StoredResult& result) { return result.kind == "evaluate" && result.cases.empty(); }
+
+/// Whether errors were drawn.
+bool draws(const StoredResult& result) { return result.kind == "sensitivity" || result.kind == "monte-carlo"; }
+
 std::string poses_text(const Facts& facts, const StoredResult& result) {
   std::string text = count_text(result.poses.size());
+  if (from_tables(result)) return text + ", from a table";
   const std::string choice = facts.setting("poses", "select");
   if (!choice.empty()) text += ", " + choice;
   return result.time.empty() ? text
@@ -42,14 +50,36 @@ std::string poses_text(const Facts& facts, const StoredResult& result) {
 
 std::string samples_text(const Facts& facts, const StoredResult& result) {
   const std::string fixed = facts.setting("analysis", "samples");
-  if (result.kind == "evaluate" && result.cases.empty())
-    return count_text(result.evaluation.samples) + " rows of errors";
-  if (result.kind == "evaluate") return count_text(result.cases.size()) + " cases";
+  if (from_tables(result)) return counted(result.evaluation.samples, "row of errors", "rows of errors");
+  if (result.kind == "evaluate") return counted(result.cases.size(), "case", "cases");
   if (!fixed.empty()) return fixed;
   const std::string least = facts.setting("analysis", "samples.min");
   if (least.empty()) return {};
   return fmt::format("adaptive, {} to {}, until intervals are within +-{} of their value", least,
                      facts.setting("analysis", "samples.max"), facts.setting("analysis", "samples.relative_error"));
+}
+
+/// The sizes of a coupling study or of an identification.
+std::string sizes_text(const StoredResult& result) {
+  std::vector<std::string> names = result.coupling.size_names;
+  for (const ErrorSize& group : result.groups) names.push_back(group.name);
+  return fmt::format("{}", fmt::join(names, "; "));
+}
+
+/// How many of the errors are not drawn as the others of their unit are.
+std::string own_distributions_text(const Facts& facts, const StoredResult& result) {
+  const auto own = std::ranges::count_if(
+      result.factors, [&](const NamedUnit& factor) { return !facts.setting("errors.override", factor.name).empty(); });
+  if (own == 0) return {};
+  return fmt::format("{} of {} errors have a distribution of their own", own, result.factors.size());
+}
+
+/// The distributions from which errors were drawn.
+void add_distributions(Facts& facts, const StoredResult& result) {
+  const bool drawn = draws(result);
+  facts.add("linear errors", drawn ? facts.setting("errors", "linear") : "");
+  facts.add("angular errors", drawn ? facts.setting("errors", "angular") : "");
+  facts.add("other errors", drawn ? own_distributions_text(facts, result) : "");
 }
 
 std::string speed_text(const RunFacts& facts) {
@@ -65,14 +95,14 @@ void add_study(Facts& facts, const StoredResult& result) {
   facts.add_setting("fidelity of the model", "mechanism", "fidelity");
   facts.add("poses", poses_text(facts, result));
   facts.add("errors", result.factors.empty() ? "" : count_text(result.factors.size()));
-  facts.add_setting("linear errors", "errors", "linear");
-  facts.add_setting("angular errors", "errors", "angular");
+  add_distributions(facts, result);
+  facts.add("sizes of the errors", sizes_text(result));
   facts.add("samples at each pose", samples_text(facts, result));
   facts.add_setting("solver", "solver", "method");
   facts.add_setting("tolerance of the solver [rad, m]", "solver", "tolerance");
   facts.add_setting("most iterations", "solver", "max_iterations");
   facts.add_setting("samples not converged", "solver", "not_converged");
-  facts.add_setting("seed", "run", "seed");
+  facts.add("seed", draws(result) ? facts.setting("run", "seed") : "");
 }
 
 void add_run(Facts& facts, const StoredResult& result) {
@@ -114,6 +144,13 @@ Table facts_table(std::span<const ReportedResult> results) {
   return table;
 }
 
+constexpr std::string_view kOfStudies =
+    "The study below holds every setting, those that its author left out among them. With the same program on the same "
+    "kind of processor it gives the same numbers for any number of threads.";
+constexpr std::string_view kOfTables =
+    "Of the study below, mechanism and solver were used; poses and errors came from tables, and are in the result "
+    "file.";
+
 }  // namespace
 
 std::vector<RunFact> run_facts(const ReportedResult& result) {
@@ -126,9 +163,7 @@ std::vector<RunFact> run_facts(const ReportedResult& result) {
 
 Section what_was_run(std::span<const ReportedResult> results) {
   Section section("what-was-run", "What was run");
-  section.paragraph(
-      "The study below holds every setting, those that its author left out among them. With the same version of poesy "
-      "it gives the same numbers on any machine and any number of threads.");
+  section.paragraph(from_tables(results.front().stored) ? kOfTables : kOfStudies);
   section.table(facts_table(results));
   for (std::size_t n = 0; n < results.size(); ++n) {
     const std::string name = results.size() == 2 ? fmt::format("The study of {}", kLetters[n]) : "The study";
