@@ -13,6 +13,7 @@ import numpy as np
 
 RESPONSES = ["linear_deformation", "angular_deformation"]
 UNITS = ["mm per mm", "mrad per mm"]
+NO_EFFECT = "share that is 0 everywhere"
 
 
 class Page:
@@ -46,22 +47,17 @@ def add_bars(page):
             {"label": "Effect at the size that the study sets", "units": [["mm"] * 40 + ["mrad"] * 31] * 2,
              "value": page.array(local * 2), "low": None, "high": None},
         ],
-        "items": errors(71), "sort": "value", "log": False}
+        "items": errors(71), "sort": "value"}
     page.figures["compared"] = {
         "type": "bars",
         "quantities": [
             {"label": "Global index", "units": ["mm per mm"], **page.interval(page.random.gamma(1, 1, (2, 1, 9)))}],
-        "items": errors(9), "series": ["gauss-newton", "first-order"], "sort": "value", "log": False}
+        "items": errors(9), "series": ["gauss-newton", "first-order"], "sort": "value"}
     page.figures["removable"] = {
         "type": "bars",
         "quantities": [
             {"label": "Change", "units": [""], "value": page.array([0.3, -0.2, 0.1, 0]), "low": None, "high": None}],
-        "items": ["a", "b", "c", "d"], "sort": "none", "log": False}
-    page.figures["decades"] = {
-        "type": "bars",
-        "quantities": [
-            {"label": "Nonlinearity", "units": ["1"], **page.interval(10 ** page.random.uniform(-7, 1, 20))}],
-        "items": errors(20), "sort": "value", "log": True}
+        "items": ["a", "b", "c", "d"], "sort": "none"}
 
 
 def coordinates(page, poses, count):
@@ -78,10 +74,10 @@ def add_fields(page, key, rows, poses, coordinate_count):
     columns = coordinates(page, poses, coordinate_count)
     thinned = {"numbers": page.array(np.arange(poses) * 3)} if key == "large" else {}
     page.figures[f"map_{key}"] = {
-        "type": "heatmap", "rows": errors(rows), "log": key == "large",
+        "type": "heatmap", "rows": errors(rows),
         "columns": {"label": "pose", "coordinates": columns, **thinned},
         "layers": [{"label": label, "unit": unit, "value": page.array(field * scale)}
-                   for label, unit, scale in zip(RESPONSES, UNITS, [1, 1e-5])]}
+                   for label, unit, scale in zip([*RESPONSES, NO_EFFECT], [*UNITS, "%"], [1, 1e-5, 0])]}
     page.figures[f"workspace_{key}"] = {
         "type": "workspace", "coordinates": columns, **thinned,
         "fields": [{"label": "Mean linear deformation", "unit": "mm", "value": page.array(field[-1])},
@@ -109,6 +105,15 @@ def add_lines(page):
             {"label": label, "style": style, **curve(k)} for k, (label, style) in
             enumerate([("FS", "solid"), ("FS+T", "dashed"), ("FS+T+R, a set with quite a long name", "dotted")])]}
             for name in "xyzabc"]}
+    poses = np.arange(60)
+    page.figures["by_pose"] = {
+        "type": "lines", "x": {"label": "pose number", "unit": "", "value": page.array(poses), "log": False}, "most": 4,
+        "panels": [
+            {"label": "share", "unit": "%", "series": [
+                {"label": label, "value": page.array(0 * poses)} for label in ("mean", "worst case of all")]},
+            {"label": "spread", "unit": "mm", "series": [
+                {"label": label, "style": style, **page.interval(page.random.gamma(9, 1, 60))}
+                for label, style in [("mean", "solid"), ("worst case of all", "dashed")]]}]}
 
 
 def add_scatter(page):
@@ -117,18 +122,31 @@ def add_scatter(page):
         "type": "scatter", "choices": [{"label": "Response", "options": RESPONSES}],
         "x": {"label": "gauss-newton", "value": page.array(first)},
         "y": {"label": "first-order", "value": page.array(first * page.random.normal(1, 0.1, (2, 71)))},
-        "units": UNITS, "names": errors(71), "diagonal": True}
+        "units": UNITS, "names": errors(71)}
 
 
-def figures_page(web):
-    """The text of the page."""
-    page = Page()
+def add_extremes(page):
+    page.figures["nothing"] = {
+        "type": "lines", "x": {"label": "time", "unit": "s", "value": page.array([0, 1]), "log": False}, "most": 4,
+        "panels": [{"label": "tip_x", "unit": "mm", "series": []}]}
+    page.figures["negative"] = {
+        "type": "scatter", "x": {"label": "A", "value": page.array([-4, -2])},
+        "y": {"label": "B", "value": page.array([-3, -1])}, "units": ["mm"], "names": ["a", "b"]}
+
+
+def add_all(page):
     add_bars(page)
     add_fields(page, "small", 25, 158, 3)
     add_fields(page, "large", 71, 1738, 4)
     add_fields(page, "flat", 2, 12, 1)
     add_lines(page)
     add_scatter(page)
+
+
+def figures_page(web, add=add_all):
+    """The text of the page with the figures that are added."""
+    page = Page()
+    add(page)
     sections = "".join(
         f'<section id="{key}" aria-labelledby="{key}-h"><h2 id="{key}-h">{key}</h2><p>Which errors matter.</p>'
         f'<figure data-figure="{key}"><div class="plot"></div><figcaption>What is seen.</figcaption></figure></section>'

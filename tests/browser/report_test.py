@@ -14,8 +14,8 @@ if browser.missing():
     print(f"skipped: {', '.join(browser.missing())} not installed")
     sys.exit(77)
 
-from figure_checks import FigureChecks
-from figures_page import figures_page
+from figure_checks import EMPTY, FigureChecks
+from figures_page import NO_EFFECT, add_extremes, figures_page
 
 PROGRAM = os.environ["POESY_PROGRAM"]
 ROOT = Path(__file__).resolve().parents[2]
@@ -80,6 +80,74 @@ class Figures(PageTest):
         page = self.folder / "figures.html"
         page.write_text(figures_page(WEB))
         self.check_page(page)
+
+    def open(self, text, width=1000):
+        page = self.folder / "page.html"
+        page.write_text(text)
+        self.browser.open(page, width)
+
+    def test_figures_are_drawn_before_a_frame_is_shown(self):
+        at_once = f"<script>window.empty = (function () {{{EMPTY}}})();</script></body>"
+        self.open(figures_page(WEB).replace("</body>", at_once))
+        self.assertEqual(self.browser.run("return empty"), [])
+
+    def test_figures_out_of_sight_are_drawn_for_print(self):
+        self.open(figures_page(WEB).replace("<main", '<main style="display:none"'))
+        undrawn = "return [...document.querySelectorAll('.plot')].filter((plot) => !plot.querySelector('svg')).length"
+        self.assertGreater(self.browser.run(undrawn), 0)
+        self.assertEqual(self.browser.run("dispatchEvent(new Event('beforeprint'));" + undrawn), 0)
+
+    def test_what_is_0_everywhere_is_not_drawn_below_0(self):
+        self.open(figures_page(WEB))
+        legend, axis = self.browser.run(
+            """const map = document.querySelector("[data-figure=map_small]");
+            const select = map.querySelector("select");
+            select.value = arguments[0];
+            select.dispatchEvent(new Event("change"));
+            const ticks = (svg) => [...svg.querySelectorAll("text")].map((text) => text.textContent).join(" ");
+            return [map.querySelector(".legend svg"), document.querySelector("[data-figure=by_pose] svg")].map(ticks)""",
+            NO_EFFECT)
+        for text in (legend, axis):
+            self.assertRegex(text, "[0-9]")
+            self.assertNotRegex(text, "[-\u2212]")
+
+    def test_bars_in_several_units_stand_in_the_order_of_a_quantity_in_one(self):
+        self.open(figures_page(WEB))
+        names, said = self.browser.run(
+            """const figure = document.querySelector("[data-figure=ranking]");
+            const shown = () => [...figure.querySelectorAll("[data-mark='y-axis tick label'] text")].map((t) => t.textContent);
+            const select = [...figure.querySelectorAll("select")].at(-1);
+            const first = shown();
+            select.selectedIndex = 1;
+            select.dispatchEvent(new Event("change"));
+            return [[first, shown()], figure.querySelector(".plot svg").getAttribute("aria-label")]""")
+        self.assertGreater(len(names[0]), 20)
+        self.assertEqual(*names)
+        self.assertNotIn("largest", said)
+
+    def test_pose_numbers_are_not_joined_by_lines(self):
+        self.open(figures_page(WEB))
+        count = "return document.querySelectorAll('[data-figure=by_pose] [data-mark={}]').length"
+        self.assertEqual(self.browser.run(count.format("line")), 0)
+        self.assertGreater(self.browser.run(count.format("dot")), 0)
+
+    def test_names_of_lines_are_whole_at_any_width(self):
+        for width in WIDTHS:
+            self.open(figures_page(WEB), width)
+            panel = "return document.querySelector('[data-figure=trajectory] .panel').textContent"
+            self.assertIn("FS+T+R, a set with quite a long name", self.browser.run(panel))
+
+    def test_extremes(self):
+        """A panel without series, and dots that are all negative."""
+        self.open(figures_page(WEB, add_extremes))
+        text = self.browser.run("return document.querySelector('[data-figure=nothing]').textContent")
+        self.assertIn("Nothing to show here.", text)
+        outside = self.browser.run(
+            """const svg = document.querySelector("[data-figure=negative] svg");
+            const frame = [56, svg.viewBox.baseVal.width - 16];
+            return [...svg.querySelectorAll("[data-mark=dot] circle")].map((dot) => dot.cx.baseVal.value)
+              .filter((x) => x <= frame[0] || x >= frame[1])""")
+        self.assertEqual(outside, [])
 
     def test_faults_are_found(self):
         """The checks themselves: a page with one fault of each kind."""

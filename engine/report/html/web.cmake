@@ -27,7 +27,10 @@ set(scripts data.js numbers.js page.js drawing.js colours.js bars.js heatmap.js 
     main.js)
 list(TRANSFORM scripts PREPEND ${web_source}/)
 set(assets_cpp ${POESY_WEB}/assets.cpp)
+set(assets d3.js plot.js report.js report.css)  # as files, which tests/browser reads
+list(TRANSFORM assets PREPEND ${POESY_WEB}/)
 add_custom_command(OUTPUT ${assets_cpp}
+                   BYPRODUCTS ${assets}
                    COMMAND ${CMAKE_COMMAND} "-DSCRIPTS=${scripts}" -D STYLE=${web_source}/report.css
                            -D PACKAGES=${POESY_WEB}/node_modules -D OUTPUT=${assets_cpp} -P
                            ${CMAKE_CURRENT_LIST_DIR}/assets.cmake

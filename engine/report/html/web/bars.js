@@ -44,16 +44,35 @@ function bars(figure, data) {
     return Array.isArray(unit) ? unit[p] : unit;
   }
 
+  /// (series, item) -> the number in the array of that name; NaN where there is none.
+  function at(name) {
+    const array = values(name);
+    if (!array) return () => NaN;
+    return (s, p) => array[(s * (array.length / names.length / series.length) + choices.row) * names.length + p];
+  }
+
+  /// Whether all items have one unit in that quantity: values in several say nothing about which is larger.
+  function comparable({ units }) {
+    return !Array.isArray(units[choices.row]) || new Set(units[choices.row]).size === 1;
+  }
+
+  /// The quantity by which items are sorted; undefined where they stand as they come.
+  function measure() {
+    if (data.sort === "none") return undefined;
+    return comparable(quantity) ? quantity : data.quantities.find(comparable);
+  }
+
+  function order() {
+    const by = measure();
+    if (!by) return d3.range(names.length);
+    const value = at(by.value);
+    return ranked(names.map((_, p) => d3.max(series, (_, s) => Math.abs(value(s, p)))));
+  }
+
   /// [{name, unit, series, value, low, high}], a row for each item shown and series.
   function rowsShown() {
-    const at = (array) =>
-      array
-        ? (s, p) => array[(s * (array.length / names.length / series.length) + choices.row) * names.length + p]
-        : () => NaN;
-    const [value, low, high] = [quantity.value, quantity.low, quantity.high].map((name) => at(values(name)));
-    const largest = names.map((_, p) => d3.max(series, (_, s) => Math.abs(value(s, p))));
-    const order = data.sort === "none" ? d3.range(names.length) : ranked(largest);
-    return order.slice(0, all ? names.length : FIRST_BARS).flatMap((p) =>
+    const [value, low, high] = [quantity.value, quantity.low, quantity.high].map(at);
+    return order().slice(0, all ? names.length : FIRST_BARS).flatMap((p) =>
       series.map((_, s) => ({
         name: names[p],
         unit: unitOf(p),
@@ -67,7 +86,7 @@ function bars(figure, data) {
 
   function drawBars(rows, width) {
     const oneUnit = new Set(rows.map(({ unit }) => unit)).size === 1;
-    const axis = barAxis(rows, data.log, oneUnit ? rows[0].unit : undefined);
+    const axis = barAxis(rows, oneUnit ? rows[0].unit : undefined);
     const valueText = ({ value, unit }) => (oneUnit ? number(value / axis.factor) : withUnit(number(value), unit));
     const said = (d) => [d.name, series[d.series], withInterval(d, d.unit)].filter(Boolean).join("\n");
     const marginLeft = Math.min(textWidth(...rows.map(({ name }) => name)) + 10, width * 0.42);
@@ -92,11 +111,11 @@ function bars(figure, data) {
       },
       marks: [
         series.map((_, s) => seriesMarks(rows, s, series.length, axis, valueText)),
-        axis.log ? [] : Plot.ruleX([0], { stroke: "var(--ink)" }),
+        Plot.ruleX([0], { stroke: "var(--ink)" }),
         tip(rows, { x: (d) => axis.at(d.value), y: "name", title: said, anchor: "left" }, Plot.pointerY),
       ],
     });
-    return [title(labelled(quantity.label, axis.unit)), series.length > 1 ? legend() : [], svg].flat();
+    return [title(labelled(quantity.label, axis.unit) + ordered()), series.length > 1 ? legend() : [], svg].flat();
   }
 
   function legend() {
@@ -104,29 +123,33 @@ function bars(figure, data) {
     return element("p", { class: "swatches" }, ...entries);
   }
 
+  /// Says by what bars are sorted where it is not by what they show.
+  function ordered() {
+    const by = measure();
+    return by && by !== quantity ? `, in the order of: ${by.label}` : "";
+  }
+
   function sentence(rows) {
-    const best = rows[d3.maxIndex(rows, ({ value }) => Math.abs(value))];
     const of = choices.text ? ` of ${choices.text}` : "";
+    if (!comparable(quantity)) return `Bars: ${quantity.label}${of}, ${names.length} items${ordered()}.`;
+    const best = rows[d3.maxIndex(rows, ({ value }) => Math.abs(value))];
     const whose = series.length > 1 ? ` (${series[best.series]})` : "";
     const largest = `${best.name}${whose} with ${withUnit(number(best.value), best.unit)}`;
     return `Bars: ${quantity.label}${of}. The largest of ${names.length} is ${largest}.`;
   }
+
+  return place;
 }
 
-/// The axis of bars: from 0, or logarithmic over what is positive. at(value) is where a value stands on it.
-function barAxis(rows, logarithmic, unit) {
+/// The axis of bars, which holds 0; at(value) is where a value stands on it.
+function barAxis(rows, unit) {
   const numbers = rows.flatMap(({ value, low, high }) => [value, low, high]).filter(Number.isFinite);
-  const positive = numbers.filter((v) => v > 0);
-  const log = Boolean(logarithmic) && positive.length > 0;
-  const range = log ? [d3.min(positive) / 1.3, d3.max(positive) * 1.3] : d3.extent([0, ...numbers]);
+  const range = d3.extent([0, ...numbers]);
   const whole = range[0] < range[1] ? range : [0, 1];
   const axis = unit === undefined ? { factor: 1, unit: "" } : axisUnit(whole, unit);
   const domain = whole.map((v) => v / axis.factor);
-  const options = (width) =>
-    log
-      ? { type: "log", domain, ticks: logTicks(domain, width / 45), tickFormat: logTick }
-      : { domain, ticks: Math.max(2, Math.floor(width / 90)) };
-  return { ...axis, log, options, start: log ? domain[0] : 0, at: (v) => (log && !(v > 0) ? NaN : v / axis.factor) };
+  const options = (width) => ({ domain, ticks: Math.max(2, Math.floor(width / 90)) });
+  return { ...axis, options, at: (v) => v / axis.factor };
 }
 
 /// The bars of series s of so many, their intervals, and their values behind them.
@@ -134,9 +157,9 @@ function seriesMarks(rows, s, of, axis, valueText) {
   const mine = rows.filter((d) => d.series === s);
   const dy = (s + 0.5 - of / 2) * BAR;
   const colours = of === 1 ? { fill: "var(--bar)", stroke: "var(--bar)" } : SERIES_FILLS[s % SERIES_FILLS.length];
-  const end = ({ value, high }) => d3.max([value, high].map(axis.at).concat(axis.start));
+  const end = ({ value, high }) => d3.max([0, ...[value, high].map(axis.at)]);
   return [
-    axis.log ? lollipops(mine, axis, dy, colours) : fullBars(mine, axis, dy, (BAR * (of - 1) + BAR_GAP) / 2, colours),
+    fullBars(mine, axis, dy, (BAR * (of - 1) + BAR_GAP) / 2, colours),
     Plot.ruleY(
       mine.filter((d) => Number.isFinite(d.low)),
       {
@@ -156,13 +179,4 @@ function seriesMarks(rows, s, of, axis, valueText) {
 function fullBars(rows, axis, dy, inset, colours) {
   const edges = { insetTop: inset + dy + 0.5, insetBottom: inset - dy + 0.5 };
   return Plot.rect(rows, { y: "name", x1: 0, x2: (d) => axis.at(d.value), ...edges, ...colours, strokeWidth: 1 });
-}
-
-/// On a logarithmic axis the length of a bar says nothing, so there the end alone is drawn.
-function lollipops(rows, axis, dy, { fill, stroke }) {
-  const at = (d) => axis.at(d.value);
-  return [
-    Plot.ruleY(rows, { y: "name", dy, x1: axis.start, x2: at, stroke, strokeOpacity: 0.35 }),
-    Plot.dot(rows, { y: "name", dy, x: at, r: 4, fill, stroke }),
-  ];
 }

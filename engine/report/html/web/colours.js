@@ -8,27 +8,25 @@ function swatch(fill, stroke, text) {
 
 /// The colours of a field: colour(value), null where it is not known, and legend(width) with its label and unit.
 /// A field with both signs has two hues that meet at 0; another one has the colours of viridis.
-function fieldColours(array, label, unit, log = false) {
-  const positive = Array.from(array).filter((v) => v > 0);
-  const logarithmic = log && positive.length > 0;
-  const domain = symmetric(extent(logarithmic ? positive : array));
+function fieldColours(array, label, unit) {
+  const domain = symmetric(valueExtent(array));
   const interpolate = domain[0] < 0 && domain[1] > 0 ? d3.interpolatePuOr : d3.interpolateViridis;
-  const scale = (logarithmic ? d3.scaleSequentialLog : d3.scaleSequential)(domain, interpolate);
-  const colour = (value) => (Number.isFinite(value) && !(logarithmic && value <= 0) ? scale(value) : null);
+  const scale = d3.scaleSequential(domain, interpolate);
+  const colour = (value) => (Number.isFinite(value) ? scale(value) : null);
   const unknown = known(array).length < array.length ? [swatch("var(--unknown)", "var(--unknown)", "unknown")] : [];
 
   const legend = (width) => {
     const axis = axisUnit(domain, unit);
     const ends = domain.map((v) => v / axis.factor);
     const ramp = Plot.legend({
-      color: { type: logarithmic ? "log" : "linear", domain: ends, interpolate },
+      color: { type: "linear", domain: ends, interpolate },
       width: Math.min(width, 280),
       height: 36,
       marginTop: 4,
       marginBottom: 20,
       marginLeft: 14,
       marginRight: 26,
-      ...(logarithmic ? { ticks: logTicks(ends, 6), tickFormat: logTick } : { ticks: 4 }),
+      ticks: 4,
       style: FIGURE_STYLE,
     });
     const [low, high] = domain.map((v) => withUnit(number(v), unit));

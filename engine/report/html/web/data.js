@@ -42,3 +42,9 @@ function extent(...arrays) {
   const margin = Math.abs(low) * 0.1 || 0.5;
   return [low - margin, high + margin];
 }
+
+/// Likewise for what colours, heights or lengths stand for: where all numbers are 0, it starts there.
+function valueExtent(array) {
+  const range = extent(array);
+  return range[0] < 0 && !Array.from(array).some((v) => v < 0) ? [0, 1] : range;
+}

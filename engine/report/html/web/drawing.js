@@ -44,9 +44,9 @@ function title(text) {
   return element("p", { class: "plot-title" }, text);
 }
 
-/// What stands where no value is known.
-function nothing() {
-  return element("p", { class: "plot-nothing" }, "No value is known here.");
+/// What stands where there is nothing to draw.
+function nothing(text = "No value is known here.") {
+  return element("p", { class: "plot-nothing" }, text);
 }
 
 function setAttributes(made, attributes) {

@@ -40,7 +40,7 @@ function heatmap(figure, data) {
   function drawMap(width) {
     const array = values(layer.value);
     const poses = order();
-    const colours = fieldColours(array, layer.label, layer.unit, data.log);
+    const colours = fieldColours(array, layer.label, layer.unit);
     const rowHeight = Math.max(2, Math.min(ROW_HEIGHT, MAP_HEIGHT / rows.length));
     const named = d3.range(0, rows.length, Math.ceil((ROW_HEIGHT - 1) / rowHeight));
     const marginLeft = Math.min(textWidth(...rows) + 10, width * 0.36);
@@ -170,6 +170,8 @@ function heatmap(figure, data) {
     context.drawImage(small.canvas, 0, 0, high.width, high.height);
     return high.toDataURL();
   }
+
+  return place;
 }
 
 /// value -> [red, green, blue, alpha], transparent where unknown; each colour is parsed once.

@@ -1,15 +1,22 @@
-// Lines over a common axis, in panels; each line is named at its end, and intervals are bands.
+// Lines over a common axis, in panels; each line is named at its end, or below the panel where its name is too wide for
+// that, and intervals are bands. Over pose numbers, which are in no order, values are dots that no line joins.
 
 const MOST_PANELS = 4;
-const DASHES = { solid: undefined, dashed: "6 4", dotted: "1.5 4" };
+// What tells series apart beside their colours.
+const STYLES = {
+  solid: { dash: undefined, symbol: "circle", sign: "●" },
+  dashed: { dash: "6 4", symbol: "triangle", sign: "▲" },
+  dotted: { dash: "1.5 4", symbol: "diamond", sign: "◆" },
+};
+const STYLE_NAMES = Object.keys(STYLES);
+const UNORDERED = "pose number";
 const SERIES_COLOURS = d3.range(8).map((k) => `var(--series-${k + 1})`);
-// Where there are more lines than colours.
-const CYCLE_DASHES = [undefined, "8 3", "2 3"];
 const LABEL_STEP = 14;
 
 function lines(figure, data) {
   const names = [...new Set(data.panels.flatMap(({ series }) => series.map(({ label }) => label)))];
   const x = values(data.x.value);
+  const joined = data.x.label !== UNORDERED;
   const ticked = new Set(names.slice(0, data.most ?? names.length));
   let panel = 0;
 
@@ -51,7 +58,13 @@ function lines(figure, data) {
     );
   }
 
-  /// [{label, colour, dash, points: [{x, y, low, high}]}] of the series ticked.
+  /// Styles other than solid are kept; solid lines take turns where there are more than colours.
+  function styleOf(label, style) {
+    if (style && style !== "solid") return style;
+    return STYLE_NAMES[Math.floor(names.indexOf(label) / SERIES_COLOURS.length) % STYLE_NAMES.length];
+  }
+
+  /// [{label, colour, style, points: [{x, y, low, high}]}] of the series ticked.
   function seriesShown({ series }) {
     return series
       .filter(({ label }) => ticked.has(label))
@@ -63,9 +76,7 @@ function lines(figure, data) {
         return {
           label,
           colour: SERIES_COLOURS[names.indexOf(label) % SERIES_COLOURS.length],
-          dash:
-            DASHES[style] ??
-            CYCLE_DASHES[Math.floor(names.indexOf(label) / SERIES_COLOURS.length) % CYCLE_DASHES.length],
+          style: styleOf(label, style),
           points,
         };
       });
@@ -77,30 +88,28 @@ function lines(figure, data) {
     const numbers = shown
       .flatMap(({ points }) => points.flatMap(({ y, low, high }) => [y, low, high]))
       .filter(Number.isFinite);
-    if (!numbers.length)
-      return element(
-        "div",
-        { class: "panel" },
-        title(one.label),
-        shown.length ? nothing() : element("p", { class: "plot-nothing" }, "No line is ticked."),
-      );
-    const domain = extent(numbers);
+    if (!numbers.length) return element("div", { class: "panel" }, title(one.label), nothing(whyEmpty(one, shown)));
+    const domain = valueExtent(numbers);
     const axis = axisUnit(domain, unit);
-    const marginRight = Math.min(textWidth(...shown.map(({ label }) => label)) + 16, width * 0.4);
-    const height = Math.max(240, shown.length * LABEL_STEP + 60);
+    const labelWidth = textWidth(...shown.map(({ label }) => label)) + 16;
+    const below = !joined || labelWidth > width * 0.4;
+    const marginRight = below ? 16 : labelWidth;
+    const height = below ? 240 : Math.max(240, shown.length * LABEL_STEP + 60);
     const scaled = (key) => (point) => point[key] / axis.factor;
     const log = Boolean(data.x.log);
-    const marks = shown.flatMap(({ points, colour, dash, label }) =>
+    const marks = shown.flatMap(({ points, colour, style, label }) =>
       [
-        Plot.areaY(points, { x: "x", y1: scaled("low"), y2: scaled("high"), fill: colour, fillOpacity: 0.13 }),
-        Plot.line(points, { x: "x", y: scaled("y"), stroke: colour, strokeWidth: 1.7, strokeDasharray: dash }),
-        points.length <= 40 ? Plot.dot(points, { x: "x", y: scaled("y"), fill: colour, r: 2.2 }) : [],
+        joined ? line(points, scaled, colour, style) : dots(points, scaled, colour, style),
         tip(points, {
           x: "x",
           y: scaled("y"),
           maxRadius: 14,
           title: (point) =>
-            `${label}\n${data.x.label} ${withUnit(plain(point.x), data.x.unit)}\n${withInterval({ ...point, value: point.y }, unit)}`,
+            [
+              label,
+              `${data.x.label} ${withUnit(plain(point.x), data.x.unit)}`,
+              withInterval({ ...point, value: point.y }, unit),
+            ].join("\n"),
         }),
       ].flat(),
     );
@@ -115,6 +124,7 @@ function lines(figure, data) {
       x: {
         type: log ? "log" : "linear",
         domain: xDomain,
+        inset: joined ? 0 : 8,
         label: labelled(data.x.label, data.x.unit),
         labelAnchor: "center",
         labelArrow: "none",
@@ -129,24 +139,69 @@ function lines(figure, data) {
         label: null,
         ticks: Math.floor(height / 50),
       },
-      marks: [...marks, endLabels(shown, axis.factor, marginRight - 12)],
+      marks: [...marks, below ? [] : endLabels(shown, axis.factor)],
     });
-    return element("div", { class: "panel" }, title(labelled(one.label, axis.unit)), svg);
+    const legend = below ? [seriesLegend(shown, joined)] : [];
+    return element("div", { class: "panel" }, title(labelled(one.label, axis.unit)), svg, ...legend);
+  }
+
+  function whyEmpty({ series }, shown) {
+    if (!series.length) return "Nothing to show here.";
+    return shown.length ? undefined : "No line is ticked.";
   }
 
   function sentence(one, shown, unit) {
-    const ends = shown.map(({ label, points }) => ({
+    const telling = shown.map(({ label, points }) => ({
       label,
-      y: points.findLast(({ y }) => Number.isFinite(y))?.y ?? NaN,
+      y: (joined ? points.findLast(({ y }) => Number.isFinite(y))?.y : d3.max(points, ({ y }) => y)) ?? NaN,
     }));
-    const best = ends[d3.maxIndex(ends, ({ y }) => y)] ?? ends[0];
+    const best = telling[d3.maxIndex(telling, ({ y }) => y)] ?? telling[0];
     const highest = `${best.label} with ${withUnit(number(best.y), unit)}`;
-    return `Lines: ${one.label} over ${data.x.label}, ${shown.length} lines. At its end the highest is ${highest}.`;
+    const over = `${one.label} over ${data.x.label}, ${shown.length}`;
+    return joined
+      ? `Lines: ${over} lines. At its end the highest is ${highest}.`
+      : `Dots: ${over} series. The highest is ${highest}.`;
   }
+
+  return place;
+}
+
+function line(points, scaled, colour, style) {
+  return [
+    Plot.areaY(points, { x: "x", y1: scaled("low"), y2: scaled("high"), fill: colour, fillOpacity: 0.13 }),
+    Plot.line(points, {
+      x: "x",
+      y: scaled("y"),
+      stroke: colour,
+      strokeWidth: 1.7,
+      strokeDasharray: STYLES[style].dash,
+    }),
+    points.length <= 40 ? Plot.dot(points, { x: "x", y: scaled("y"), fill: colour, r: 2.2 }) : [],
+  ].flat();
+}
+
+function dots(points, scaled, colour, style) {
+  return [
+    Plot.ruleX(
+      points.filter(({ low }) => Number.isFinite(low)),
+      { x: "x", y1: scaled("low"), y2: scaled("high"), stroke: colour, strokeOpacity: 0.4 },
+    ),
+    Plot.dot(points, { x: "x", y: scaled("y"), fill: colour, r: 2.6, symbol: STYLES[style].symbol }),
+  ];
+}
+
+/// The names of lines or dots, each behind a piece of it.
+function seriesLegend(shown, joined) {
+  const piece = ({ colour, style }) =>
+    joined
+      ? element("i", { class: "stroke", style: `border-top-color:${colour};border-top-style:${style}` })
+      : element("i", { class: "sign", style: `color:${colour}`, "aria-hidden": "true" }, STYLES[style].sign);
+  const entries = shown.map((one) => element("span", { class: "entry" }, piece(one), element("span", {}, one.label)));
+  return element("p", { class: "swatches below" }, ...entries);
 }
 
 /// The name of each line beside its last point; moved apart where they would overlap.
-function endLabels(shown, factor, width) {
+function endLabels(shown, factor) {
   return (index, scales, channels, { width: whole, height, marginRight, marginTop, marginBottom }) => {
     const labels = shown
       .map(({ label, colour, points }) => ({ label, colour, last: points.findLast(({ y }) => Number.isFinite(y)) }))
@@ -160,7 +215,7 @@ function endLabels(shown, factor, width) {
         svgElement(
           "text",
           { x: whole - marginRight + 8, y, dy: "0.32em", fill: colour, "font-weight": 500 },
-          shortened(label, width),
+          label,
         ),
       );
     }

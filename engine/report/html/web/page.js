@@ -43,7 +43,8 @@ class Choices {
   }
 }
 
-/// Where a figure is drawn: controls above, then the plot, drawn again by draw(width) whenever its width changes.
+/// Where a figure is drawn: controls above, then the plot, drawn by draw(width): at first by fit(), when the figure is
+/// whole, and again whenever its width changes.
 class Place {
   constructor(figure, draw) {
     this.plot = figure.querySelector(".plot");
@@ -53,7 +54,7 @@ class Place {
     this.draw = draw;
     // In the next frame: what is drawn here changes the height that is observed.
     new ResizeObserver(() => requestAnimationFrame(() => this.fit())).observe(this.plot);
-    addEventListener("beforeprint", () => this.width && this.redraw(PRINT_WIDTH));
+    addEventListener("beforeprint", () => this.redraw(PRINT_WIDTH));
     addEventListener("afterprint", () => this.redraw());
   }
   fit() {
@@ -69,4 +70,17 @@ const PRINT_WIDTH = 680;
 /// A line for the value under the cursor, which a screen reader says when it changes.
 function readout(hint) {
   return element("p", { class: "readout", role: "status" }, hint);
+}
+
+/// A number whose digits stand in groups is not broken between them; its text stays what it is.
+function keepNumbersWhole() {
+  const numbers = /(\d{1,3}(?: \d{3})+(?!\d))/;
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const found = [];
+  while (texts.nextNode()) {
+    const inProse = texts.currentNode.parentElement.matches("p, li, td, dd");
+    if (inProse && numbers.test(texts.currentNode.data)) found.push(texts.currentNode);
+  }
+  const whole = (part, k) => (k % 2 ? element("span", { class: "whole" }, part) : part);
+  for (const text of found) text.replaceWith(...text.data.split(numbers).map(whole));
 }

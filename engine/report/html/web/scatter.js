@@ -15,9 +15,10 @@ function scatter(figure, data) {
       .map((name, p) => ({ name, x: x[p], y: y[p] }))
       .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
     if (!points.length) return nothing();
-    const [low, high] = extent(points.flatMap((point) => [point.x, point.y]));
+    const [low, high] = valueExtent(points.flatMap((point) => [point.x, point.y]));
+    const margin = 0.04 * (high - low);
     const axis = axisUnit([low, high], unit);
-    const domain = [Math.min(0, low), high * 1.04].map((v) => v / axis.factor);
+    const domain = [low < 0 ? low - margin : 0, high + margin].map((v) => v / axis.factor);
     const size = Math.min(width, 600);
     const at = { x: (point) => point.x / axis.factor, y: (point) => point.y / axis.factor };
     const said = (point) =>
@@ -40,15 +41,10 @@ function scatter(figure, data) {
       },
       y: { domain, label: labelled(data.y.label, axis.unit), labelArrow: "none", grid: true, ticks },
       marks: [
-        data.diagonal
-          ? Plot.line(
-              [
-                [domain[0], domain[0]],
-                [domain[1], domain[1]],
-              ],
-              { stroke: "var(--quiet)", strokeDasharray: "4 4" },
-            )
-          : [],
+        Plot.line(
+          domain.map((v) => [v, v]),
+          { stroke: "var(--quiet)", strokeDasharray: "4 4" },
+        ),
         Plot.dot(points, { ...at, r: 4, fill: "var(--bar)", fillOpacity: 0.35, stroke: "var(--bar)" }),
         pointNames(points, at),
         tip(points, { ...at, title: said }),
@@ -62,6 +58,8 @@ function scatter(figure, data) {
     const largest = `${best.name} with ${withUnit(number(best.x), unit)} and ${withUnit(number(best.y), unit)}`;
     return `Dots: ${data.y.label} against ${data.x.label}${of}, ${points.length} items. The largest is ${largest}.`;
   }
+
+  return place;
 }
 
 /// Names beside dots, the most telling first, where no dot and no other name is in the way.

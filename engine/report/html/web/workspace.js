@@ -153,6 +153,8 @@ function workspace(figure, data) {
       element("button", { type: "button", onclick: reset }, "Turn back"),
     );
   }
+
+  return place;
 }
 
 // The edges of the box that are its axes: at the start, in front below and at the left. Each is named at its far end.
