@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
+#include <span>
 
 #include "engine/report/display.h"
 #include "engine/report/html/outcomes.h"
