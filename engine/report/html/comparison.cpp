@@ -126,9 +126,7 @@ std::string order_of(const Comparison& compared) {
     });
   };
   if (!compared.ranked) return {};
-  const bool mixed = std::ranges::any_of(compared.quantities, differ);
-  return std::string(", by their effect, the largest first") +
-         (mixed ? "; indices per mm and per deg do not compare" : "");
+  return ", " + order_by_effect(std::ranges::any_of(compared.quantities, differ));
 }
 
 }  // namespace

@@ -24,9 +24,9 @@ SolveTally evaluation_tally(const StoredResult& result) {
   return outcomes;
 }
 
-Table status_table(const SolveCounts& solves) {
+Table status_table(const SolveCounts& solves, std::string_view at_fidelity) {
   Table table{.name = "solves",
-              .caption = "How the solves ended",
+              .caption = fmt::format("How the solves{} ended", at_fidelity),
               .columns = {text_column("status", "status"), number_column("solves", "solves"),
                           percent_column("share", "share"), text_column("meaning", "meaning")},
               .rows = {},
@@ -145,12 +145,15 @@ void add_outcomes(const ReportedResult& result, Page& page) {
     add_figures(result.stored, outcomes, page, section);
   }
   if (const auto second = second_fidelity(result.stored)) {
-    section.paragraph(fmt::format(
-        "At fidelity \"{}\", {} of {} solves did not converge{}", result.stored.fidelities[1],
-        count_text(second->not_converged), count_text(second->total),
-        second->not_converged == 0 ? "." : ": what is said of it rests on the others. The table is of the first."));
+    const std::string solves = count_text(second->total);
+    section.paragraph(
+        second->not_converged == 0
+            ? fmt::format("All {} solves at fidelity \"{}\" converged.", solves, result.stored.fidelities[1])
+            : fmt::format(
+                  "At fidelity \"{}\", {} of {} solves did not converge: what is said of it rests on the others.",
+                  result.stored.fidelities[1], count_text(second->not_converged), solves));
   }
-  section.table(status_table(total));
+  section.table(status_table(total, at_first));
   if (!listed_failures(result.stored).empty()) {
     section.folded("Samples that did not converge, and how to replay them", failures_table(result));
   }

@@ -117,10 +117,13 @@ std::vector<std::vector<std::string>> response_units(const StoredResult& result,
   return units;
 }
 
-std::string order_by_effect(const std::vector<NamedUnit>& factors) {
-  const bool mixed = std::ranges::any_of(factors, [&](const NamedUnit& one) { return one.unit != factors[0].unit; });
+std::string order_by_effect(bool mixed) {
   return std::string("by their effect, the largest first") +
          (mixed ? "; indices per mm and per deg do not compare" : "");
+}
+
+bool mixed_units(const std::vector<NamedUnit>& things) {
+  return std::ranges::any_of(things, [&](const NamedUnit& one) { return one.unit != things[0].unit; });
 }
 
 std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,

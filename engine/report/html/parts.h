@@ -42,8 +42,10 @@ std::vector<std::vector<std::string>> index_units(const StoredResult& result, st
 /// "mm", for each of these responses.
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
-/// What a caption of bars by errors says of their order.
-std::string order_by_effect(const std::vector<NamedUnit>& factors);
+/// What a caption of bars says of the order of errors, whose units may be mixed.
+std::string order_by_effect(bool mixed);
+/// Whether not all have the same unit.
+bool mixed_units(const std::vector<NamedUnit>& things);
 
 /// Order statistics of a response over these samples (positions pose x samples + sample) that were solved, NaN of none.
 std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,

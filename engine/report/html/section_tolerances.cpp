@@ -45,13 +45,15 @@ void add_tolerances(const StoredResult& result, Page& page) {
       response, tolerances(response_study(result.sensitivity, result.factor_sigma, response), reference), std::nullopt};
   section.paragraph(fmt::format(
       "Tolerances, as standard deviations of normal errors, with which every error has the same effect on {}: the "
-      "tighter "
-      "one, the more its error matters. They are counted from a reference, and all may be multiplied by one number. "
+      "tighter one, the more its error matters. They are counted from a reference, and all may be multiplied by one "
+      "number. "
       "'poesy tolerances' with --limit gives those that keep {} below a limit, and studies that confirm them.",
       name, name));
-  add_figure(
-      page, section, "tolerances", bars_of(result, found.all, page.figures.pool),
-      fmt::format("What each error contributes to the variance of {}, and its tolerance of equal effect.", name));
+  add_figure(page, section, "tolerances", bars_of(result, found.all, page.figures.pool),
+             fmt::format(
+                 "What each error contributes to the variance of {}, and its tolerance of equal effect; {}.", name,
+                 mixed_units(result.factors) ? "the largest share first, for tolerances in mm and in deg do not compare"
+                                             : "the largest first"));
   section.table(tolerance_table(result, found));
   page.sections.push_back(std::move(section));
 }

@@ -74,6 +74,11 @@ Lines lines_of(const StoredResult& result, const Course& course, ArrayPool& pool
   return lines;
 }
 
+constexpr std::string_view kAtTheUpperEnd =
+    "Where poses differ by little more than chance the value stands at the upper end of its interval, for chance adds "
+    "to "
+    "the spread between poses; more samples close the gap.";
+
 /// Why there is no course, and what gives one.
 constexpr std::string_view kNoCourseOfIndices =
     "An older poesy wrote this result, which did not keep how its indices settled with the number of samples. Run the "
@@ -91,6 +96,7 @@ void add_certainty(const StoredResult& result, std::vector<Table>& tables, Page&
       fmt::format("Intervals are {:.3g} % ones and speak of the samples alone: other poses, other sizes of errors, and "
                   "samples that did not converge are not in them.",
                   100.0 * (indices ? result.sensitivity.conf_level : result.monte_carlo.conf_level)));
+  if (indices) section.paragraph(kAtTheUpperEnd);
   if (const std::optional<Course> course = course_of(result)) {
     section.paragraph(
         indices ? "What a study with fewer samples would have found: curves that have become flat, with narrow bands, "

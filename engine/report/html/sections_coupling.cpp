@@ -29,7 +29,7 @@ class Curves {
   std::vector<Field> fields() const {
     std::vector<Field> list;
     for (const std::size_t r : shown_.responses) {
-      for (std::size_t z = 0; z < found_.sizes; ++z) {
+      for (const std::size_t z : sizes()) {
         const std::string label = panel_label(r, z);
         list.push_back(
             {label + ", all sources", unit_text(result_.responses[r]), curve("effect", found_.effect, r, z, last())});
@@ -45,6 +45,12 @@ class Curves {
  private:
   /// The first subsets are the sources one by one.
   std::size_t sources() const { return std::min(result_.coupling.sources.size(), found_.subsets); }
+  /// The last first, which is what tables show.
+  std::vector<std::size_t> sizes() const {
+    std::vector<std::size_t> list;
+    for (std::size_t z = found_.sizes; z-- > 0;) list.push_back(z);
+    return list;
+  }
   std::size_t last() const { return found_.subsets - 1; }
   const std::string& subset(std::size_t k) const { return result_.coupling.subsets[k]; }
   std::string panel_label(std::size_t r, std::size_t z) const {
@@ -55,7 +61,7 @@ class Curves {
   Lines lines(const SeriesOf& series_of) const {
     Lines all{.x = pose_axis(result_, shown_, pool_), .panels = {}, .most = sources() + 4};
     for (const std::size_t r : shown_.responses) {
-      for (std::size_t z = 0; z < found_.sizes; ++z) {
+      for (const std::size_t z : sizes()) {
         all.panels.push_back({panel_label(r, z), unit_text(result_.responses[r]), series_of(r, z)});
       }
     }
@@ -129,8 +135,8 @@ void add_coupling(const StoredResult& result, Page& page) {
   Section section("together", "What the sources do, alone and together");
   section.paragraph(
       "Each source of errors has its size alone, and with others. The interaction is what all do together less the sum "
-      "of "
-      "what each does alone. Worst case: the sum of their magnitudes, where signs are not known. Root sum square: what "
+      "of what each does alone. Worst case: the sum of their magnitudes, where signs are not known. Root sum square: "
+      "what "
       "is to be expected where either sign is as likely.");
   if (!shown.note().empty()) section.paragraph(shown.note());
   add_figure(page, section, "sources", curves.effects(),
@@ -140,8 +146,7 @@ void add_coupling(const StoredResult& result, Page& page) {
   Section cancels("where", "Where they cancel, and where they add up");
   cancels.paragraph(
       "Cancellation is the part of the sources' effects that opposes each other: 0 where none opposes another, 100 % "
-      "where "
-      "nothing is left of them together.");
+      "where nothing is left of them together.");
   if (curves.has_subsets()) {
     add_figure(page, cancels, "cancellation", curves.cancellations(), "How much the sources cancel each other.");
   }

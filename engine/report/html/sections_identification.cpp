@@ -43,8 +43,8 @@ void add_identification(const StoredResult& result, Page& page) {
   Section section("which-errors-deform", "Which errors deform the mechanism");
   section.paragraph(fmt::format(
       "Each error was set alone, and then together with those of its frame that do not deform alone, at {}. An error "
-      "is "
-      "harmless where nothing deforms by more than {:.3g}, which is rounding, at {} of the {} poses; a pose that was "
+      "is harmless where nothing deforms by more than {:.3g}, which is rounding, at {} of the {} poses; a pose that "
+      "was "
       "not solved counts as deformed.",
       counted(found.groups, "size", "sizes"), found.rounding, count_text(found.required_poses),
       count_text(found.poses)));

@@ -6,7 +6,6 @@
 #include "engine/report/html/parts.h"
 #include "engine/report/html/sections.h"
 #include "engine/report/tables.h"
-#include "engine/report/tolerance_table.h"
 #include "engine/run/result.h"
 
 namespace poesy {
@@ -56,8 +55,7 @@ void add_fidelity(const StoredResult& result, std::vector<Table>& tables, Page& 
   Section section("linearity", "Is first order enough");
   section.paragraph(
       fmt::format("The study was solved at fidelity \"{}\" and, on the same draws, at \"{}\". An error is linear where "
-                  "they differ by "
-                  "no more than {:.3g} % of its largest effect, at the size the study sets.",
+                  "they differ by no more than {:.3g} % of its largest effect, at the size the study sets.",
                   result.fidelities[0], result.fidelities[1], 100.0 * found.linearity));
   ArrayPool& pool = page.figures.pool;
   const std::size_t factors = result.factors.size();

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
+#include <span>
 
 #include "engine/report/display.h"
 #include "engine/report/html/outcomes.h"
@@ -49,6 +50,37 @@ BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& 
           .high = add("_high", found.global_ci_high)};
 }
 
+/// The errors that make most of the variance, and those that together make next to none; empty where not all of their
+/// effects are known, or none has one.
+std::string few_matter_text(const StoredResult& result) {
+  constexpr double kMost = 0.8;
+  constexpr double kHardly = 0.01;
+  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
+  const std::size_t factors = result.factors.size();
+  const std::vector<double> shares = variance_shares(
+      std::span(result.sensitivity.global).subspan(ranked.response * factors, factors), result.factor_sigma);
+  if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return {};
+  std::vector<std::string> names;
+  double sum = 0.0;
+  while (sum < kMost && names.size() < factors) {
+    const std::size_t p = ranked.rows[names.size()];
+    names.push_back(result.factors[p].name);
+    sum += shares[p];
+  }
+  std::size_t hardly = 0;
+  for (double tail = 0.0; hardly < factors; ++hardly) {
+    tail += shares[ranked.rows[factors - 1 - hardly]];
+    if (tail >= kHardly) break;
+  }
+  std::string text =
+      fmt::format("{} of {} {} {:.0f} % of the variance that the study's sizes cause in {}: {}.", names.size(),
+                  counted(factors, "error", "errors"), names.size() == 1 ? "makes" : "make", 100.0 * sum,
+                  result.responses[ranked.response].name, some_names(names));
+  if (hardly > 0)
+    text += fmt::format(" {} hardly {} (below 1 % together).", hardly, hardly == 1 ? "matters" : "matter");
+  return text;
+}
+
 Section which_errors_matter(const StoredResult& result, std::vector<Table>& tables, Page& page) {
   Section section("which-errors-matter", "Which errors matter");
   section.paragraph(fmt::format(
@@ -56,10 +88,12 @@ Section which_errors_matter(const StoredResult& result, std::vector<Table>& tabl
       "the {} plus its spread between them. Times the size that the study gives the error it is the effect, which "
       "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals.",
       counted(result.poses.size(), "pose", "poses"), 100.0 * result.sensitivity.conf_level));
+  if (const std::string text = few_matter_text(result); !text.empty()) section.paragraph(text);
   Bars bars{{{"response", names_of(result.responses, response_order(result))}},
             {bar_quantity(result, true, page.figures.pool), bar_quantity(result, false, page.figures.pool)},
             names_of(result.factors)};
-  add_figure(page, section, "ranking", std::move(bars), "The errors " + order_by_effect(result.factors) + ".");
+  add_figure(page, section, "ranking", std::move(bars),
+             "The errors " + order_by_effect(mixed_units(result.factors)) + ".");
   for (const Table& table : take_tables(tables, std::vector<std::string_view>{"ranked"})) section.table(table);
   return section;
 }
@@ -130,6 +164,27 @@ Lines along_trajectory(const StoredResult& result, const ShownCells& shown, Arra
   return lines;
 }
 
+/// Where the most important error has its largest effect; empty where poses hardly differ.
+std::string worst_place_text(const StoredResult& result) {
+  constexpr double kHardlyDiffers = 1.05;
+  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
+  if (ranked.rows.empty()) return {};
+  const std::size_t error = ranked.rows.front();
+  const std::vector<double> all = local_effects(result, ranked.response);
+  const auto effects = std::span(all).subspan(error * result.poses.size(), result.poses.size());
+  std::size_t worst = 0;
+  double sum = 0.0;
+  for (std::size_t m = 0; m < effects.size(); ++m) {
+    sum += effects[m];
+    if (effects[m] > effects[worst]) worst = m;
+  }
+  const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
+  if (!(ratio >= kHardlyDiffers)) return {};  // neither where an effect is not known
+  return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
+                     result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),
+                     ratio);
+}
+
 Section where(const StoredResult& result, Page& page) {
   ArrayPool& pool = page.figures.pool;
   const ShownCells shown = shown_cells(result);
@@ -137,6 +192,7 @@ Section where(const StoredResult& result, Page& page) {
   section.paragraph(
       "The effect of each error at each pose: its local index there times the size that the study gives it. The last "
       "layer is the share of samples that did not converge.");
+  if (const std::string text = worst_place_text(result); !text.empty()) section.paragraph(text);
   if (!shown.note().empty()) section.paragraph(shown.note());
   const std::vector<HeatLayer> shown_layers = layers(result, shown, pool);
   if (!result.time.empty()) {

@@ -239,7 +239,8 @@ TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
       const double scale = result.stored.factor_sigma[p] / unit;
       const std::vector<float> global = array(page, ranking["value"]);
       expect_shown(global[shown * 2 + p], found.global[r * 2 + p] * scale);
-      for (std::size_t m = 0; m < 4; ++m) expect_shown(local[p * 4 + m], found.local[(r * 2 + p) * 4 + m] * scale);
+      const std::size_t row = heat["rows"][0] == result.stored.factors[p].name ? 0 : 1;
+      for (std::size_t m = 0; m < 4; ++m) expect_shown(local[row * 4 + m], found.local[(r * 2 + p) * 4 + m] * scale);
     }
   }
   for (std::size_t c = 0; c < 3; ++c) {
@@ -265,9 +266,71 @@ TEST_F(HtmlReport, ShowsQuantilesAndWorstPoseOfAMonteCarloResult) {
             (std::vector<float>{0.0F, 5.0F, 99.5F, 100.0F}));
 }
 
+TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {
+  ReportedResult result = sensitivity();
+  StoredResult& stored = result.stored;
+  stored.factor_sigma = {1.0, 1.0};
+  stored.sensitivity.global = {0.1, 1.0, 0.1, 1.0};
+  for (std::size_t at = 0; at < stored.sensitivity.local.size(); ++at) {
+    stored.sensitivity.local[at] = at % 4 == 3 ? 5.0 : 1.0;  // the last pose is the worst, 2.5 times the mean
+  }
+  const std::string html = report(result);
+  const Json page = data(html);
+  const Json order{stored.factors[1].name, stored.factors[0].name};
+  EXPECT_EQ(page["figures"]["heat"]["rows"], order);
+  EXPECT_EQ(page["figures"]["workspace"]["fields"][0]["rows"], order);
+  EXPECT_NE(html.find("1 of 2 errors makes 99 % of the variance"), std::string::npos);
+  EXPECT_NE(html.find(": " + stored.factors[1].name + ". 1 hardly matters (below 1 % together)"), std::string::npos);
+  EXPECT_NE(html.find("is largest at pose 3 ("), std::string::npos);
+  EXPECT_NE(html.find("2.5 times its mean over the poses"), std::string::npos);
+}
+
+TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
+  ReportedResult result = sensitivity();
+  StoredResult& stored = result.stored;
+  stored.fidelities = {"one", "two"};
+  FidelityResult& compared = stored.sensitivity.fidelity.emplace();
+  for (auto* values :
+       {&compared.global, &compared.discrepancy, &compared.relative_discrepancy, &compared.nonlinearity}) {
+    values->assign(4, 0.0);
+  }
+  compared.linear = {1, 1};
+  compared.not_converged.assign(8, 0);
+  compared.not_converged[5] = 7;
+  for (SolveCounts& solves : stored.sensitivity.solves) solves.by_status = {100, 0, 0, 0, 0};
+  const std::string page = body(report(result));
+  EXPECT_NE(page.find("All 800 solves at fidelity &quot;one&quot; converged."), std::string::npos);
+  EXPECT_NE(page.find("At fidelity &quot;two&quot;, 7 of 800 solves did not converge:"), std::string::npos);
+  EXPECT_NE(page.find("7 of 800 solves at fidelity &quot;two&quot; (0.875 %) did not converge."), std::string::npos);
+}
+
+TEST_F(HtmlReport, TakesRoundingForNoDifference) {
+  const ReportedResult a = sensitivity();
+  ReportedResult b = a;
+  for (double& value : b.stored.sensitivity.global) value *= 1.0 + 1e-13;
+  for (double& value : b.stored.sensitivity.local) value += 1e-12;
+  const std::string html = report(a, b);
+  const Json page = data(html);
+  for (const float value : array(page, page["figures"]["heat"]["layers"][0]["value"])) {
+    EXPECT_TRUE(value == 0.0F || std::isnan(value)) << value;
+  }
+  const std::string numbers = html.substr(0, html.find("<section id=\"what-was-run\""));
+  EXPECT_TRUE(all(body(numbers), "(e-1[0-9]( %)?)</td>").empty());
+}
+
+TEST_F(HtmlReport, OfCoupledSourcesOpensAtTheLastSize) {
+  example.write_coupling(path);
+  const ReportedResult result = stored();
+  const std::string label = data(report(result))["figures"]["sources"]["panels"][0]["label"];
+  EXPECT_TRUE(label.ends_with(" at " + result.stored.coupling.size_names.back())) << label;
+}
+
 TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
   ReportedResult result = sensitivity();
-  EXPECT_FALSE(data(report(result))["figures"].contains("convergence"));
+  result.stored.sensitivity.history.reset();
+  const std::string without = report(result);
+  EXPECT_FALSE(data(without)["figures"].contains("convergence"));
+  EXPECT_NE(without.find("did not keep how its indices settled"), std::string::npos);
   IndexHistory history{
       {10, 100}, std::vector<double>(8, 0.5), std::vector<double>(8, 0.25), std::vector<double>(8, 1.0)};
   result.stored.sensitivity.history = history;
