@@ -64,18 +64,18 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   return table;
 }
 
-/// Whether a source alone does nothing at any pose, at any size, to any response shown.
+/// Whether a source alone does nothing at any pose, at any size, to one of the responses shown.
 bool does_nothing(const StoredResult& result, const std::string& source) {
   const StoredCoupling& stored = result.coupling;
   const CouplingResult& found = stored.found;
   const auto k = static_cast<std::size_t>(std::ranges::find(stored.subsets, source) - stored.subsets.begin());
   if (k == found.subsets) return false;
-  for (const std::size_t r : result.signed_headline) {
+  return std::ranges::any_of(result.signed_headline, [&](std::size_t r) {
     for (std::size_t z = 0; z < found.sizes; ++z) {
       if (!(found.effect_max[(r * found.sizes + z) * found.subsets + k] <= rounding_at(stored, z))) return false;
     }
-  }
-  return true;
+    return true;
+  });
 }
 
 /// Whether each limb has the same errors, as the stored study, complete as it is, says.
