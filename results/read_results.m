@@ -3,7 +3,8 @@ function result = read_results(source, response, figure_file)
 %
 %   result = read_results('study.h5')     MATLAB reads the result file itself
 %   result = read_results('tables')       Octave reads what `poesy export study.h5 -d tables` wrote; so can MATLAB
-%   read_results(source)                  draws what each error does to the first response that is a length
+%   read_results(source)                  draws what each error does to the first response that is a length (poesy show
+%                                         looks among those that the mechanism puts first; name it to be sure)
 %   read_results(source, 'angular_deformation')                          to another response
 %   result = read_results(source, 'linear_deformation', 'ranked.svg')    writes the figure to a file
 %

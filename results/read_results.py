@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Reads a result of poesy; prints its errors ranked by what they do, and draws them as bars with their intervals.
+"""Reads a sensitivity result of poesy; prints its errors ranked by what they do, draws them as bars with intervals.
+
+read_result loads a result of any kind by its groups; what ranks needs a sensitivity result.
 
 usage: read_results.py RESULT.h5 [--response NAME] [--top N] [-o ranked.svg]
 
@@ -20,10 +22,17 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
-import numpy as np
-import xarray
-from matplotlib.figure import Figure
+try:
+    import h5netcdf  # noqa: F401  xarray reads by it
+    import h5py
+    import numpy as np
+    import xarray
+    from matplotlib.figure import Figure
+except ImportError as missing:
+    sys.exit(
+        f"read_results.py: {missing}; needs h5py, h5netcdf, xarray and matplotlib: apt-get install python3-h5py "
+        "python3-h5netcdf python3-xarray python3-matplotlib, and run it by /usr/bin/python3"
+    )
 
 NEWEST_MAJOR = 1
 ROUNDING = 1e-10  # an index below it, in SI, is zero but for rounding

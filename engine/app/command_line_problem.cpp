@@ -93,12 +93,28 @@ std::optional<std::string> wrong_number_of_values(const CLI::App& app, const Des
   return std::nullopt;
 }
 
+/// More things by their place than the command takes.
+std::optional<std::string> too_many_by_place(const CLI::App& app, const DescribedCommand& command) {
+  const auto options = app.get_options();
+  for (std::size_t k = 0; k < options.size(); ++k) {
+    if (!command.options[k].by_place()) continue;
+    const auto most = static_cast<std::size_t>(options[k]->get_items_expected_max());
+    if (options[k]->count() <= most) continue;
+    return fmt::format(
+        "{} takes at most {} {}, not {}; write {}, {}", title(command), most,
+        options[k]->get_single_name() + (most == 1 || options[k]->get_single_name().ends_with('s') ? "" : "s"),
+        options[k]->count(), synopsis(command), see_help(command));
+  }
+  return std::nullopt;
+}
+
 std::string problem_of_command(const CLI::App& app, const CLI::ParseError& error) {
   const DescribedCommand command = describe_command(app);
   const std::vector<std::string> extras = app.remaining();
   const auto option = std::ranges::find_if(extras, is_option);
   if (option != extras.end()) return unknown_option(*option, command);
   if (const auto problem = wrong_number_of_values(app, command, error)) return *problem;
+  if (const auto problem = too_many_by_place(app, command)) return *problem;
   if (const auto problem = excluded(app, command)) return *problem;
   if (const auto list = missing(app, command); !list.empty()) {
     return fmt::format("{} needs {}; write {}, {}", title(command), fmt::join(list, " and "), synopsis(command),

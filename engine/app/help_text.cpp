@@ -6,12 +6,12 @@
 #include "engine/app/description.h"
 #include "engine/app/output_width.h"
 #include "engine/app/reference.h"
+#include "engine/app/terminal.h"
 #include "engine/report/text_table.h"
 
 namespace poesy::app {
 namespace {
 
-constexpr std::size_t kUsualWidth = 80;
 constexpr std::size_t kNarrowest = 30;
 constexpr std::size_t kWidest = 110;     ///< longer lines are hard to read
 constexpr std::size_t kTwoColumns = 72;  ///< narrower: what a thing means stands below it

@@ -9,12 +9,6 @@
 #include "engine/report/text_table.h"
 
 namespace poesy::app {
-namespace {
-
-constexpr std::size_t kUsualWidth = 80;
-
-}  // namespace
-
 std::size_t output_width() {
   if (::isatty(STDOUT_FILENO) == 0) return kUnlimitedWidth;
   if (const std::size_t width = terminal_width(STDOUT_FILENO); width > 0) return width;

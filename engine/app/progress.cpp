@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kLive{100};
 constexpr std::chrono::seconds kPlain{5};
-constexpr std::size_t kUsualWidth = 80;  ///< of a terminal that does not say
 
 /// Columns that a line may take. A line as wide as the terminal would wrap on some.
 std::size_t room() {

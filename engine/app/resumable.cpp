@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -27,13 +26,6 @@ std::chrono::steady_clock::duration duration_of(double seconds) {
       std::chrono::duration<double>(std::min(seconds, kCentury)));
 }
 
-bool is_plain(const std::string& word) {
-  constexpr std::string_view kPlain = "_-+./=:,@%";
-  return !word.empty() && std::ranges::all_of(word, [&](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
-  });
-}
-
 }  // namespace
 
 void ResumeOptions::add_to(CLI::App& command) {
@@ -47,21 +39,6 @@ void ResumeOptions::add_to(CLI::App& command) {
       ->group(kGroup);
   command.add_flag("--keep-checkpoint", keep, "keep RESULT.h5.part when done, so that --resume can add samples")
       ->group(kGroup);
-}
-
-std::string shell_command(const std::vector<std::string>& words) {
-  std::string command;
-  for (const std::string& word : words) {
-    if (!command.empty()) command += ' ';
-    if (is_plain(word)) {
-      command += word;
-      continue;
-    }
-    command += '\'';
-    for (const char c : word) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    command += '\'';
-  }
-  return command;
 }
 
 ResumableRun::ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)

@@ -22,9 +22,6 @@ struct ResumeOptions {
   void add_to(CLI::App& command);
 };
 
-/// A command line, word by word, as a shell takes it.
-std::string shell_command(const std::vector<std::string>& words);
-
 /// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, for they
 /// are hours of somebody's work; with it, where there are none.
 class ResumableRun {

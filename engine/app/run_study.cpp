@@ -131,8 +131,9 @@ std::optional<Ended> run_study(const Job& job) {
 
 int report_end(const Job& job, const std::string& study_path, const Ended& ended) {
   const std::string ranks = ended.facts.ranks > 1 ? fmt::format(" of {} ranks", ended.facts.ranks) : std::string();
-  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} threads{}, {} not converged\n", job.path, ended.facts.solves,
-                         ended.facts.wall_seconds, ended.facts.threads, ranks, ended.solves.not_converged())
+  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, ended.facts.solves,
+                         ended.facts.wall_seconds, ended.facts.threads, ended.facts.threads == 1 ? "thread" : "threads",
+                         ranks, ended.solves.not_converged())
                  .c_str(),
              stdout);
   if (job.options.shard) return kDone;  // the limit on failures is one of the whole study

@@ -84,9 +84,10 @@ int show(const Options& options) {
   if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
   std::vector<Table> tables = result_tables(result, response, order);
   if (options.top) keep_first(*options.top, tables);
+  const std::size_t width = options.width.value_or(output_width());
   const std::string text = options.json ? json_of(result, tables)
-                                        : summary_text(result) + failures_text(result, options.result) + "\n" +
-                                              text_of(tables, options.width.value_or(output_width()), kRemedy);
+                                        : summary_text(result, width) + failures_text(result, options.result, width) +
+                                              "\n" + text_of(tables, width, kRemedy);
   std::fputs(text.c_str(), stdout);
   return kDone;
 }

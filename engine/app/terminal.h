@@ -4,6 +4,9 @@
 
 namespace poesy::app {
 
+/// Columns of a terminal that does not say, and of a page of help.
+inline constexpr std::size_t kUsualWidth = 80;
+
 /// Columns of the terminal behind a file descriptor, now; 0 when it is none, or does not say.
 std::size_t terminal_width(int descriptor);
 

@@ -13,6 +13,7 @@
 #include "engine/app/output_width.h"
 #include "engine/base/error.h"
 #include "engine/base/units.h"
+#include "engine/io/study_file.h"
 #include "engine/io/tolerance_files.h"
 #include "engine/io/wording.h"
 #include "engine/report/text_table.h"
@@ -69,7 +70,7 @@ StoredResult read_sensitivity_result(const std::string& path) {
     throw InputError({path}, "tolerances need indices, but this is a result of kind '" + result.kind + "'",
                      "give the result of a sensitivity study");
   }
-  if (result.factor_limb.empty() || result.sensitivity.background.empty()) {
+  if (!has_tolerances(result)) {
     throw InputError({path}, "has no tolerances, for an older poesy (" + result.poesy_version + ") wrote it",
                      "run the study again");
   }
@@ -145,7 +146,10 @@ std::string write_files(const Options& options, const StoredResult& result, cons
   std::string commands;
   if (found.limit) {
     const Confirmation written = write_confirmation(folder, result, found, registry());
-    for (const std::string& study : written.paths) commands += "confirm with: poesy run " + study + "\n";
+    for (const std::string& study : written.paths) {
+      const std::string outcome = std::filesystem::path(study).replace_extension(".h5").string();
+      commands += "confirm with: " + shell_command({"poesy", "run", study, "-o", outcome}) + "\n";
+    }
     for (const std::string& error : written.cut) {
       commands += "  these studies cut the tolerance of " + error + ", a quarter of the part that it is an error of\n";
     }
@@ -156,8 +160,32 @@ std::string write_files(const Options& options, const StoredResult& result, cons
 /// How a Monte Carlo study settles whether the limit holds.
 std::string explanation(const StoredResult& result, const ResponseTolerances& found) {
   const NamedUnit& response = result.responses[found.response];
-  return fmt::format("the limit holds if their mean of {} over all poses, as 'poesy show' prints it, is below {}\n",
-                     response.name, response_text(response, found.limit->limit));
+  return prose_of(fmt::format("the limit holds if their root mean square of {} over all poses, rms of 'poesy show', is "
+                              "below {}",
+                              response.name, response_text(response, found.limit->limit)),
+                  output_width());
+}
+
+/// Errors of the mechanism that the study neither varies nor has in its background; none where this program has no such
+/// mechanism, or cannot read the stored study any more.
+std::optional<std::string> perfect_errors_note(const StoredResult& result) {
+  try {
+    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
+    std::vector<FactorIndex> present = study.analysis.factors;
+    if (const auto& background = study.analysis.background) {
+      present.insert(present.end(), background->factors.begin(), background->factors.end());
+    }
+    std::ranges::sort(present, {}, &FactorIndex::value);
+    const auto repeated = std::ranges::unique(present, {}, &FactorIndex::value);
+    present.erase(repeated.begin(), repeated.end());
+    const std::size_t all = study.model().factors.size();
+    if (present.size() == all) return std::nullopt;
+    const std::size_t absent = all - present.size();
+    return fmt::format("{} of the mechanism's {} errors {} not in this study, and {} as perfect here", absent, all,
+                       absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 int set_tolerances(const Options& options) {
@@ -169,8 +197,9 @@ int set_tolerances(const Options& options) {
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
   if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
-  std::string text =
-      text_of(tolerance_table(result, found), output_width()) + "\n" + write_files(options, result, found);
+  Table table = tolerance_table(result, found);
+  if (const auto note = perfect_errors_note(result)) table.notes.push_back(*note);
+  std::string text = text_of(table, output_width()) + "\n" + write_files(options, result, found);
   if (found.limit) text += explanation(result, found);
   std::fputs(text.c_str(), stdout);
   return kDone;

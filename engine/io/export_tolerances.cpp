@@ -61,7 +61,12 @@ void write_response(TableFolder& folder, const StoredResult& result, const Respo
 
 }  // namespace
 
+bool has_tolerances(const StoredResult& result) {
+  return !result.factor_limb.empty() && !result.sensitivity.background.empty();
+}
+
 void export_tolerances(TableFolder& folder, const StoredResult& result) {
+  if (!has_tolerances(result)) return;
   for (std::size_t r = 0; r < result.tolerance_reference.size(); ++r) {
     const ResponseStudy response = response_study(result.sensitivity, result.factor_sigma, r);
     write_response(folder, result, {r, tolerances(response, result.tolerance_reference[r]), std::nullopt});

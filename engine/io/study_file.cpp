@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "engine/io/study_file_parts.h"
@@ -19,6 +21,16 @@ constexpr std::size_t kMostBytes = 1 << 20;
 /// Bounds the depth to which dotted keys nest tables, which the TOML library frees by recursion.
 constexpr std::size_t kLongestLine = 16384;
 constexpr std::int64_t kVersion = 1;
+
+/// Whether a file, not a pipe, has the signature of HDF5.
+bool begins_like_hdf5(const std::string& path) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  std::string begin(kSignature.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == kSignature;
+}
 
 void check_lines(const std::string& text, const std::string& path) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
@@ -194,6 +206,9 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
 }  // namespace
 
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) {
+  if (begins_like_hdf5(path)) {
+    throw InputError({path}, "is an HDF5 file, such as a result of poesy, and no study", "give its study, a TOML file");
+  }
   return study_of_text(read_text(path, "study", kMostBytes), path, catalog, use);
 }
 

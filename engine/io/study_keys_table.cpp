@@ -46,11 +46,12 @@ StudyTable mechanism() {
               {.name = "geometry",
                .type = "table",
                .usual = "as published",
-               .meaning = "Parameters of the geometry that differ from the published ones."},
+               .meaning = "Parameters of the geometry that differ from the published ones; where they do, look at the "
+                          "workspace too."},
               {.name = "fidelity",
                .type = "text",
                .usual = "the first of them",
-               .meaning = "One of the model's ways to solve a sample, for models that offer a choice; of two, both "
+               .meaning = "One of the model's ways to solve a sample, for models that offer a choice; of two, \"both\" "
                           "solves each on the same draws in a sensitivity study and tells which errors are linear."},
           }};
 }

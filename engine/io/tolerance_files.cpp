@@ -83,7 +83,7 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   Confirmation written;
   const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
-    study.title = "Confirms " + words + " that keep the mean of " + response.name + " below " + limit;
+    study.title = "Confirms " + words + " that keep the root mean square of " + response.name + " below " + limit;
     study.errors = as_studied;
     set_tolerances(study, *model, values, written.cut);
     written.paths.push_back(write_study(folder, name, study));

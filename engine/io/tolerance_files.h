@@ -17,6 +17,9 @@ struct ResponseTolerances {
   std::optional<LimitTolerances> limit;  ///< within the limit, if there is one
 };
 
+/// Whether a sensitivity result holds what tolerances are made of; one of an older version may not.
+bool has_tolerances(const StoredResult& result);
+
 /// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
 ///
 ///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit | index, index_ci_low,

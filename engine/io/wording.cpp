@@ -1,6 +1,7 @@
 #include "engine/io/wording.h"
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <sstream>
 
@@ -46,6 +47,13 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
   return row[to.size()];
 }
 
+bool is_plain(const std::string& word) {
+  constexpr std::string_view kPlain = "_-+./=:,@%";
+  return !word.empty() && std::ranges::all_of(word, [&](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
+  });
+}
+
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t most) {
@@ -58,6 +66,21 @@ std::string printable(std::string_view text, std::size_t most) {
     text.remove_prefix(character.size());
   }
   return shown;
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string command;
+  for (const std::string& word : words) {
+    if (!command.empty()) command += ' ';
+    if (is_plain(word)) {
+      command += word;
+      continue;
+    }
+    command += '\'';
+    for (const char c : word) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    command += '\'';
+  }
+  return command;
 }
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {

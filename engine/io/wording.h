@@ -13,6 +13,9 @@ namespace poesy {
 /// about `most` bytes.
 std::string printable(std::string_view text, std::size_t most = 60);
 
+/// A command line, word by word, as a shell takes it.
+std::string shell_command(const std::vector<std::string>& words);
+
 /// The known word that is close to this one, as after a slip of the pen; empty when none is.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 

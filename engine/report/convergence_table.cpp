@@ -32,7 +32,7 @@ std::vector<std::size_t> not_reached(const ConvergenceResult& found, const std::
 
 std::string samples_text(const ConvergenceResult& found) {
   const auto [least, most] = std::ranges::minmax(found.samples);
-  if (least == most) return fmt::format("{} samples at each pose", count_text(least));
+  if (least == most) return counted(least, "sample", "samples") + " at each pose";
   return fmt::format("from {} to {} samples at each pose", count_text(least), count_text(most));
 }
 

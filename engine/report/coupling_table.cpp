@@ -64,16 +64,42 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   return table;
 }
 
-std::vector<std::string> notes(const StoredCoupling& stored) {
+/// Whether a source alone does nothing at any pose, at any size, to one of the responses shown.
+bool does_nothing(const StoredResult& result, const std::string& source) {
+  const StoredCoupling& stored = result.coupling;
+  const CouplingResult& found = stored.found;
+  const auto k = static_cast<std::size_t>(std::ranges::find(stored.subsets, source) - stored.subsets.begin());
+  if (k == found.subsets) return false;
+  return std::ranges::any_of(result.signed_headline, [&](std::size_t r) {
+    for (std::size_t z = 0; z < found.sizes; ++z) {
+      if (!(found.effect_max[(r * found.sizes + z) * found.subsets + k] <= rounding_at(stored, z))) return false;
+    }
+    return true;
+  });
+}
+
+/// Whether each limb has the same errors, as the stored study, complete as it is, says.
+bool same_in_all_limbs(const StoredResult& result) {
+  return result.study_text.find("\nlimbs = \"all\"\n") != std::string::npos;
+}
+
+std::vector<std::string> notes(const StoredResult& result) {
+  const StoredCoupling& stored = result.coupling;
   std::vector<std::string> list{
-      fmt::format("{} sources of errors, alone and together; largest values over {} poses", stored.sources.size(),
-                  stored.found.poses),
+      fmt::format("{} of errors, alone and together; largest values over {}",
+                  counted(stored.sources.size(), "source", "sources"), counted(stored.found.poses, "pose", "poses")),
       "interaction: together minus the sum of each alone",
       "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much at most; a "
       "norm, which has no sign, cannot tell"};
   const std::vector<std::uint64_t>& count = stored.found.count;
   if (std::ranges::any_of(count, [&](std::uint64_t poses) { return poses < stored.found.poses; })) {
     list.emplace_back("some subsets leave out poses that were not solved: see the export's coupling_summary.csv");
+  }
+  if (same_in_all_limbs(result) &&
+      std::ranges::any_of(stored.sources, [&](const std::string& source) { return does_nothing(result, source); })) {
+    list.emplace_back(
+        "all limbs have the same error here, so sources that are symmetric cancel; limbs = \"independent\" "
+        "shows what they can do");
   }
   return list;
 }
@@ -85,7 +111,7 @@ std::vector<Table> coupling_tables(const StoredResult& result) {
   for (std::size_t z = 0; z < result.coupling.found.sizes; ++z) {
     for (const std::size_t r : result.signed_headline) tables.push_back(response_table(result, z, r));
   }
-  if (!tables.empty()) tables.back().notes = notes(result.coupling);
+  if (!tables.empty()) tables.back().notes = notes(result);
   return tables;
 }
 

@@ -15,13 +15,14 @@ std::size_t response_named(const StoredResult& result, std::string_view name);
 
 /// "17 380 000".
 std::string count_text(std::uint64_t count);
+/// "1 pose", "3 poses".
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 /// To this many significant digits; "-" for NaN.
 std::string number_text(double value, int digits = 4);
 /// A share to three digits, "1.25 %"; "-" for NaN.
 std::string percent_text(double share);
 
-/// A column of texts. dispensable: as of Column.
-/// A column of words.
+/// A column of words. dispensable, here and below: as of Column.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
 /// A column of numbers in one unit, or in none.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);

@@ -50,8 +50,8 @@ std::vector<std::string> notes(const StoredResult& result, const FidelityResult&
       "its largest effect"};
   const auto failed = std::accumulate(found.not_converged.begin(), found.not_converged.end(), std::uint64_t{0});
   if (failed > 0) {
-    list.push_back(
-        fmt::format("{} solves at fidelity \"{}\" did not converge", count_text(failed), result.fidelities[1]));
+    list.push_back(fmt::format("{} at fidelity \"{}\" did not converge", counted(failed, "solve", "solves"),
+                               result.fidelities[1]));
   }
   return list;
 }

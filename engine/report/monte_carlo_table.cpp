@@ -27,8 +27,8 @@ std::string quantile_heading(double level) { return "q_" + shortest(level); }
 /// The lowest quantiles go first, then the smallest value; mean, spread and what is high stay.
 std::vector<Column> overall_columns(const std::vector<double>& levels) {
   std::vector<Column> columns{text_column("response", "response"), text_column("unit", "unit"),
-                              number_column("mean", "mean"), number_column("std", "std"),
-                              number_column("min", "min", "", 1)};
+                              number_column("mean", "mean"),       number_column("std", "std"),
+                              number_column("rms", "rms"),         number_column("min", "min", "", 1)};
   for (std::size_t q = 0; q < levels.size(); ++q) {
     const std::size_t higher = levels.size() - 1 - q;
     const int dispensable = higher == 0 ? 0 : 1 + static_cast<int>(higher);
@@ -38,6 +38,13 @@ std::vector<Column> overall_columns(const std::vector<double>& levels) {
   return columns;
 }
 
+/// Over all samples, from their mean and standard deviation; NaN without samples.
+double root_mean_square(const MonteCarloResult& found, std::size_t r) {
+  const auto count = static_cast<double>(found.overall_count[r]);
+  return std::sqrt(found.overall_mean[r] * found.overall_mean[r] +
+                   found.overall_std[r] * found.overall_std[r] * (count - 1.0) / count);
+}
+
 std::vector<Cell> overall_row(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = result.monte_carlo;
   const Unit& unit = display(result.responses[r]);
@@ -45,6 +52,7 @@ std::vector<Cell> overall_row(const StoredResult& result, std::size_t r) {
   const auto add = [&](double value) { row.push_back(number_cell(value / unit.si, kDigits)); };
   add(found.overall_mean[r]);
   add(found.overall_std[r]);
+  add(root_mean_square(found, r));
   add(found.overall_min[r]);
   for (std::size_t q = 0; q < found.levels.size(); ++q) add(found.overall_quantiles[r * found.levels.size() + q]);
   add(found.overall_max[r]);
@@ -55,14 +63,16 @@ std::vector<Cell> overall_row(const StoredResult& result, std::size_t r) {
 Table overall_table(const StoredResult& result) {
   const MonteCarloResult& found = result.monte_carlo;
   Table table{.name = "overall",
-              .caption = fmt::format("{} errors vary together: responses over the samples of all {} poses",
-                                     result.factors.size(), found.poses),
+              .caption = fmt::format("{} together: responses over the samples of {}{}",
+                                     counted(result.factors.size(), "error varies", "errors vary"),
+                                     found.poses == 1 ? "" : "all ", counted(found.poses, "pose", "poses")),
               .columns = overall_columns(found.levels),
               .rows = {},
-              .notes = {fmt::format("{} samples at each pose; std: standard deviation; {}: {:.3g} % of the samples lie "
-                                    "below it (quantiles to {:.2g} % of their value)",
-                                    count_text(found.solves.front().total()), quantile_heading(found.levels.back()),
-                                    100.0 * found.levels.back(), 100.0 * found.quantile_relative_error)}};
+              .notes = {fmt::format(
+                  "{} at each pose; std: standard deviation; rms: root mean square; {}: {:.3g} % of the samples lie "
+                  "below it (quantiles to {:.2g} % of their value)",
+                  counted(found.solves.front().total(), "sample", "samples"), quantile_heading(found.levels.back()),
+                  100.0 * found.levels.back(), 100.0 * found.quantile_relative_error)}};
   for (const std::size_t r : result.headline) table.rows.push_back(overall_row(result, r));
   return table;
 }

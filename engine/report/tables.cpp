@@ -11,6 +11,7 @@
 
 #include "engine/report/coupling_table.h"
 #include "engine/report/display.h"
+#include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
@@ -55,16 +56,20 @@ SolveCounts solves_of(const StoredResult& result) {
   return result.evaluation.total();
 }
 
-std::string summary_text(const StoredResult& result) {
-  std::string text;
-  if (!result.title.empty()) text += result.title + "\n";
-  text += fmt::format("{} of {}: {} poses, poesy {}\n", result.kind, result.model, result.poses.size(),
-                      result.poesy_version);
-  text += fmt::format("{} solves in {:.2f} s on {} threads: {} solves/s\n", count_text(result.facts.solves),
-                      result.facts.wall_seconds, result.facts.threads,
-                      count_text(static_cast<std::uint64_t>(
-                          std::llround(static_cast<double>(result.facts.solves) /
-                                       std::max(result.facts.wall_seconds, std::numeric_limits<double>::min())))));
+std::string summary_text(const StoredResult& result, std::size_t width) {
+  const RunFacts& facts = result.facts;
+  const double per_second =
+      static_cast<double>(facts.solves) / std::max(facts.wall_seconds, std::numeric_limits<double>::min());
+  const std::string each =
+      result.sensitivity.fidelity ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
+  std::string text = prose_of(result.title, width);
+  text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
+                               counted(result.poses.size(), "pose", "poses"), result.poesy_version),
+                   width);
+  text += prose_of(fmt::format("{}{} in {:.2f} s on {}: {} solves/s", counted(facts.solves, "solve", "solves"), each,
+                               facts.wall_seconds, counted(facts.threads, "thread", "threads"),
+                               count_text(static_cast<std::uint64_t>(std::llround(per_second)))),
+                   width);
   return text;
 }
 

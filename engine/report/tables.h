@@ -16,12 +16,13 @@ namespace poesy {
 /// How the solves of a result of any kind ended.
 SolveCounts solves_of(const StoredResult& result);
 
-/// What was run and how long it took, a few lines.
-std::string summary_text(const StoredResult& result);
+/// What was run and how long it took, a few lines, broken at `width` as by prose_of.
+std::string summary_text(const StoredResult& result, std::size_t width);
 
-/// How many solves did not converge; of a sampled result also the first one's address, and how to replay it.
-/// path: of the result.
-std::string failures_text(const StoredResult& result, std::string_view path);
+/// How many solves did not converge, at both fidelities where there are two; of a sampled result also the first one's
+/// address, and how to replay it. path: of the result. Broken at `width` as by prose_of, but for the command to replay
+/// it.
+std::string failures_text(const StoredResult& result, const std::string& path, std::size_t width);
 
 /// The response a result is ranked by unless asked otherwise: the first length of the headline, else its first.
 std::string default_ranking(const StoredResult& result);

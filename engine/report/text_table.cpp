@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/io/wording.h"
+
 namespace poesy {
 namespace {
 
@@ -49,9 +51,8 @@ void add_line(std::string& text, std::string_view line) {
   text.append(line.substr(0, last == std::string_view::npos ? 0 : last + 1)).append("\n");
 }
 
-void add_prose(std::string& text, std::string_view prose, std::size_t width) {
-  for (const std::string& line : wrapped(prose, std::min(width, kReadableWidth))) add_line(text, line);
-}
+/// A text that may come from a stranger's file, without what a terminal would obey.
+std::string harmless(std::string_view text) { return printable(text, std::string_view::npos); }
 
 /// What stands behind the whole part of a number as shown: "4" and ".25", "1" and "e-05".
 std::size_t tail_of(const Cell& cell) {
@@ -87,10 +88,10 @@ TextColumn text_column(const Table& table, std::size_t c) {
   made.width = width_of(made.unit);
   for (const std::vector<Cell>& row : table.rows) {
     const std::size_t blanks = row[c].value ? tail - tail_of(row[c]) : 0;
-    made.cells.push_back(row[c].text + std::string(blanks, ' '));
+    made.cells.push_back(harmless(row[c].text) + std::string(blanks, ' '));
     made.width = std::max(made.width, width_of(made.cells.back()));
   }
-  set_heading(column.heading, made);
+  set_heading(harmless(column.heading), made);
   return made;
 }
 
@@ -151,9 +152,14 @@ std::string left_out_text(const std::vector<std::string>& headings, std::string_
 
 }  // namespace
 
-std::string text_of(const Table& table, std::size_t width, std::string_view remedy) {
+std::string prose_of(std::string_view prose, std::size_t width) {
   std::string text;
-  add_prose(text, table.caption, width);
+  for (const std::string& line : wrapped(harmless(prose), std::min(width, kReadableWidth))) add_line(text, line);
+  return text;
+}
+
+std::string text_of(const Table& table, std::size_t width, std::string_view remedy) {
+  std::string text = prose_of(table.caption, width);
   std::vector<std::string> left_out;
   if (!table.rows.empty()) {
     std::vector<TextColumn> columns;
@@ -164,8 +170,8 @@ std::string text_of(const Table& table, std::size_t width, std::string_view reme
       add_row(text, columns, shown, [&](const TextColumn& column) { return column.cells[n]; });
     }
   }
-  for (const std::string& note : table.notes) add_prose(text, note, width);
-  if (!left_out.empty()) add_prose(text, left_out_text(left_out, remedy), width);
+  for (const std::string& note : table.notes) text += prose_of(note, width);
+  if (!left_out.empty()) text += prose_of(left_out_text(left_out, remedy), width);
   return text;
 }
 

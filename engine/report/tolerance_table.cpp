@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "engine/report/display.h"
@@ -34,17 +36,41 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
   if (!tolerances.limit) return;
   const NamedUnit& response = result.responses[tolerances.response];
   notes.push_back(
-      fmt::format("limit: predicted root mean square of {} over samples and poses = {}; its mean is below that. The "
-                  "background alone gives {}",
+      fmt::format("limit: predicted root mean square of {} over samples and poses = {}; the background alone gives {}",
                   response.name, response_text(response, tolerances.limit->limit),
                   response_text(response, std::sqrt(tolerances.all.mean_square.background))));
   notes.emplace_back("an error without effect on its own has its equal tolerance, for it may act together with others");
+}
+
+/// Errors with a tolerance larger than the size at which they were studied: of a limit, by either way to share it.
+std::size_t extrapolated(const StoredResult& result, const ResponseTolerances& tolerances) {
+  std::vector<std::span<const double>> lists{tolerances.all.equal_effect};
+  if (tolerances.limit) lists = {tolerances.limit->equal_effect, tolerances.limit->equal_tolerance};
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    const double studied = result.factor_sigma[p] * (1.0 + 1e-9);
+    const auto larger = [&](std::span<const double> list) { return std::isfinite(list[p]) && list[p] > studied; };
+    count += std::ranges::any_of(lists, larger) ? 1U : 0U;
+  }
+  return count;
+}
+
+void add_extrapolation_note(std::vector<std::string>& notes, const StoredResult& result,
+                            const ResponseTolerances& tolerances) {
+  const std::size_t count = extrapolated(result, tolerances);
+  if (count == 0) return;
+  notes.push_back(
+      fmt::format("{} of {} a tolerance larger than the sigma of the study: it extrapolates beyond the size "
+                  "studied. Confirm it by a Monte Carlo study: errors that act with the square of their "
+                  "size make it too loose",
+                  count, counted(result.factors.size(), "error has", count == 1 ? "errors has" : "errors have")));
 }
 
 std::vector<std::string> notes(const StoredResult& result, const ResponseTolerances& tolerances) {
   std::vector<std::string> list;
   add_reference_notes(list, result, tolerances);
   add_limit_notes(list, result, tolerances);
+  add_extrapolation_note(list, result, tolerances);
   list.push_back(
       fmt::format("index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
                   "share: of the response's variance, at the size the study sets",

@@ -49,8 +49,8 @@ void limit_children() {
 
 void use(const std::string& path) {
   const StoredResult result = read_result(path);
-  static_cast<void>(summary_text(result));
-  static_cast<void>(failures_text(result, path));
+  static_cast<void>(summary_text(result, 80));
+  static_cast<void>(failures_text(result, path, 80));
   const std::vector<Table> tables = result_tables(result, default_ranking(result));
   for (const std::size_t width : {std::size_t{1}, std::size_t{80}, kUnlimitedWidth}) {
     static_cast<void>(text_of(tables, width));

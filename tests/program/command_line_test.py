@@ -16,6 +16,10 @@ class CommandLine(ProgramTest):
         self.refuses("toler r.h5", "no command 'toler'; did you mean 'tolerances'? see poesy --help")
         self.refuses("frobnicate --help", "no command 'frobnicate'; see poesy --help")
 
+    def test_too_many_results(self):
+        self.refuses("report a b c", "poesy report takes at most 2 results, not 3; write poesy report RESULT.h5 ... [options], "
+                                     "see poesy report --help")
+
     def test_options(self):
         self.refuses("--versio", "poesy has no option '--versio'; did you mean '--version'? see poesy --help")
         self.refuses("run --thread 2 s.toml", "poesy run has no option '--thread'; did you mean '--threads'? see poesy run --help")

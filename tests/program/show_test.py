@@ -140,10 +140,24 @@ class Show(ProgramTest):
                 self.assertIn(word, message)
         self.succeeds("show", "out.h5", "--width", 80)
 
+    def test_a_result_is_no_study(self):
+        done = self.poesy("run", "out.h5")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("is an HDF5 file, such as a result of poesy, and no study; give its study", done.stderr.decode())
+
+    def test_failures_of_both_fidelities(self):
+        template = self.succeeds("template", "3-prs").replace('fidelity = "exact"', 'fidelity = "both"', 1)
+        self.write("both.toml", template.replace("count = 158", "count = 2").replace("samples = 1000", "samples = 200"))
+        self.succeeds("run", "both.toml", "-o", "both.h5", "--quiet")
+        text = self.succeeds("show", "both.h5")
+        self.assertRegex(text, r"40 800 solves, 20 400 at each of two fidelities, in")
+        self.assertIn('0 of 40 800 solves (0 %) did not converge: 0 at fidelity "exact", 0 at "first-order"', text)
+
     def test_failures_are_said_once(self):
         self.write("study.toml", STUDY.replace("[solver]\n", "[solver]\nmax_iterations = 4\n"))
         self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
-        text = self.succeeds("show", "out.h5")
+        text = self.succeeds("show", "out.h5", "--width", 80)
+        self.assertLessEqual(max(len(line) for line in text.splitlines() if not line.startswith("replay it: ")), 80)
         self.assertEqual(text.count("did not converge"), 1)
         self.assertNotIn("failed", text)
         self.assertIn("replay it: poesy replay out.h5", text)

@@ -66,7 +66,10 @@ class Tolerances(ProgramTest):
 
     def test_writes_beside_the_result_unless_told_otherwise(self):
         printed = self.succeeds("tolerances", self.result(), "--response", RESPONSE, "--limit", "0.05 mm")
-        self.assertIn("poesy run r_tolerances/confirm_equal_effect.toml", printed)
+        self.assertIn("poesy run r_tolerances/confirm_equal_effect.toml -o r_tolerances/confirm_equal_effect.h5", printed)
+        self.assertRegex(printed, r"errors were not in this study, and count as perfect here")
+        self.assertIn("root mean square of linear_deformation over all poses", " ".join(printed.split()))
+        self.assertIn("root mean square", (self.folder / "r_tolerances/confirm_equal_effect.toml").read_text())
         self.assertEqual(set(self.table("r_tolerances")), {"delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"})
 
     def test_reference_from_the_command_line(self):

@@ -88,7 +88,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   add_figure(page, section, "heat", std::move(map),
              "A row for each error that both have, the most important in A first, a column for each pose.");
   add_figure(page, section, "workspace",
-             Workspace{pose_coordinates(a, shown, pool), std::move(fields), pose_numbers(shown, pool)},
+             WorkspaceMap{pose_coordinates(a, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Each dot is a pose, coloured by what is chosen.");
   page.sections.push_back(std::move(section));
 }

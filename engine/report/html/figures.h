@@ -87,7 +87,7 @@ struct Field {
 };
 
 /// Poses as dots in their coordinates.
-struct Workspace {
+struct WorkspaceMap {
   std::vector<Coordinate> coordinates;  ///< of the poses
   std::vector<Field> fields;            ///< what may be shown at them
   ArrayName numbers = {};               ///< [M] of the poses; none: they count from 0
@@ -126,7 +126,7 @@ struct Scatter {
   std::vector<std::string> names;       ///< [P]
 };
 
-using Figure = std::variant<Bars, HeatMap, Workspace, Lines, Scatter>;  ///< Any of them.
+using Figure = std::variant<Bars, HeatMap, WorkspaceMap, Lines, Scatter>;  ///< Any of them.
 
 /// The figures of a document by their keys, and the numbers that they show.
 struct FigureSet {

@@ -82,7 +82,7 @@ Json json(const HeatMap& map) {
           {"log", map.log}};
 }
 
-Json json(const Workspace& workspace) {
+Json json(const WorkspaceMap& workspace) {
   Json all{{"type", "workspace"}, {"coordinates", list(workspace.coordinates)}, {"fields", list(workspace.fields)}};
   if (!workspace.numbers.empty()) all["numbers"] = workspace.numbers;
   return all;

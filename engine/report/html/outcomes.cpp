@@ -78,7 +78,7 @@ void add_figures(const StoredResult& result, const SolveTally& outcomes, Page& p
       pose_field("not_converged_poses", "not converged", "%", outcomes.shares_by_pose(), shown, pool, 0.01)};
   for (Field& field : condition_field(result, shown, pool)) fields.push_back(std::move(field));
   add_figure(page, section, "not-converged-where",
-             Workspace{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
+             WorkspaceMap{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Where solves did not converge: each dot is a pose.");
 }
 

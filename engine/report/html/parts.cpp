@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "engine/base/units.h"
-#include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/stats/tolerance.h"
 
@@ -65,10 +64,6 @@ std::vector<std::size_t> response_order(const StoredResult& result) {
     if (std::ranges::find(result.headline, r) == result.headline.end()) order.push_back(r);
   }
   return order;
-}
-
-std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", count_text(count), count == 1 ? one : many);
 }
 
 std::string some_names(const std::vector<std::string>& names) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/io/result_file.h"
+#include "engine/report/display.h"
 #include "engine/report/html/figures.h"
 #include "engine/report/html/page.h"
 #include "engine/report/table.h"
@@ -24,8 +25,6 @@ std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::spa
 std::vector<std::size_t> headline_order(const StoredResult& result);
 /// The same, then all others.
 std::vector<std::size_t> response_order(const StoredResult& result);
-/// "1 pose", "3 poses".
-std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 
 /// "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names);

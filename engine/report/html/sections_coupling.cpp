@@ -20,6 +20,10 @@ class Curves {
   Lines effects() const {
     return lines([&](std::size_t r, std::size_t z) { return effect_series(r, z); });
   }
+  /// In panels of their own, for they may be far smaller than effects.
+  Lines interactions() const {
+    return lines([&](std::size_t r, std::size_t z) { return interaction_series(r, z); });
+  }
   Lines cancellations() const {
     Lines all = lines([&](std::size_t r, std::size_t z) { return cancellation_series(r, z); });
     for (Panel& panel : all.panels) panel.unit = "%";
@@ -101,6 +105,14 @@ class Curves {
     add("root sum square of all", "root_sum_square", found_.root_sum_square, "dashed");
   }
 
+  std::vector<Series> interaction_series(std::size_t r, std::size_t z) const {
+    std::vector<Series> list{{subset(last()), curve("interaction", found_.interaction, r, z, last())}};
+    for (std::size_t k = sources(); k + 1 < found_.subsets; ++k) {
+      list.push_back({subset(k), curve("interaction", found_.interaction, r, z, k)});
+    }
+    return list;
+  }
+
   std::vector<Series> cancellation_series(std::size_t r, std::size_t z) const {
     std::vector<Series> list{{subset(last()), curve("cancellation", found_.cancellation, r, z, last())}};
     for (std::size_t k = sources(); k + 1 < found_.subsets; ++k) {
@@ -136,11 +148,13 @@ void add_coupling(const StoredResult& result, Page& page) {
   section.paragraph(
       "Each source of errors has its size alone, and with others. The interaction is what all do together less the sum "
       "of what each does alone. Worst case: the sum of their magnitudes, where signs are not known. Root sum square: "
-      "what "
-      "is to be expected where either sign is as likely.");
+      "what is to be expected where either sign is as likely.");
   if (!shown.note().empty()) section.paragraph(shown.note());
   add_figure(page, section, "sources", curves.effects(),
              result.time.empty() ? "The effect at each pose." : "The effect along the trajectory.");
+  if (curves.has_subsets()) {
+    add_figure(page, section, "interactions", curves.interactions(), "The interaction of each subset of the sources.");
+  }
   add_tables(result, section);
   page.sections.push_back(std::move(section));
   Section cancels("where", "Where they cancel, and where they add up");
@@ -151,7 +165,7 @@ void add_coupling(const StoredResult& result, Page& page) {
     add_figure(page, cancels, "cancellation", curves.cancellations(), "How much the sources cancel each other.");
   }
   add_figure(page, cancels, "workspace",
-             Workspace{pose_coordinates(result, shown, pool), curves.fields(), pose_numbers(shown, pool)},
+             WorkspaceMap{pose_coordinates(result, shown, pool), curves.fields(), pose_numbers(shown, pool)},
              "Each dot is a pose of the study, coloured by what is chosen.");
   page.sections.push_back(std::move(cancels));
 }

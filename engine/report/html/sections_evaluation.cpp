@@ -44,7 +44,7 @@ void add_cases(const StoredResult& result, const ShownCells& shown, Page& page, 
   add_figure(page, section, "cases", std::move(lines),
              result.time.empty() ? "Each case at each pose." : "Each case along the trajectory.");
   add_figure(page, section, "workspace",
-             Workspace{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
+             WorkspaceMap{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Each dot is a pose of the study, coloured by what is chosen.");
 }
 
@@ -116,7 +116,7 @@ void add_rows(const StoredResult& result, const ShownCells& shown, Page& page, S
       page, section, "rows", std::move(lines),
       "At each pose the median over the rows, in a band from the 5 % to the 95 % quantile, and the largest value.");
   add_figure(page, section, "workspace",
-             Workspace{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
+             WorkspaceMap{pose_coordinates(result, shown, pool), std::move(fields), pose_numbers(shown, pool)},
              "Each dot is a pose, coloured by what is chosen.");
 }
 

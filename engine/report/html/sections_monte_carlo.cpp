@@ -160,11 +160,11 @@ Section where(const StoredResult& result, Page& page) {
                   quantile_label(levels.front()), quantile_label(levels.back())));
   if (!shown.note().empty()) section.paragraph(shown.note());
   add_figure(page, section, "poses", bands(result, shown, arrays, pool),
-             "The mean at each pose, in a band from the lowest to the highest quantile.");
-  add_figure(
-      page, section, "workspace",
-      Workspace{pose_coordinates(result, shown, pool), fields(result, shown, arrays, pool), pose_numbers(shown, pool)},
-      "Each dot is a pose of the study, coloured by what is chosen.");
+             "The mean at each pose, and how far the lowest and the highest quantile are from it.");
+  add_figure(page, section, "workspace",
+             WorkspaceMap{pose_coordinates(result, shown, pool), fields(result, shown, arrays, pool),
+                          pose_numbers(shown, pool)},
+             "Each dot is a pose of the study, coloured by what is chosen.");
   return section;
 }
 

@@ -204,8 +204,8 @@ Section where(const StoredResult& result, Page& page) {
                      "pose", column_coordinates(result, shown, pool), pose_numbers(shown, pool)},
              "A row for each error, the most important first, a column for each pose.");
   add_figure(page, section, "workspace",
-             Workspace{pose_coordinates(result, shown, pool), fields(result, shown_layers, shown, pool),
-                       pose_numbers(shown, pool)},
+             WorkspaceMap{pose_coordinates(result, shown, pool), fields(result, shown_layers, shown, pool),
+                          pose_numbers(shown, pool)},
              "Each dot is a pose of the study, coloured by what is chosen.");
   return section;
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/io/export_tables.h"
 #include "engine/io/h5.h"
 #include "engine/io/study_file.h"
 #include "engine/io/study_text.h"
@@ -147,6 +148,16 @@ TEST_F(ToleranceFiles, ExportHasTheSameRows) {
             "index_ci_high [rad per rad or m],variance_share,equal_effect [rad or m],equal_effect [deg or mm]\n"
             "epsilon_1,1,1,0,6000,7000,0,inf,inf\n"
             "delta_1,0,1,2,6010,7010,1,0.001,1\n");
+}
+
+TEST_F(ToleranceFiles, ExportLeavesThemOutWhereTheBackgroundIsMissing) {
+  StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
+  EXPECT_TRUE(has_tolerances(stored));
+  stored.sensitivity.background.clear();
+  EXPECT_FALSE(has_tolerances(stored));
+  TableFolder folder(folder_.path());
+  export_tolerances(folder, stored);
+  EXPECT_TRUE(folder.files().empty());
 }
 
 }  // namespace

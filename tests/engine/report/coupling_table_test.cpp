@@ -60,6 +60,16 @@ TEST(CouplingTable, SaysWherePosesAreLeftOut) {
   EXPECT_NE(note.find("some subsets leave out poses"), std::string::npos) << note;
 }
 
+TEST(CouplingTable, SaysWhySymmetricSourcesCancel) {
+  StoredResult result = example();
+  result.study_text = "[analysis]\nlimbs = \"all\"\n";
+  EXPECT_EQ(coupling_tables(result).back().notes.size(), 3U) << "every source does something";
+  result.coupling.found.effect_max[4] = 0.0;
+  EXPECT_TRUE(coupling_tables(result).back().notes.back().starts_with("all limbs have the same error here"));
+  result.study_text = "[analysis]\nlimbs = \"independent\"\n";
+  EXPECT_EQ(coupling_tables(result).back().notes.size(), 3U);
+}
+
 TEST(CouplingTable, NamesNoPoseOfRounding) {
   StoredResult result = example();
   result.coupling.found.effect_max[4] = 1e-16;

@@ -105,5 +105,14 @@ TEST(TextTable, SeparatesTablesByAnEmptyLine) {
   EXPECT_EQ(text_of(std::vector<Table>{example(), example()}, 80), one + "\n" + one);
 }
 
+TEST(TextTable, ShowsNoControlCharacterOfANameOrNote) {
+  const Table table{.name = "t",
+                    .caption = "a\x1b[1m",
+                    .columns = {{"error", "error", "", Column::Kind::text, 0}},
+                    .rows = {{{"delta\x1b]0;x\x07", std::nullopt}}},
+                    .notes = {"b\x1b[2J"}};
+  EXPECT_EQ(text_of(table, kUnlimitedWidth), "a?[1m\nerror\ndelta?]0;x?\nb?[2J\n");
+}
+
 }  // namespace
 }  // namespace poesy

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/report/text_table.h"
@@ -52,6 +53,9 @@ TEST(ToleranceTable, OfALimitHasBothWaysToShareIt) {
   EXPECT_EQ(table.columns[4].name, "limit_equal_effect");
   EXPECT_EQ(table.rows[0][4].text, "0.1");
   EXPECT_EQ(table.rows[0][5].text, "1000");
+  EXPECT_TRUE(std::ranges::any_of(table.notes, [](const std::string& note) {
+    return note.starts_with("4 of 4 errors have a tolerance larger than the sigma of the study");
+  }));
 }
 
 }  // namespace
