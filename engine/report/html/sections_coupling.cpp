@@ -22,7 +22,9 @@ class Curves {
   }
   /// In panels of their own, for they may be far smaller than effects.
   Lines interactions() const {
-    return lines([&](std::size_t r, std::size_t z) { return interaction_series(r, z); });
+    Lines all = lines([&](std::size_t r, std::size_t z) { return interaction_series(r, z); });
+    for (Panel& panel : all.panels) panel.label = "interaction in " + panel.label;
+    return all;
   }
   Lines cancellations() const {
     Lines all = lines([&](std::size_t r, std::size_t z) { return cancellation_series(r, z); });
