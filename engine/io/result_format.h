@@ -13,7 +13,7 @@ inline constexpr std::string_view kShardFileType = "poesy-shard";
 /// @}
 /// A reader refuses a newer major version; a minor version only adds.
 inline constexpr std::int64_t kMajor = 1;
-inline constexpr std::int64_t kMinor = 0;  ///< grows with what older programs may pass over
+inline constexpr std::int64_t kMinor = 0;  ///< from the first release on grows with what older programs may pass over
 
 /// Kinds of results, as files name them.
 /// @{

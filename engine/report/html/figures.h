@@ -51,7 +51,6 @@ struct Bars {
   std::vector<std::string> items;        ///< [P]
   std::vector<std::string> series = {};  ///< [S]; empty where S = 1
   bool sorted = true;                    ///< largest first
-  bool log = false;                      ///< whether the scale is logarithmic
 };
 
 /// An axis of a figure.
@@ -75,7 +74,6 @@ struct HeatMap {
   std::string column_label;             ///< what stands from left to right
   std::vector<Coordinate> coordinates;  ///< of the columns
   ArrayName numbers = {};               ///< [M] of the columns; none: they count from 0
-  bool log = false;                     ///< whether the colours follow the logarithm
 };
 
 /// What may colour M poses; with rows, one of P may be chosen.

@@ -66,8 +66,11 @@ Json json(const Series& series) {
 Json json(const Panel& panel) { return {{"label", panel.label}, {"unit", panel.unit}, {"series", list(panel.series)}}; }
 
 Json json(const Bars& bars) {
-  Json all{{"type", "bars"},      {"choices", list(bars.choices)},          {"quantities", list(bars.quantities)},
-           {"items", bars.items}, {"sort", bars.sorted ? "value" : "none"}, {"log", bars.log}};
+  Json all{{"type", "bars"},
+           {"choices", list(bars.choices)},
+           {"quantities", list(bars.quantities)},
+           {"items", bars.items},
+           {"sort", bars.sorted ? "value" : "none"}};
   if (!bars.series.empty()) all["series"] = bars.series;
   return all;
 }
@@ -75,11 +78,7 @@ Json json(const Bars& bars) {
 Json json(const HeatMap& map) {
   Json columns{{"label", map.column_label}, {"coordinates", list(map.coordinates)}};
   if (!map.numbers.empty()) columns["numbers"] = map.numbers;
-  return {{"type", "heatmap"},
-          {"layers", list(map.layers)},
-          {"rows", map.rows},
-          {"columns", std::move(columns)},
-          {"log", map.log}};
+  return {{"type", "heatmap"}, {"layers", list(map.layers)}, {"rows", map.rows}, {"columns", std::move(columns)}};
 }
 
 Json json(const WorkspaceMap& workspace) {
@@ -97,8 +96,8 @@ Json json(const Lines& lines) {
 
 Json json(const Scatter& scatter) {
   const auto axis = [](const auto& of) { return Json{{"label", of.first}, {"value", of.second}}; };
-  return {{"type", "scatter"},      {"choices", list(scatter.choices)}, {"x", axis(scatter.x)}, {"y", axis(scatter.y)},
-          {"units", scatter.units}, {"names", scatter.names},           {"diagonal", true}};
+  return {{"type", "scatter"},    {"choices", list(scatter.choices)}, {"x", axis(scatter.x)},
+          {"y", axis(scatter.y)}, {"units", scatter.units},           {"names", scatter.names}};
 }
 
 std::string base64_floats(const std::vector<float>& values) {

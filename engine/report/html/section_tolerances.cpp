@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "engine/io/tolerance_files.h"
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/sections.h"
@@ -31,7 +32,7 @@ Bars bars_of(const StoredResult& result, const Tolerances& found, ArrayPool& poo
 }  // namespace
 
 void add_tolerances(const StoredResult& result, Page& page) {
-  if (result.factor_limb.empty() || result.sensitivity.background.empty()) return;
+  if (!has_tolerances(result)) return;
   Section section("tolerances", "How tight must each be");
   const std::size_t response = response_named(result, default_ranking(result));
   const std::string& name = result.responses[response].name;
