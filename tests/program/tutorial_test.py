@@ -50,7 +50,7 @@ class Tutorial(ProgramTest):
             self.assertEqual(file["factor"].shape, (41,))
         with h5py.File(self.work / "precise.h5") as file:
             self.assertIn("convergence", file)
-        with h5py.File(self.work / "confirm_equal_effect.h5") as file:
+        with h5py.File(self.work / "all_tolerances/confirm_equal_effect.h5") as file:
             at = list(file["response"].asstr()).index("linear_deformation")
             mean, std = (file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))
         self.assertLess(math.hypot(mean, std), 5e-5)

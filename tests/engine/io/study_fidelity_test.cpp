@@ -102,7 +102,7 @@ TEST(BothFidelities, StandInTheTemplateOfSensitivityAlone) {
   const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
   EXPECT_NE(text.find("# fidelity = \"both\""), std::string::npos) << text;
   EXPECT_NE(text.find("# linearity = 0.01"), std::string::npos) << text;
-  EXPECT_EQ(template_text(kCatalog[0], Analysis::Kind::monte_carlo).find("\"both\""), std::string::npos);
+  EXPECT_EQ(template_text(kCatalog[0], Analysis::Kind::monte_carlo).find("fidelity = \"both\""), std::string::npos);
   EXPECT_EQ(template_text(test::fake_catalog()[0], Analysis::Kind::sensitivity).find("linearity"), std::string::npos);
 }
 
