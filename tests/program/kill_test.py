@@ -13,6 +13,7 @@ from resumption import STUDIES, ResumptionTest
 
 KILLS = int(os.environ.get("POESY_KILLS", "20"))
 TERMINATIONS = max(4, KILLS // 5)
+MOST = 4  # times as many runs, where the machine's speed varies and too few have something to resume when they end
 
 
 class Kill(ResumptionTest):
@@ -31,8 +32,9 @@ class Kill(ResumptionTest):
         return self.run_for(moment, "--threads", self.random.randint(1, 3), *options, number=number)
 
     def test_sigkill(self):
-        resumed = 0
-        for n in range(KILLS):
+        n = resumed = 0
+        while n < KILLS or (resumed < KILLS // 2 and n < MOST * KILLS):
+            n += 1
             kind = list(STUDIES)[n % len(STUDIES)]
             with self.subTest(n=n, kind=kind):
                 self.write("study.toml", STUDIES[kind])
@@ -49,12 +51,13 @@ class Kill(ResumptionTest):
                                  {path.name for path in self.folder.glob("out.h5.tmp.*")})
                 for path in self.folder.glob("out.h5*"):
                     path.unlink()
-        print(f"{KILLS} runs killed, {resumed} times resumed from a checkpoint")
-        self.assertGreaterEqual(resumed, max(1, KILLS // 10))  # fewer on a machine whose speed varies
+        print(f"{n} runs killed, {resumed} times resumed from a checkpoint")
+        self.assertGreaterEqual(resumed, KILLS // 2)
 
     def test_sigterm(self):
-        stopped = 0
-        for n in range(TERMINATIONS):
+        n = stopped = 0
+        while n < TERMINATIONS or (stopped < TERMINATIONS // 2 and n < MOST * TERMINATIONS):
+            n += 1
             kind = list(STUDIES)[n % len(STUDIES)]
             with self.subTest(n=n, kind=kind):
                 self.write("study.toml", STUDIES[kind])
@@ -70,8 +73,8 @@ class Kill(ResumptionTest):
                     self.assertEqual(code, 0, messages)
                 self.assertEqual(self.content_hash(), self.expected[kind])
                 (self.folder / "out.h5").unlink()
-        print(f"{TERMINATIONS} runs terminated, {stopped} left a checkpoint")
-        self.assertGreaterEqual(stopped, max(1, TERMINATIONS // 10))
+        print(f"{n} runs terminated, {stopped} left a checkpoint")
+        self.assertGreaterEqual(stopped, TERMINATIONS // 2)
 
 
 if __name__ == "__main__":
