@@ -6,14 +6,14 @@ poesy_test(trace_test LABELS unit SOURCES models/trace_test.cpp LINKS poesy_mode
 poesy_test(two_upr_rpu_test LABELS unit
            SOURCES models/two_upr_rpu/errors_test.cpp models/two_upr_rpu/kinematics_test.cpp
                    models/two_upr_rpu/model_test.cpp
-           LINKS poesy_models nlohmann_json::nlohmann_json)
+           LINKS poesy_models nlohmann_json::nlohmann_json DATA)
 poesy_test(three_prs_test LABELS unit
            SOURCES models/three_prs/closure_kernel_test.cpp models/three_prs/closure_lanes_test.cpp
                    models/three_prs/errors_test.cpp models/three_prs/first_order_kernel_test.cpp
                    models/three_prs/kinematics_test.cpp models/three_prs/machine_test.cpp
                    models/three_prs/model_test.cpp models/three_prs/separation_test.cpp
                    models/three_prs/trajectory_test.cpp
-           LINKS poesy_models poesy_study nlohmann_json::nlohmann_json)
+           LINKS poesy_models poesy_study nlohmann_json::nlohmann_json DATA)
 poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_run poesy_models)
 # Of every mechanism in the registry, whatever it is.
 poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_io poesy_models)
