@@ -1,8 +1,5 @@
 #include <cmath>
-#include <filesystem>
-#include <system_error>
 
-#include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/io/export_tables.h"
 #include "engine/io/result_format.h"
@@ -31,6 +28,21 @@ void write_poses(TableFolder& folder, const StoredResult& result) {
   });
 }
 
+void add_tables(TableFolder& tables, const StoredResult& result) {
+  write_poses(tables, result);
+  if (result.kind == result_format::kSensitivity) {
+    export_sensitivity(tables, result);
+  } else if (result.kind == result_format::kIdentification) {
+    export_identification(tables, result);
+  } else if (result.kind == result_format::kMonteCarlo) {
+    export_monte_carlo(tables, result);
+  } else if (result.kind == result_format::kCoupling) {
+    export_coupling(tables, result);
+  } else {
+    export_evaluation(tables, result);
+  }
+}
+
 }  // namespace
 
 CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& columns) : writer_(path) {
@@ -54,12 +66,6 @@ void CsvTable::commit() {
 void CsvTable::flush() {
   writer_.write(text_);
   text_.clear();
-}
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder, "cannot be made (" + error.message() + ")", "choose another folder");
 }
 
 std::string column(const std::string& name, const std::string& unit) {
@@ -94,21 +100,14 @@ std::vector<std::string> export_tables(const std::string& result_path, const std
 }
 
 std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder) {
-  make_folder(folder);
-  TableFolder tables(folder);
-  write_poses(tables, result);
-  if (result.kind == result_format::kSensitivity) {
-    export_sensitivity(tables, result);
-  } else if (result.kind == result_format::kIdentification) {
-    export_identification(tables, result);
-  } else if (result.kind == result_format::kMonteCarlo) {
-    export_monte_carlo(tables, result);
-  } else if (result.kind == result_format::kCoupling) {
-    export_coupling(tables, result);
-  } else {
-    export_evaluation(tables, result);
-  }
-  return tables.files();
+  OutputFolder output(folder);
+  TableFolder claimed(output);
+  add_tables(claimed, result);
+  output.open();
+  TableFolder written(folder);
+  add_tables(written, result);
+  output.close();
+  return written.files();
 }
 
 }  // namespace poesy

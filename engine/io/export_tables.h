@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/io/file_writer.h"
+#include "engine/io/output_folder.h"
 #include "engine/io/result_file.h"
 
 /// How each kind of result is written as CSV: one source file for each kind.
@@ -33,13 +34,17 @@ class CsvTable {
 /// The folder of a result's tables.
 class TableFolder {
  public:
-  /// The folder must exist.
+  /// Writes tables into a folder, which must exist.
   explicit TableFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// Writes nothing, but claims the files of the tables.
+  explicit TableFolder(OutputFolder& claims) : claims_(&claims) {}
 
   /// Writes NAME.csv with these columns; fill(table) gives its rows.
   template <class Fill>
   void write(const std::string& name, const std::vector<std::string>& columns, const Fill& fill) {
-    const std::string path = (folder_ / (name + ".csv")).string();
+    const std::string file = name + ".csv";
+    if (claims_ != nullptr) return claims_->claim(file);
+    const std::string path = (folder_ / file).string();
     CsvTable table(path, columns);
     fill(table);
     table.commit();
@@ -51,11 +56,9 @@ class TableFolder {
 
  private:
   std::filesystem::path folder_;
+  OutputFolder* claims_ = nullptr;
   std::vector<std::string> files_;
 };
-
-/// Makes a folder if it is missing. Throws FileError.
-void make_folder(const std::string& folder);
 
 /// "name [unit]", or the name alone for a pure number.
 std::string column(const std::string& name, const std::string& unit);

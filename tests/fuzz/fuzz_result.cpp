@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/io/output_folder.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
 #include "engine/report/html/report.h"
@@ -62,6 +63,7 @@ void use(const std::string& path) {
     fuzz::expect(std::filesystem::path(table).parent_path() == folder(), "a table lies in the folder that was named");
     ::unlink(table.c_str());
   }
+  ::unlink((folder() + "/" + kListOfFiles).c_str());
 }
 
 }  // namespace
