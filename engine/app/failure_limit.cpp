@@ -4,12 +4,25 @@
 
 #include "engine/app/message.h"
 #include "engine/base/units.h"
+#include "engine/report/failure_share.h"
 
 namespace poesy::app {
 namespace {
 
-/// A share of failures above which statistics of the rest mislead.
-constexpr double kNoticeable = 0.01;
+/// What may solve more samples than these options did.
+std::string advice(const SolverOptions& solver) {
+  if (solver.method == SolverOptions::Method::gauss_newton) {
+    return "take method = \"newton\", or raise solver.max_iterations";
+  }
+  return fmt::format("study smaller errors, or raise solver.max_iterations above {}", solver.max_iterations);
+}
+
+std::string warning_text(const Study& study, double share) {
+  const bool many = share > kManyNotConverged;
+  return fmt::format("{:.3g} % of the samples did not converge and are left out; {}{}", 100.0 * share,
+                     many ? "these are mostly large errors, so what is left may say far too little: " : "",
+                     advice(study.solver));
+}
 
 }  // namespace
 
@@ -18,12 +31,8 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
   const std::uint64_t failed = solves.not_converged();
   if (failed == 0) return kDone;
   const double share = static_cast<double>(failed) / static_cast<double>(solves.total());
-  if (share > kNoticeable && study.not_converged == NotConverged::exclude) {
-    say(Message::warning,
-        fmt::format("{:.3g} % of the samples did not converge and are left out; these are mostly "
-                    "large errors, so what is left may say far too little: raise solver.max_iterations, or take "
-                    "method = \"newton\"",
-                    100.0 * share));
+  if (share > unremarkable_failure_share(study.max_not_converged) && study.not_converged == NotConverged::exclude) {
+    say(Message::warning, warning_text(study, share));
   }
   if (share <= study.max_not_converged) return kDone;
   say(Message::error,

@@ -18,8 +18,15 @@ struct Unit {
   double si;              ///< its size
 };
 
-/// m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.
+/// m, cm, mm, um, rad, mrad, deg, arcmin, arcsec, s, ms, min, h.
 std::span<const Unit> units();
+
+/// The unit of this name, or of another spelling of it: a micro sign (U+00B5) or Greek mu (U+03BC) before the m, a
+/// degree sign (U+00B0). Null where there is none.
+const Unit* find_unit(std::string_view spelling);
+
+/// The names of the units of one dimension, or of all: "m, cm, mm, um".
+std::string unit_names(std::optional<Dimension> dimension = std::nullopt);
 
 /// "m", "rad", "s" or "1".
 std::string_view si_unit(Dimension dimension);
@@ -48,12 +55,15 @@ class QuantityError : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Reads "1.5 mm", "-0.5 rad", "10 um". The number is finite, the unit one of units().
-/// Throws QuantityError with the reason and the units that are known.
-Quantity parse_quantity(std::string_view text);
+/// Reads "1.5 mm", "-0.5 rad", "10 um". The number is finite, the unit one that find_unit() knows.
+/// Throws QuantityError with the reason and the units that are known: of the dimension that is wanted, or all.
+Quantity parse_quantity(std::string_view text, std::optional<Dimension> wanted = std::nullopt);
 
 /// Reads a whole text as one finite number, independent of the locale; empty for anything else.
 std::optional<double> parse_number(std::string_view text);
+
+/// Why parse_number() cannot read a text, as what follows its name: "is not a finite number".
+std::string number_problem(std::string_view text);
 
 /// The shortest text that reads back as the same number: "0.001".
 std::string shortest(double value);

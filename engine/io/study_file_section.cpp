@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/base/letters.h"
 #include "engine/io/study_keys.h"
 #include "engine/io/wording.h"
 
@@ -38,15 +39,22 @@ std::string described(const toml::node& node) {
 
 std::string example(Dimension dimension) { return "\"1 " + std::string(display_unit(dimension).name) + "\""; }
 
+/// The unit of which this is the name in capitals or in full: "degrees". No other likeness counts, because a letter
+/// more or less before a unit makes another one: dm, nm, mdeg, grad.
+const Unit* meant_unit(std::string_view written, Dimension dimension) {
+  constexpr std::size_t kTelling = 3;
+  const std::string plain = lower_case(written);
+  for (const Unit& unit : units()) {
+    const bool begins = unit.name.size() >= kTelling && plain.starts_with(unit.name);
+    if (unit.dimension == dimension && (plain == unit.name || begins)) return &unit;
+  }
+  return nullptr;
+}
+
 std::string unit_remedy(std::string_view text, Dimension dimension) {
   const std::string_view written = text.substr(text.find_last_of("0123456789. ") + 1);
-  std::vector<std::string_view> known;
-  for (const Unit& unit : units()) {
-    if (unit.dimension == dimension) known.push_back(unit.name);
-  }
-  if (std::find(known.begin(), known.end(), written) == known.end()) {
-    if (const std::string hint = suggestion(written, known); hint.starts_with("did you mean")) return hint;
-  }
+  const Unit* meant = find_unit(written) == nullptr ? meant_unit(written, dimension) : nullptr;
+  if (meant != nullptr) return "did you mean '" + std::string(meant->name) + "'?";
   return "write a number and a unit, e.g. " + example(dimension);
 }
 
@@ -89,7 +97,7 @@ double StudyValue::quantity(Dimension dimension) const {
   if (!is_text()) wrong_type("write a number and a unit in quotes, e.g. " + example(dimension));
   const std::string written = printable(text());
   try {
-    const Quantity quantity = parse_quantity(written);
+    const Quantity quantity = parse_quantity(written, dimension);
     if (quantity.dimension == dimension) return quantity.si;
   } catch (const QuantityError& reason) {
     fail(std::string("cannot be read: ") + reason.what(), unit_remedy(written, dimension));

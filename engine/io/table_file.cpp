@@ -151,9 +151,9 @@ std::size_t header_of(std::span<const std::string_view> columns,
 
 double number(const Cell& cell, std::string_view column) {
   if (const auto value = parse_number(cell.text)) return *value;
-  throw InputError(cell.place,
-                   "'" + printable(cell.text) + "' in column '" + std::string(column) + "' is not a finite number",
-                   "write a plain number in SI units");
+  throw InputError(
+      cell.place, "'" + printable(cell.text) + "' in column '" + std::string(column) + "' " + number_problem(cell.text),
+      "write a plain number in SI units");
 }
 
 /// Throws for a number that does not belong into its column.

@@ -22,7 +22,7 @@ struct CatalogEntry {
 /// Mechanisms by name, in the order in which they are listed.
 using Catalog = std::vector<CatalogEntry>;
 
-/// The entry of that name, or nullptr.
+/// The entry of that name, in capitals or small letters, or nullptr.
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name);
 
 }  // namespace poesy

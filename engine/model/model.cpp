@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/letters.h"
 #include "engine/model/catalog.h"
 
 namespace poesy {
@@ -33,9 +34,13 @@ Separation Model::separation(std::span<const double> /*pose*/) const { return {}
 
 ErrorBound Model::error_bound(FactorIndex /*factor*/) const { return {}; }
 
+std::vector<std::string> Model::unusual_geometry() const { return {}; }
+
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {
-  const auto found = std::find_if(catalog.begin(), catalog.end(),
-                                  [&](const CatalogEntry& entry) { return entry.description.name == model_name; });
+  const std::string name = lower_case(model_name);
+  const auto found = std::find_if(catalog.begin(), catalog.end(), [&](const CatalogEntry& entry) {
+    return lower_case(entry.description.name) == name;
+  });
   return found == catalog.end() ? nullptr : &*found;
 }
 

@@ -255,6 +255,10 @@ class Model {
   /// Infinite unless a model says otherwise.
   virtual ErrorBound error_bound(FactorIndex factor) const;
 
+  /// What of the geometry is possible, but so unusual that it may be a slip; clauses for people: "the platform (l_A =
+  /// 800 mm) is larger than the base (l_B = 200 mm)". None unless a model says otherwise.
+  virtual std::vector<std::string> unusual_geometry() const;
+
  protected:
   Model() = default;
   /// For models that copy themselves.

@@ -141,6 +141,8 @@ class Machine final : public Model {
                                     : ErrorBound{travel_.y, "the travel of the Y slide"};
   }
 
+  std::vector<std::string> unusual_geometry() const override { return head_->unusual_geometry(); }
+
  private:
   std::unique_ptr<Evaluator> with_head(std::unique_ptr<Evaluator> head) const {
     if (fidelity_ == kFirstOrder) return first_order_machine_evaluator(geometry_, std::move(head));

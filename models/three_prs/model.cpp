@@ -157,6 +157,12 @@ class ThreePrs final : public Model {
     return {geometry_.c, "the radius c of the spherical joints' circle"};
   }
 
+  std::vector<std::string> unusual_geometry() const override {
+    if (geometry_.c <= geometry_.a) return {};
+    return {"the platform's circle of joints (c = " + readable_text({geometry_.c, Dimension::length}) +
+            ") is larger than the circle of the rails (a = " + readable_text({geometry_.a, Dimension::length}) + ")"};
+  }
+
   Separation separation(std::span<const double> pose) const override {
     return three_prs::separation(geometry_, configuration(geometry_, pose_from(pose)));
   }

@@ -106,6 +106,12 @@ class TwoUprRpu final : public Model {
     return {geometry_.l_B, "the base's size l_B"};
   }
 
+  std::vector<std::string> unusual_geometry() const override {
+    if (geometry_.l_A <= geometry_.l_B) return {};
+    return {"the platform (l_A = " + readable_text({geometry_.l_A, Dimension::length}) +
+            ") is larger than the base (l_B = " + readable_text({geometry_.l_B, Dimension::length}) + ")"};
+  }
+
  private:
   /// Where a leg has no length, or a coordinate is so large that digits are lost, the limbs do not meet.
   std::optional<std::string> open_loop(const Pose& pose) const {

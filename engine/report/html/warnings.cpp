@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/report/display.h"
+#include "engine/report/failure_share.h"
 #include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/study_facts.h"

@@ -12,9 +12,6 @@ namespace poesy {
 /// close to singular ones, a first-order fidelity, a commit with changes of its own.
 std::vector<std::string> warnings(const ReportedResult& result);
 
-/// Above this share of solves that did not converge, indices cannot be trusted (engine/README.md, D8).
-inline constexpr double kManyNotConverged = 0.01;
-
 /// An interval that reaches further than this share of its index is called wide.
 inline constexpr double kWideInterval = 0.10;
 

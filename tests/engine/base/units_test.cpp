@@ -1,0 +1,91 @@
+#include "engine/base/units.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "engine/base/letters.h"
+
+namespace poesy {
+namespace {
+
+/// What parse_quantity() says of a text; empty when it takes it.
+std::string refusal(std::string_view text, std::optional<Dimension> wanted = std::nullopt) {
+  try {
+    parse_quantity(text, wanted);
+    return {};
+  } catch (const QuantityError& error) {
+    return error.what();
+  }
+}
+
+TEST(Units, HaveTheSizesOfTheSi) {
+  const double degree = std::numbers::pi / 180.0;
+  const std::pair<std::string_view, double> sizes[]{
+      {"1 m", 1.0},     {"1 cm", 0.01},    {"1 mm", 1e-3},        {"1 um", 1e-6},          {"1 rad", 1.0},
+      {"1 mrad", 1e-3}, {"1 deg", degree}, {"60 arcmin", degree}, {"3600 arcsec", degree}, {"1 s", 1.0},
+      {"1 ms", 1e-3},   {"1 min", 60.0},   {"1 h", 3600.0}};
+  EXPECT_EQ(std::size(sizes), units().size());
+  for (const auto& [text, si] : sizes) EXPECT_DOUBLE_EQ(parse_quantity(text).si, si) << text;
+}
+
+TEST(Units, MayBeSpeltWithTheirSigns) {
+  for (const std::string_view micrometre : {"7 \xC2\xB5m", "7 \xCE\xBCm", "7\xC2\xB5m"}) {
+    EXPECT_EQ(parse_quantity(micrometre).si, parse_quantity("7 um").si);
+    EXPECT_EQ(parse_quantity(micrometre).dimension, Dimension::length);
+  }
+  EXPECT_EQ(parse_quantity("-0.5\xC2\xB0").si, parse_quantity("-0.5 deg").si);
+  EXPECT_EQ(parse_quantity("-0.5 \xC2\xB0").dimension, Dimension::angle);
+}
+
+TEST(Units, AreListedForOneDimension) {
+  EXPECT_EQ(unit_names(Dimension::length), "m, cm, mm, um");
+  EXPECT_EQ(unit_names(Dimension::angle), "rad, mrad, deg, arcmin, arcsec");
+  EXPECT_EQ(unit_names(), "m, cm, mm, um, rad, mrad, deg, arcmin, arcsec, s, ms, min, h");
+  EXPECT_EQ(refusal("8 furlong", Dimension::length), "unknown unit 'furlong' in '8 furlong' (known: m, cm, mm, um)");
+  EXPECT_EQ(refusal("8", Dimension::angle), "'8' has no unit (known: rad, mrad, deg, arcmin, arcsec)");
+}
+
+TEST(ParseQuantity, NamesADecimalComma) {
+  for (const std::string_view text : {"0,08 m", "1,5mm", "-3,25 deg"}) {
+    EXPECT_NE(refusal(text).find("decimal comma; write a decimal point"), std::string::npos) << refusal(text);
+  }
+  EXPECT_EQ(refusal("1, mm").find("comma"), std::string::npos);
+}
+
+TEST(ParseQuantity, TellsTooSmallFromTooLarge) {
+  for (const std::string_view text : {"1e-999 mm", "-1E-999 mm", "+3e-400 rad"}) {
+    EXPECT_NE(refusal(text).find("is too small to be told from 0"), std::string::npos) << refusal(text);
+  }
+  const std::string tiny = "0." + std::string(400, '0') + "1 mm";
+  EXPECT_NE(refusal(tiny).find("is too small"), std::string::npos);
+  for (const std::string& text : {std::string("1e999 mm"), std::string("-1e+999 mm"), std::string(400, '7') + " mm"}) {
+    EXPECT_NE(refusal(text).find("too large"), std::string::npos) << refusal(text);
+  }
+  for (const std::string_view text : {"nan mm", "inf mm", "left", ""}) {
+    EXPECT_NE(refusal(text).find("is not a finite number"), std::string::npos) << refusal(text);
+  }
+}
+
+TEST(NumberProblem, SaysWhatParseNumberRefuses) {
+  const std::pair<std::string_view, std::string_view> problems[]{
+      {"1e-999", "is too small to be told from 0"},
+      {"1e999", "is not a finite number, because it is too large"},
+      {"0,5", "has a decimal comma; write a decimal point"},
+      {"nan", "is not a finite number"},
+      {"1x", "is not a finite number"}};
+  for (const auto& [text, problem] : problems) {
+    EXPECT_FALSE(parse_number(text)) << text;
+    EXPECT_EQ(number_problem(text), problem) << text;
+  }
+}
+
+TEST(LowerCase, ChangesCapitalsOfAsciiAlone) {
+  EXPECT_EQ(lower_case("2UPR-RPU [@`{"), "2upr-rpu [@`{");
+  EXPECT_EQ(lower_case("\xC3\x84Z"), "\xC3\x84z");  // a letter beyond ASCII keeps its bytes
+}
+
+}  // namespace
+}  // namespace poesy
