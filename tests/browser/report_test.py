@@ -31,7 +31,7 @@ class PageTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.browser = browser.Browser(WEB / "node_modules" / "axe-core" / "axe.min.js")
+        cls.browser = browser.Browser(os.environ["POESY_AXE"])
         cls.addClassCleanup(cls.browser.quit)
         SHOTS.mkdir(parents=True, exist_ok=True)
 

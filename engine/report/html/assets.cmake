@@ -1,4 +1,4 @@
-# cmake -D "SCRIPTS=a.js;b.js" -D STYLE=x.css -D PACKAGES=node_modules -D OUTPUT=assets.cpp -P assets.cmake
+# cmake -D "SCRIPTS=a.js;b.js" -D STYLE=x.css -D BUNDLED=folder -D OUTPUT=assets.cpp -P assets.cmake
 # Writes the C++ source behind assets.h, and beside it the assets as files.
 
 # What would end the element in which the text is to stand, or the literal, ends the build instead.
@@ -12,22 +12,8 @@ function(check_inlines name text)
   endforeach()
 endfunction()
 
-# package_script(OUT FILE PACKAGES...): a file of the first package, behind the licences of all that are bundled in it.
-function(package_script out file)
-  set(notice "")
-  foreach(package IN LISTS ARGN)
-    file(READ ${PACKAGES}/${package}/LICENSE licence)
-    string(STRIP "${licence}" licence)
-    string(APPEND notice "${package}:\n\n${licence}\n\n")
-  endforeach()
-  list(GET ARGN 0 first)
-  file(READ ${PACKAGES}/${first}/${file} script)
-  set(${out} "/*!\n${notice}*/\n${script}" PARENT_SCOPE)
-endfunction()
-
-# All of d3's own packages have one licence, but for those that are named here.
-package_script(d3 dist/d3.min.js d3 d3-ease d3-geo d3-scale-chromatic d3-delaunay delaunator robust-predicates)
-package_script(plot dist/plot.umd.min.js @observablehq/plot interval-tree-1d binary-search-bounds isoformat)
+file(READ ${BUNDLED}/d3.js d3)
+file(READ ${BUNDLED}/plot.js plot)
 set(report "(() => {\n\"use strict\";\n")
 foreach(path IN LISTS SCRIPTS)
   file(READ ${path} script)
