@@ -11,3 +11,8 @@ add_test(NAME packaging.downstream
                  -D WORK=${CMAKE_CURRENT_BINARY_DIR}/packaging -P
                  ${CMAKE_CURRENT_SOURCE_DIR}/packaging/downstream.cmake)
 set_tests_properties(packaging.downstream PROPERTIES LABELS install TIMEOUT 600)
+
+# The program that tries a new user's first command in a bare root takes minutes and root's rights: .ci/run starts it.
+add_test(NAME packaging.bare_root_finds_faults
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/packaging/bare_root_test.py)
+set_tests_properties(packaging.bare_root_finds_faults PROPERTIES LABELS install)

@@ -1,0 +1,247 @@
+#!/usr/bin/env python3
+"""Does what README.md tells a new user to do, in a root that holds only Debian's minimal base, ca-certificates and git.
+
+    bare_root.py         the first command under "Start": it must end well, print the ranked table, and leave a result
+                         and a report; nothing that only tests need may be installed for it
+    bare_root.py test    the second command: all tests must pass
+
+It makes the root with mmdebstrap from this machine's sources of Debian packages, clones the commit that is checked out
+here into it, and removes it at the end. It must be started as root; what it mounts, only its own processes see.
+"""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+CLONE = "root/poesy"  # inside the root
+ERRORS = 25  # of the published study
+MOST_PACKAGES = 165
+FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen",
+                   "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
+LEFT = ("build/2upr-rpu-sensitivity.h5", "build/2upr-rpu-sensitivity.html")  # result and report
+HOSTS = "127.0.0.1 localhost\n::1 localhost\n"
+# A mount namespace and a process namespace of its own: mounts and processes end with the command.
+ENTER = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c",
+         'mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" && mount -t sysfs sysfs "$1/sys" && '
+         'root=$1 && shift && exec chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"', "enter"]
+
+
+class Fault(Exception):
+    """What is wrong, in a sentence."""
+
+
+class Clock:
+    """Names phases of the work and tells how long each took."""
+
+    def __init__(self):
+        self.phases = []
+
+    def begin(self, name):
+        self.phases.append((name, time.monotonic()))
+
+    def seconds(self):
+        ends = [begin for _, begin in self.phases[1:]] + [time.monotonic()]
+        return [(name, end - begin) for (name, begin), end in zip(self.phases, ends)]
+
+
+def commands(readme):
+    """The lines of the first code block under "## Start" that call quickstart, without their comments."""
+    start = re.search(r"^## Start$(.*?)(?=^## |\Z)", readme, re.DOTALL | re.MULTILINE)
+    block = start and re.search(r"^```[^\n]*\n(.*?)^```", start[1], re.DOTALL | re.MULTILINE)
+    lines = [line.split("#")[0].strip() for line in block[1].splitlines()] if block else []
+    if not lines or not lines[0].startswith("./quickstart"):
+        raise Fault("README.md has no code block under '## Start' whose first line calls ./quickstart")
+    return [line for line in lines if line.startswith("./quickstart")]
+
+
+def command_of(readme, wanted):
+    """The first command; with "test" the one that runs the tests."""
+    found = commands(readme)
+    if wanted == "test":
+        found = [command for command in found if command.split() == ["./quickstart", "test"]]
+    if not found:
+        raise Fault("README.md's code block under '## Start' does not have ./quickstart test")
+    return found[0]
+
+
+def debian_sources(files, codename):
+    """Of the texts of apt's sources those that are Debian's own, as text for one file each kind: (lines, stanzas)."""
+    suites = {codename, f"{codename}-updates", f"{codename}-security", f"{codename}/updates"}
+    lines, stanzas = [], []
+    for name, text in files.items():
+        if name.endswith(".sources"):
+            for stanza in re.split(r"\n\s*\n", text.strip()):
+                named = re.search(r"^Suites:(.*)$", stanza, re.MULTILINE)
+                if named and suites & set(named[1].split()):
+                    stanzas.append(stanza + "\n")
+        else:
+            for line in text.splitlines():
+                words = re.sub(r"\[[^]]*\]", "", line).split()
+                if words[:1] == ["deb"] and len(words) > 2 and words[2] in suites:
+                    lines.append(line + "\n")
+    if not lines and not stanzas:
+        raise Fault(f"apt on this machine has no source for Debian {codename}")
+    return "".join(lines), "\n".join(stanzas)
+
+
+def ranked_rows(output):
+    """The rows of the ranked table as dicts by the words of its last heading line."""
+    _, found, text = output.partition("== The errors that matter most")
+    table = re.search(r"^( *rank .*)\n(?: *\[.*\n)?((?: *\d+ .*\n)+)", text, re.MULTILINE)
+    if not found or not table:
+        raise Fault("the ranked table is not there")
+    heading = table[1].split()
+    return [dict(zip(heading, row.split())) for row in table[2].splitlines()]
+
+
+def check_table(output):
+    """That all errors of the study stand there, the largest effect first, each with an interval."""
+    rows = ranked_rows(output)
+    names = {row.get("error", "") for row in rows}
+    if len(rows) != ERRORS or len(names) != ERRORS:
+        raise Fault(f"the ranked table has {len(rows)} rows and {len(names)} errors instead of {ERRORS}")
+    strange = [name for name in names if not re.fullmatch(r"(delta|epsilon)_\d_\d_[xyz]", name)]
+    if strange:
+        raise Fault(f"the ranked table names what is not an error: {', '.join(strange)}")
+    try:
+        ranks = [int(row["rank"]) for row in rows]
+        effects = [float(row["effect"]) for row in rows]
+        intervals = [(float(row["low"]), float(row["high"])) for row in rows]
+    except (KeyError, ValueError) as error:
+        raise Fault(f"the ranked table lacks a column or a number: {error}") from error
+    if ranks != list(range(1, ERRORS + 1)) or effects != sorted(effects, reverse=True):
+        raise Fault("the ranked table is not in the order of the effects")
+    if any(low > high for low, high in intervals):
+        raise Fault("an interval of the ranked table has its ends exchanged")
+    if rows[0]["error"] != "epsilon_1_4_z" or not 2 < effects[0] < 4:
+        raise Fault(f"the first error is {rows[0]['error']} with {effects[0]} mm: not as published")
+
+
+def check_packages(before, after):
+    """That little was installed, and nothing that only tests need."""
+    unneeded = sorted(FOR_TESTS_ALONE & after)
+    if unneeded:
+        raise Fault(f"packages of tests are installed for the program: {', '.join(unneeded)}")
+    if len(after - before) > MOST_PACKAGES:
+        raise Fault(f"{len(after - before)} packages are installed; {MOST_PACKAGES} are allowed")
+
+
+def check_tests(output):
+    if not re.search(r"^100% tests passed, 0 tests failed out of [1-9]\d{2,}", output, re.MULTILINE):
+        raise Fault("not all tests passed")
+
+
+def installed(root):
+    """Names of the packages in the root."""
+    status = (root / "var/lib/dpkg/status").read_text(encoding="utf-8")
+    return set(re.findall(r"^Package: (\S+)\nStatus: install ok installed$", status, re.MULTILINE))
+
+
+def run(arguments, **options):
+    done = subprocess.run(arguments, check=False, **options)
+    if done.returncode != 0:
+        raise Fault(f"{arguments[0]} ended with exit code {done.returncode}: {' '.join(map(str, arguments))}")
+
+
+def make_root(root, work):
+    codename = re.search(r"^VERSION_CODENAME=(\w+)$", Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE)
+    if not codename:
+        raise Fault("/etc/os-release does not say which Debian this is")
+    places = [Path("/etc/apt/sources.list"), *sorted(Path("/etc/apt/sources.list.d").glob("*"))]
+    texts = {str(place): place.read_text(encoding="utf-8") for place in places if place.is_file()}
+    sources = []
+    for name, text in zip(("debian.list", "debian.sources"), debian_sources(texts, codename[1])):
+        if text:
+            (work / name).write_text(text, encoding="utf-8")
+            sources.append(work / name)
+    run(["mmdebstrap", "--quiet", "--variant=minbase", "--include=ca-certificates,git", codename[1], root, *sources])
+    shutil.copyfile("/etc/resolv.conf", root / "etc/resolv.conf")
+    (root / "etc/hosts").write_text(HOSTS, encoding="utf-8")
+
+
+def clone(root, work):
+    """The commit that is checked out here, without its history. git may distrust the owner of this repository."""
+    (work / ".gitconfig").write_text("[safe]\n\tdirectory = *\n", encoding="utf-8")
+    environment = os.environ | {"HOME": str(work), "GIT_CONFIG_NOSYSTEM": "1"}
+    run(["git", "clone", "--quiet", "--depth", "1", f"file://{REPOSITORY}", root / CLONE], env=environment)
+    run(["git", "-C", root / CLONE, "log", "--oneline", "--max-count=1"], env=environment)
+
+
+def follow(root, command, clock):
+    """Runs a command in the clone, shows and returns what it prints; a phase begins with each line "== ..."."""
+    lines = []
+    with subprocess.Popen([*ENTER, root, "sh", "-c", f"cd /{CLONE} && {command}"], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace") as process:
+        try:
+            for line in process.stdout:
+                if line.startswith("== "):
+                    clock.begin(line[3:].strip())
+                print(line, end="", flush=True)
+                lines.append(line)
+        except BaseException:
+            process.kill()
+            raise
+    if process.returncode != 0:
+        raise Fault(f"{command} ended with exit code {process.returncode}")
+    return "".join(lines)
+
+
+def check_program(root, output):
+    check_table(output)
+    for name in LEFT:
+        file = root / CLONE / name
+        if not file.is_file() or file.stat().st_size == 0:
+            raise Fault(f"{name} is missing or empty")
+    run([*ENTER, root, f"/{CLONE}/build/release/bin/poesy", "verify", f"/{CLONE}/{LEFT[0]}"])
+
+
+def summary(clock, command, count, output):
+    print(f"\n{command} in a bare root: {count} packages installed")
+    for name, seconds in clock.seconds():
+        print(f"{seconds:8.1f} s  {name[:100]}")
+    if "== The errors that matter most" in output:
+        print(output.partition("== The errors that matter most\n")[2].partition("\n== ")[0])
+
+
+def try_out(wanted, work):
+    root, clock = work / "root", Clock()
+    command = command_of((REPOSITORY / "README.md").read_text(encoding="utf-8"), wanted)
+    clock.begin("making the root")
+    make_root(root, work)
+    before = installed(root)
+    clock.begin("cloning")
+    clone(root, work)
+    clock.begin(command)
+    output = follow(root, command, clock)
+    after = installed(root)
+    if wanted == "test":
+        check_tests(output)
+    else:
+        check_packages(before, after)
+        check_program(root, output)
+    summary(clock, command, len(after - before), output)
+
+
+def main():
+    if sys.argv[1:] not in ([], ["test"]):
+        sys.exit(__doc__)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    work = Path(tempfile.mkdtemp(prefix="poesy-bare-root-"))
+    work.chmod(0o755)
+    try:
+        try_out(" ".join(sys.argv[1:]), work)
+    except (Fault, OSError) as fault:
+        sys.exit(f"bare_root: {fault}")
+    finally:
+        shutil.rmtree(work)
+
+
+if __name__ == "__main__":
+    main()

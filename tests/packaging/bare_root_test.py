@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""Plants faults in what bare_root.py reads: it must find each, and none in what is right."""
+
+import unittest
+
+import bare_root
+
+README = """# poesy
+
+```
+./quickstart --help
+```
+
+## Start
+
+On Debian 12:
+
+```
+./quickstart          # installs, builds, runs
+./quickstart test     # all tests
+```
+
+## Other
+
+```
+./quickstart other
+```
+"""
+NAMES = [f"{kind}_{limb}_{joint}_{axis}" for kind in ("epsilon", "delta") for limb in "123" for joint in "40"
+         for axis in "zxy"][:25]
+PRINTED = """== Building: rank  error
+== The errors that matter most
+Effect of each error on linear_deformation
+                                          not
+rank  error  effect  index  low  high  sigma  unit  converged
+        [mm] [mm/unit]
+{}
+A note: 1 of them.
+
+== Writing the report
+   1  this is not of the table
+"""
+
+
+def printed(change=lambda rows: None):
+    rows = [[str(k + 1), NAMES[k], f"{2.8 - 0.1 * k:.3g}", "1", "0.9", "1.1", "1", "deg", "0"] for k in range(25)]
+    change(rows)
+    return PRINTED.format("\n".join("  " + "  ".join(row) for row in rows))
+
+
+class BareRootTest(unittest.TestCase):
+    def expect_fault(self, words, function, *arguments):
+        with self.assertRaises(bare_root.Fault) as raised:
+            function(*arguments)
+        self.assertIn(words, str(raised.exception))
+
+    def test_commands_of_the_readme(self):
+        self.assertEqual(bare_root.command_of(README, ""), "./quickstart")
+        self.assertEqual(bare_root.command_of(README, "test"), "./quickstart test")
+
+    def test_readme_without_the_block(self):
+        for old, new in (("## Start", "## Begin"), ("./quickstart          #", "make          #")):
+            self.expect_fault("no code block", bare_root.command_of, README.replace(old, new), "")
+        self.expect_fault("does not have", bare_root.command_of, README.replace("start test", "start tests"), "test")
+
+    def test_whole_table(self):
+        bare_root.check_table(printed())
+
+    def test_faults_of_the_table(self):
+        def set_cell(row, column, text):
+            return lambda rows: rows[row].__setitem__(column, text)
+
+        for words, change in {
+                "24 rows": lambda rows: rows.pop(),
+                "24 errors": set_cell(3, 1, NAMES[4]),
+                "not an error": set_cell(3, 1, "gamma_1_1_x"),
+                "a number": set_cell(3, 2, "-"),
+                "order": set_cell(3, 2, "9"),
+                "exchanged": set_cell(3, 4, "1.2"),
+                "not as published": set_cell(0, 1, "epsilon_3_3_z"),
+        }.items():
+            self.expect_fault(words, bare_root.check_table, printed(change))
+        self.expect_fault("not there", bare_root.check_table, printed().replace("== The errors", "== Errors"))
+        self.expect_fault("not there", bare_root.check_table, printed(lambda rows: rows.clear()))
+
+    def test_packages(self):
+        few = {"g++", "cmake"}
+        bare_root.check_packages(set(), few)
+        self.expect_fault("npm", bare_root.check_packages, set(), few | {"npm"})
+        self.expect_fault("166 packages", bare_root.check_packages, few, few | {str(n) for n in range(166)})
+
+    def test_tests(self):
+        bare_root.check_tests("...\n100% tests passed, 0 tests failed out of 1200\n")
+        for line in ("99% tests passed, 1 tests failed out of 1200", "100% tests passed, 0 tests failed out of 0", ""):
+            self.expect_fault("not all tests passed", bare_root.check_tests, line)
+
+    def test_debians_own_sources(self):
+        stanza = "Types: deb\n# a note\nURIs: http://deb.debian.org/debian\nSuites: bookworm bookworm-updates\n"
+        other = "Types: deb\nURIs: https://deb.example.org/node\nSuites: nodistro\n"
+        line = "deb [signed-by=/a b] http://deb.debian.org/debian bookworm main\n"
+        files = {"a.sources": f"{stanza}\n{other}", "b.list": f"{line}deb https://example.org cloud-bookworm main\n"}
+        self.assertEqual(bare_root.debian_sources(files, "bookworm"), (line, stanza))
+        self.expect_fault("no source", bare_root.debian_sources, {"a.sources": other}, "bookworm")
+
+
+if __name__ == "__main__":
+    unittest.main()
