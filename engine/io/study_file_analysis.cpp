@@ -122,6 +122,7 @@ Analysis read_analysis(const StudySection& root, const ModelDescription& model, 
   if (const auto value = section.find("linearity")) analysis.linearity = read_share(*value, "0.01");
   if (const auto value = section.find("quantiles")) analysis.quantiles = read_quantiles(*value);
   if (const auto value = section.find("pose_share")) analysis.pose_share = read_share(*value, "0.95");
+  read_limits(section, model, analysis);
   if (analysis.kind == Kind::identification) analysis.groups = read_groups(section);
   if (analysis.kind == Kind::evaluate) {
     analysis.cases = read_cases(section, model, background_errors(analysis.background, model), use);

@@ -44,6 +44,8 @@ void read_samples(const StudySection& analysis_section, Analysis& analysis);
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The keys of kind = "coupling". For StudyUse::evaluate sizes and sources may be missing.
 CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription& model, StudyUse use);
+/// `limits`, `judge` and `share`, with the rules between them.
+void read_limits(const StudySection& analysis_section, const ModelDescription& model, Analysis& analysis);
 /// [analysis].
 Analysis read_analysis(const StudySection& root, const ModelDescription& model, StudyUse use);
 

@@ -110,7 +110,7 @@ double StudyValue::quantity(Dimension dimension) const {
 double StudyValue::positive_quantity(Dimension dimension) const {
   const double value = quantity(dimension);
   if (value > 0.0) return value;
-  fail("is '" + printable(text()) + "'", "it must be greater than zero");
+  fail(is_text() ? "is '" + printable(text()) + "'" : "is " + described(*node_), "it must be greater than zero");
 }
 
 std::size_t StudyValue::word(std::span<const std::string_view> words) const {

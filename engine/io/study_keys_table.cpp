@@ -314,6 +314,35 @@ std::vector<StudyKey> keys_of_one_kind() {
   };
 }
 
+std::vector<StudyKey> keys_of_limits() {
+  const std::string_view monte_carlo = name(Kind::monte_carlo);
+  return {
+      {.name = "limits",
+       .type = "table",
+       .usual = "none",
+       .only_for = {monte_carlo, name(Kind::evaluate)},
+       .meaning =
+           "Limits of responses. The run ends with PASS or FAIL for each of them, and with exit code 6 if one is "
+           "not kept."},
+      {.name = "judge",
+       .type = "text",
+       .words = {{name(Judge::rms),
+                  "the response's root mean square over the draws of all poses is within the limit; "
+                  "draws that were not solved are left out"},
+                 {name(Judge::share),
+                  "at every pose at least a share of the draws is within the limit; draws that "
+                  "were not solved are not"}},
+       .usual = "`\"rms\"`",
+       .only_for = {monte_carlo},
+       .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)"},
+      {.name = "share",
+       .type = "number",
+       .bounds = "between 0 and 1",
+       .only_for = {monte_carlo},
+       .meaning = "With judge = \"share\", and required there: the share of the draws."},
+  };
+}
+
 std::vector<StudyKey> keys_of_coupling() {
   const std::vector<std::string_view> coupling{name(Kind::coupling)};
   return {
@@ -350,8 +379,19 @@ std::vector<StudyKey> keys_of_coupling() {
 
 StudyTable analysis() {
   std::vector<StudyKey> keys = keys_of_several_kinds();
-  for (const auto& more : {keys_of_one_kind(), keys_of_coupling()}) keys.insert(keys.end(), more.begin(), more.end());
+  for (const auto& more : {keys_of_one_kind(), keys_of_limits(), keys_of_coupling()})
+    keys.insert(keys.end(), more.begin(), more.end());
   return {.paths = {"analysis"}, .meaning = "What is asked.", .chooser = "kind", .keys = std::move(keys)};
+}
+
+StudyTable response_limits() {
+  return {.paths = {"analysis.limits"},
+          .meaning = "'poesy models MODEL' lists the responses.",
+          .keys = {{.name = "RESPONSE",
+                    .type = "quantity",
+                    .bounds = "greater than 0",
+                    .usual = "none",
+                    .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}};
 }
 
 StudyTable adaptive_samples() {
@@ -531,10 +571,10 @@ StudyTable run() {
 
 const std::vector<StudyTable>& study_tables() {
   static const std::vector<StudyTable> tables{
-      file_itself(),      mechanism(),  geometry(),  poses(),     grid(),         workspace(),
-      limits(),           trajectory(), errors(),    overrides(), distribution(), analysis(),
-      adaptive_samples(), background(), reference(), groups(),    cases(),        errors_of_case(),
-      errors_of_set(),    sources(),    solver(),    run()};
+      file_itself(),     mechanism(),        geometry(),   poses(),     grid(),         workspace(),
+      limits(),          trajectory(),       errors(),     overrides(), distribution(), analysis(),
+      response_limits(), adaptive_samples(), background(), reference(), groups(),       cases(),
+      errors_of_case(),  errors_of_set(),    sources(),    solver(),    run()};
   return tables;
 }
 

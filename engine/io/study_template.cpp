@@ -180,9 +180,23 @@ std::string sensitivity_keys(const ModelDescription& model) {
   return text + reference_key(model);
 }
 
+/// The responses, and a limit of the first one that is a length, or of the first.
+std::string response_limits_key(const ModelDescription& model) {
+  if (model.responses.empty()) return {};
+  std::string list = "Responses:";
+  for (const Response& response : model.responses) list += " " + response.name;
+  const auto length = std::ranges::find(model.responses, Dimension::length, &Response::dimension);
+  const Response& response = length == model.responses.end() ? model.responses.front() : *length;
+  const double limit = display_unit(response.dimension).si / 20.0;
+  return comment(list) +
+         explained("analysis", "limits",
+                   fmt::format("# limits = {{ {} = {} }}", response.name, readable_value(limit, response.dimension)));
+}
+
 std::string monte_carlo_keys(const ModelDescription& model) {
   return factors_key(model, "all") + samples_keys() +
-         explained("analysis", "quantiles", "quantiles = [0.05, 0.5, 0.95]") +
+         explained("analysis", "quantiles", "quantiles = [0.05, 0.5, 0.95]") + response_limits_key(model) +
+         explained("analysis", "judge", "# judge = \"rms\"") + explained("analysis", "share", "# share = 0.9973") +
          background_key("# background = { factors = \"all\", linear = \"1 mm\", angular = \"1 deg\" }");
 }
 
@@ -197,9 +211,9 @@ std::string identification_keys(const ModelDescription& model) {
 
 std::string evaluate_keys(const ModelDescription& model) {
   std::string text =
-      background_key("# background = { factors = \"all\", linear = \"0.1 mm\", angular = \"0.1 deg\" }") + "\n" +
-      explanation_lines("analysis", "cases") + keys_lines("analysis.cases") + keys_lines("analysis.cases.errors", 2) +
-      comment("    " + std::string(table_meaning("analysis.cases.errors"))) +
+      background_key("# background = { factors = \"all\", linear = \"0.1 mm\", angular = \"0.1 deg\" }") +
+      response_limits_key(model) + "\n" + explanation_lines("analysis", "cases") + keys_lines("analysis.cases") +
+      keys_lines("analysis.cases.errors", 2) + comment("    " + std::string(table_meaning("analysis.cases.errors"))) +
       keys_lines("analysis.cases.errors.SET", 3) +
       "[[analysis.cases]]\nname = \"group 1\"\nerrors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }\n";
   if (model.factors.empty()) return text;

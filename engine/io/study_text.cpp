@@ -193,6 +193,22 @@ std::string coupling_text(const CouplingStudy& coupling, const ModelDescription&
   return text;
 }
 
+/// A line for each limit, as for adaptive samples. What a share of the draws stays within is part of a run's state, so
+/// `share` has its line even where limits are left out (CheckpointIdentity).
+std::string limits_text(const Analysis& analysis, const ModelDescription& model) {
+  std::string text;
+  if (analysis.kind == Analysis::Kind::monte_carlo && analysis.judge == Judge::share) {
+    text += fmt::format("judge = \"share\"\nshare = {}\n", shortest(analysis.share));
+  } else if (analysis.kind == Analysis::Kind::monte_carlo && !analysis.limits.empty()) {
+    text += "judge = \"rms\"\n";
+  }
+  for (const ResponseLimit& limit : analysis.limits) {
+    const Response& response = model.responses[limit.response];
+    text += fmt::format("limits.{} = {}\n", response.name, exact_value(limit.most, response.dimension));
+  }
+  return text;
+}
+
 /// A line for each key of adaptive samples, so that a comparison of two studies line by line names the key.
 std::string samples_text(const Analysis& analysis) {
   if (!analysis.adaptive) return fmt::format("samples = {}\n", analysis.samples);
@@ -217,6 +233,7 @@ std::string analysis_text(const Study& study) {
     text += "]\n";
   }
   if (analysis.kind == Kind::identification) text += "pose_share = " + shortest(analysis.pose_share) + "\n";
+  text += limits_text(analysis, study.model());
   for (const ErrorSize& group : analysis.groups) text += group_text(group);
   if (analysis.background) text += background_text(*analysis.background, study.model());
   for (const ErrorCase& one : analysis.cases) text += case_text(one, study.model());

@@ -39,6 +39,16 @@ std::string_view name(Analysis::Kind kind) {
   return "coupling";
 }
 
+std::string_view name(Judge judge) {
+  switch (judge) {
+    case Judge::rms:
+      return "rms";
+    case Judge::share:
+      break;
+  }
+  return "share";
+}
+
 std::string_view name(NotConverged policy) {
   switch (policy) {
     case NotConverged::exclude:

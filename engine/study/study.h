@@ -96,6 +96,18 @@ struct AdaptiveSamples {
   double relative_error = 0.0;  ///< half-width of an interval at conf_level over what it is the interval of
 };
 
+/// How far a response may go: its magnitude is good up to this, the limit itself included.
+struct ResponseLimit {
+  std::size_t response;  ///< position among the model's
+  double most;           ///< SI, above zero
+};
+
+/// By which number of a Monte Carlo study its limits are judged; see engine/run/verdict.h.
+enum class Judge {
+  rms,   ///< the response's root mean square over the draws of all poses
+  share  ///< what a share of the draws stays within at the worst pose
+};
+
 /// What is asked, of which errors.
 struct Analysis {
   /// Kinds of studies.
@@ -120,6 +132,9 @@ struct Analysis {
   double pose_share = 0.95;                        ///< identification: of the poses that a verdict asks for
   std::vector<ErrorCase> cases;                    ///< evaluate
   CouplingStudy coupling;                          ///< coupling
+  std::vector<ResponseLimit> limits;               ///< Monte Carlo, evaluate: in the order of the model's responses
+  Judge judge = Judge::rms;                        ///< Monte Carlo: of the limits
+  double share = 0.0;                              ///< Monte Carlo, for Judge::share: of the draws at each pose
 };
 
 /// What becomes of samples without a solution.
@@ -152,6 +167,10 @@ std::string_view name(Analysis::Kind kind);
 /// Every kind, in the order in which they are listed.
 inline constexpr std::array kKinds{Analysis::Kind::sensitivity, Analysis::Kind::identification,
                                    Analysis::Kind::evaluate, Analysis::Kind::monte_carlo, Analysis::Kind::coupling};
+/// As a study file has it.
+std::string_view name(Judge judge);
+/// Every one, in the order in which they are listed.
+inline constexpr std::array kJudges{Judge::rms, Judge::share};
 /// As a study file has it.
 std::string_view name(NotConverged policy);
 /// As a study file has it.

@@ -160,6 +160,23 @@ TEST(CheckpointIdentity, LeavesTheLimitOnFailuresOpen) {
   EXPECT_FALSE(identity_of(example.study, example.poses.poses) == without);
 }
 
+TEST(CheckpointIdentity, LeavesLimitsOpenButNotTheShareThatTheyAreJudgedBy) {
+  Example example;
+  Analysis& analysis = example.study.analysis;
+  analysis.kind = Analysis::Kind::monte_carlo;
+  const CheckpointIdentity without = identity_of(example.study, example.poses.poses);
+  analysis.limits = {{0, 1e-3}};
+  EXPECT_EQ(identity_of(example.study, example.poses.poses), without);
+  analysis.judge = Judge::share;
+  analysis.share = 0.99;
+  const CheckpointIdentity at_99 = identity_of(example.study, example.poses.poses);
+  EXPECT_FALSE(at_99 == without);
+  analysis.limits = {{0, 2e-3}, {1, 1e-2}};
+  EXPECT_EQ(identity_of(example.study, example.poses.poses), at_99);
+  analysis.share = 0.95;
+  EXPECT_FALSE(identity_of(example.study, example.poses.poses) == at_99);
+}
+
 TEST_F(Files, KeepTwoGenerations) {
   CheckpointFiles files(result_);
   EXPECT_FALSE(files.exist());

@@ -439,6 +439,70 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"BackgroundKey", "linear = \"1 mm\", angular", "^lineal = \"1 mm\", angular", {"'linear'?"}}),
     kName);
 
+/// The valid study as one of the kind, with these lines in its [analysis].
+std::string with_limits(const std::string& kind, const std::string& lines) {
+  return changed("kind = \"sensitivity\"", "kind = \"" + kind + "\"\n" + lines);
+}
+
+TEST(StudyFile, TakesLimitsInTheOrderOfTheModelsResponses) {
+  const Analysis by_rms = study_of(with_limits("monte-carlo",
+                                               "limits = { linear_deformation = \"0.03 mm\", angular_deformation = "
+                                               "\"0.5 deg\" }"))
+                              .analysis;
+  ASSERT_EQ(by_rms.limits.size(), 2u);
+  EXPECT_EQ(by_rms.limits[0].response, 0u);
+  EXPECT_DOUBLE_EQ(by_rms.limits[0].most, 0.5 * kDegree);
+  EXPECT_EQ(by_rms.limits[1].response, 1u);
+  EXPECT_DOUBLE_EQ(by_rms.limits[1].most, 0.03e-3);
+  EXPECT_EQ(by_rms.judge, Judge::rms);
+  const Analysis by_share =
+      study_of(with_limits("monte-carlo", "judge = \"share\"\nshare = 0.9973\nlimits.linear_deformation = \"1 mm\""))
+          .analysis;
+  EXPECT_EQ(by_share.judge, Judge::share);
+  EXPECT_EQ(by_share.share, 0.9973);
+  EXPECT_TRUE(study_of(test::kValidStudy).analysis.limits.empty());
+}
+
+/// 'poesy evaluate' takes the limits of a study of any kind.
+TEST(StudyFile, GivesItsLimitsToAnEvaluation) {
+  const std::string text = changed("kind = \"sensitivity\"", "limits.linear_deformation = \"1 mm\"");
+  EXPECT_EQ(study_of(text, StudyUse::evaluate).analysis.limits.size(), 1u);
+}
+
+BadStudy bad_limits(const char* name, const std::string& kind, const std::string& lines,
+                    std::vector<std::string> words) {
+  return {name, "kind = \"sensitivity\"", "kind = \"" + kind + "\"\n" + lines, std::move(words)};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Limits, BadStudies,
+    testing::Values(
+        bad_limits("OfASensitivityStudy", "sensitivity", "^limits.linear_deformation = \"1 mm\"",
+                   {"analysis.limits does not belong to kind = \"sensitivity\""}),
+        bad_limits("UnknownResponse", "monte-carlo", "limits = { ^linear_deformatoin = \"1 mm\" }",
+                   {"unknown response 'linear_deformatoin' in [analysis.limits]",
+                    "did you mean 'linear_deformation'?"}),
+        bad_limits("LimitOfZero", "monte-carlo", "limits = { linear_deformation = ^\"0 mm\" }",
+                   {"analysis.limits.linear_deformation is '0 mm'", "greater than zero"}),
+        bad_limits("LimitOfTheWrongDimension", "monte-carlo", "limits = { linear_deformation = ^\"1 deg\" }",
+                   {"analysis.limits.linear_deformation is '1 deg', but must be a length"}),
+        bad_limits("NoLimits", "monte-carlo", "limits = ^{}", {"analysis.limits states no limit"}),
+        bad_limits("YieldIsUnknown", "monte-carlo", "limits = { linear_deformation = \"1 mm\" }\njudge = ^\"yield\"",
+                   {"analysis.judge is 'yield', which is unknown", "rms, share"}),
+        bad_limits("JudgeWithoutLimits", "monte-carlo", "judge = ^\"rms\"",
+                   {"analysis.judge is set, but the study states no limit", "[analysis.limits]"}),
+        bad_limits("ShareWithoutItsNumber", "monte-carlo",
+                   "limits = { linear_deformation = \"1 mm\" }\njudge = ^\"share\"",
+                   {"analysis.judge is \"share\", but analysis.share is missing", "share = 0.9973"}),
+        bad_limits("ShareOfAllDraws", "monte-carlo",
+                   "limits = { linear_deformation = \"1 mm\" }\njudge = \"share\"\nshare = ^1.0",
+                   {"analysis.share is 1", "between 0 and 1"}),
+        bad_limits("ShareForRms", "monte-carlo", "limits = { linear_deformation = \"1 mm\" }\nshare = ^0.9973",
+                   {"analysis.share is set, but analysis.judge is \"rms\""}),
+        bad_limits("JudgeOfCases", "evaluate", "limits = { linear_deformation = \"1 mm\" }\n^judge = \"rms\"",
+                   {"analysis.judge does not belong to kind = \"evaluate\""})),
+    kName);
+
 TEST(StudyFile, FailIsALimitOfZero) {
   const Study none = study_of(changed("not_converged = \"include\"", "not_converged = \"fail\""));
   EXPECT_EQ(none.not_converged, NotConverged::exclude);

@@ -67,6 +67,12 @@ std::vector<std::string> studies() {
           head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
               "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\nconf_level = 0.95\nquantiles = [0.1, 0.2]\n" +
               background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+              "judge = \"rms\"\nlimits = { angular_deformation = \"1 deg\", linear_deformation = \"1 mm\" }\n",
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+              "judge = \"share\"\nshare = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
           head + "[poses]\nselect = \"boundary\"\ncount = 3\n" + box +
               "[analysis]\nkind = \"identification\"\nfactors = \"all\"\npose_share = 0.9\n"
               "groups = [{ name = \"small\", linear = \"2 mm\", angular = \"2 deg\" }]\n",
@@ -74,7 +80,7 @@ std::vector<std::string> studies() {
               "[poses]\nselect = \"trajectory\"\nmax_condition = 1e6\n"
               "trajectory = { curve = \"wave\", origin = [\"0.21 m\", \"-1 rad\", \"0 rad\"], points = 5, time = [\"0 "
               "s\", \"1 s\"] }\n"
-              "[analysis]\nkind = \"evaluate\"\n" +
+              "[analysis]\nkind = \"evaluate\"\nlimits = { angular_deformation = \"1 deg\" }\n" +
               background +
               "cases = [{ name = \"one\", errors = { linear = \"1 mm\", angular = \"1 deg\", delta_1 = \"2 mm\", "
               "deforming = { linear = \"1 mm\", angular = \"1 deg\" } } }]\n",

@@ -68,6 +68,13 @@ void expect_same(const Study& a, const Study& b) {
     EXPECT_EQ(a.analysis.reference->factor, b.analysis.reference->factor);
     EXPECT_EQ(a.analysis.reference->tolerance, b.analysis.reference->tolerance);
   }
+  ASSERT_EQ(a.analysis.limits.size(), b.analysis.limits.size());
+  for (std::size_t k = 0; k < a.analysis.limits.size(); ++k) {
+    EXPECT_EQ(a.analysis.limits[k].response, b.analysis.limits[k].response);
+    EXPECT_EQ(a.analysis.limits[k].most, b.analysis.limits[k].most);
+  }
+  EXPECT_EQ(a.analysis.judge, b.analysis.judge);
+  EXPECT_EQ(a.analysis.share, b.analysis.share);
   EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
   EXPECT_EQ(a.solver.max_iterations, b.solver.max_iterations);
   EXPECT_EQ(a.not_converged, b.not_converged);
@@ -99,6 +106,11 @@ INSTANTIATE_TEST_SUITE_P(
                        "half_width = \"0.123456789012345678 mm\" }\n"),
         shortest_study("[poses]\ncount = 3\n[analysis]\nfactors = [\"delta_2\", \"epsilon_1\", \"delta_1\"]\n"
                        "background = { factors = [\"delta_2\", \"delta_1\"], linear = \"-1 um\" }\n"),
+        shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\njudge = \"share\"\nshare = 0.9973\n"
+                       "[analysis.limits]\nangular_deformation = \"0.1 deg\"\n"),
+        shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"evaluate\"\n"
+                       "limits = { angular_deformation = \"0.1 deg\" }\n"
+                       "cases = [{ errors = { linear = \"1 mm\" } }]\n"),
         "title = \"quotes \\\" backslash \\\\ line \\n control \\u0001\\u007f and \xC2\xB5\"\n" +
             shortest_study("[poses]\ncount = 3\n")));
 
