@@ -1,8 +1,9 @@
 # Files of a target that are compiled together (POESY_UNITY): headers and templates are then read once for many files.
 #
 # Files share a group when none of them uses a name, for whatever, that another one defines in its namespace without a
-# name. So nobody needs to mind which files are compiled together. Compiled alone are files with options of their own
-# (kernels and what must have the same bits everywhere), generated files, and those with `using namespace`.
+# name; the same alias of the same type may stand in several. So nobody needs to mind which files are compiled
+# together. Compiled alone are files with options of their own (kernels and what must have the same bits everywhere),
+# generated files, and those with `using namespace`.
 set(POESY_UNITY_FILES 12)  # of a group, at most: more save little and take memory
 
 # Words of a source, between spaces; without comments and texts.
@@ -23,9 +24,9 @@ function(poesy_internal_names out text)
     string(FIND "${text}" "\n}  // namespace\n" length)
     string(SUBSTRING "${text}" 0 ${length} space)
     string(SUBSTRING "${text}" ${length} -1 text)
-    string(REGEX REPLACE "\\[\\[[a-z_]+\\]\\] |\ntemplate <[^\n]*|\nnamespace {" "" space "${space}")
+    string(REGEX REPLACE "\\[\\[[a-z_]+\\]\\] |\ntemplate <[^\n]*|\nnamespace {|\nusing [^\n]*" "" space "${space}")
     # In lines that are not indented, what stands before a parameter, a value or a body ends with the name.
-    string(REGEX MATCHALL "\n(struct|class|enum class|enum|using) [A-Za-z_0-9]+" types "${space}")
+    string(REGEX MATCHALL "\n(struct|class|enum class|enum) [A-Za-z_0-9]+" types "${space}")
     string(REGEX MATCHALL "\n[A-Za-z_][^][\n(){}=;]*" others "${space}")
     list(APPEND definitions ${types} ${others})
   endwhile()
@@ -39,9 +40,26 @@ function(poesy_internal_names out text)
   set(${out} "${names}" PARENT_SCOPE)
 endfunction()
 
+# List of the aliases of types that a source defines, each as a text "Vector3 = lie::Vector3<double>".
+function(poesy_aliases out text)
+  string(REGEX MATCHALL "\nusing [A-Za-z_0-9]+ = [^][;\n]*" lines "${text}")
+  list(TRANSFORM lines REPLACE "\nusing " "")
+  set(${out} "${lines}" PARENT_SCOPE)
+endfunction()
+
+# Names of those aliases that are not among the known ones.
+function(poesy_other_aliases out aliases known)
+  if(known)
+    list(REMOVE_ITEM aliases ${known})
+  endif()
+  list(TRANSFORM aliases REPLACE " = .*" "")
+  set(${out} "${aliases}" PARENT_SCOPE)
+endfunction()
+
 # Whether any of the names is one of the words.
 function(poesy_uses out words names)
   set(${out} FALSE PARENT_SCOPE)
+  list(REMOVE_ITEM names "")
   foreach(name IN LISTS names)
     string(FIND "${words}" " ${name} " at)
     if(NOT at EQUAL -1)
@@ -82,13 +100,16 @@ function(poesy_unity target)
     endif()
     poesy_words(words "${text}")
     poesy_internal_names(names "${text}")
+    poesy_aliases(aliases "${text}")
     foreach(number RANGE 1 99)
       set(group ${number})
       if(NOT DEFINED files_${group})
         set(files_${group} 0)
       endif()
-      poesy_uses(clash_here "${words_${group}}" "${names}")
-      poesy_uses(clash_there "${words}" "${names_${group}}")
+      poesy_other_aliases(own "${aliases}" "${aliases_${group}}")
+      poesy_other_aliases(others "${aliases_${group}}" "${aliases}")
+      poesy_uses(clash_here "${words_${group}}" "${names};${own}")
+      poesy_uses(clash_there "${words}" "${names_${group}};${others}")
       if(files_${group} LESS POESY_UNITY_FILES AND NOT clash_here AND NOT clash_there)
         break()
       endif()
@@ -96,6 +117,7 @@ function(poesy_unity target)
     math(EXPR files_${group} "${files_${group}} + 1")
     string(APPEND words_${group} "${words}")
     list(APPEND names_${group} ${names})
+    list(APPEND aliases_${group} ${aliases})
     set_source_files_properties(${path} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP group_${group})
   endforeach()
 endfunction()

@@ -27,7 +27,7 @@
 namespace poesy::app {
 namespace {
 
-struct Options {
+struct EvaluateOptions {
   std::string study;
   std::string poses;
   std::string errors;
@@ -58,7 +58,7 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   return poses;
 }
 
-int evaluate(const Options& options) {
+int evaluate(const EvaluateOptions& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
   if (study.mechanism.compared) {
     throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but an evaluation solves at one fidelity",
@@ -111,7 +111,7 @@ int evaluate(const Options& options) {
 }  // namespace
 
 void add_evaluate(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = program.add_subcommand("evaluate", "solve errors that somebody else sampled");
   command->add_option("study", options->study, "study file; its [mechanism] and [solver] are used")
       ->required()

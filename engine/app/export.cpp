@@ -9,12 +9,12 @@
 namespace poesy::app {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string result;
   std::string folder;
 };
 
-int export_result(const Options& options) {
+int export_result(const ExportOptions& options) {
   const StoredResult result = read_result_warily(options.result);
   for (const std::string& file : export_tables(result, options.folder)) std::puts(file.c_str());
   return kDone;
@@ -23,7 +23,7 @@ int export_result(const Options& options) {
 }  // namespace
 
 void add_export(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   CLI::App* command = program.add_subcommand("export", "write every table of a result as CSV");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
   command->add_option("-d,--directory", options->folder, "folder for the tables, made if missing")

@@ -12,7 +12,7 @@
 namespace poesy::app {
 namespace {
 
-struct Options {
+struct MergeOptions {
   std::vector<std::string> shards;
   std::string result;
 };
@@ -34,7 +34,7 @@ std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*
   return largest;
 }
 
-int merge(const Options& options) {
+int merge(const MergeOptions& options) {
   check_result_path(options.result, options.shards);
   std::vector<StoredShard> shards;
   for (const std::string& path : options.shards) shards.push_back(read_shard(path));
@@ -64,7 +64,7 @@ int merge(const Options& options) {
 }  // namespace
 
 void add_merge(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   CLI::App* command = program.add_subcommand("merge", "put the shards of a study together (poesy run --shard)");
   command->add_option("shards", options->shards, "all shards of one study, in any order")
       ->required()

@@ -25,44 +25,44 @@ namespace {
 
 constexpr std::uint64_t kMostNumber = 0x7fffffffffffffff;  ///< of poses and samples, on the command line
 
-struct Options {
+struct ReplayOptions {
   std::string result;
   std::string factor;
   std::size_t pose = 0;
   std::optional<std::size_t> sample;
 };
 
-[[noreturn]] void refuse(const Options& options, const std::string& problem, const std::string& remedy) {
+[[noreturn]] void refuse(const ReplayOptions& options, const std::string& problem, const std::string& remedy) {
   throw InputError({.file = options.result}, problem, remedy);
 }
 
 /// Throws unless `number` is one of 0 .. count - 1.
-void check_number(const Options& options, const std::string& what, std::size_t number, std::size_t count) {
+void check_number(const ReplayOptions& options, const std::string& what, std::size_t number, std::size_t count) {
   if (number < count) return;
   refuse(options, fmt::format("{} {}: there are {} {}s", what, number, count, what),
          count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
 }
 
 /// The position of the command line's name among these.
-std::size_t position_of(const Options& options, const std::string& what, const std::vector<std::string>& known) {
+std::size_t position_of(const ReplayOptions& options, const std::string& what, const std::vector<std::string>& known) {
   const auto found = std::ranges::find(known, options.factor);
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
   refuse(options, fmt::format("no {} '{}' in this result", what, options.factor),
          fmt::format("it has {}", fmt::join(known, ", ")));
 }
 
-void refuse_sample(const Options& options, const std::string& why) {
+void refuse_sample(const ReplayOptions& options, const std::string& why) {
   if (options.sample) refuse(options, why, fmt::format("write 'poesy replay {} NAME POSE'", options.result));
 }
 
-std::size_t required_sample(const Options& options, std::size_t count) {
+std::size_t required_sample(const ReplayOptions& options, std::size_t count) {
   if (!options.sample) refuse(options, "no sample given", fmt::format("give a number from 0 to {}", count - 1));
   check_number(options, "sample", *options.sample, count);
   return *options.sample;
 }
 
 /// One of the samples that the study drew.
-ReplayedSample replay_drawn(const Options& options, const StoredResult& result, const StoredStudy& stored,
+ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                             const Model& model) {
   const Analysis& analysis = stored.study.analysis;
   if (name(analysis.kind) != result.kind || analysis.factors.size() != result.factors.size()) {
@@ -78,7 +78,7 @@ ReplayedSample replay_drawn(const Options& options, const StoredResult& result, 
 }
 
 /// A named case, or one of the errors that 'poesy evaluate' was given.
-ReplayedSample replay_given(const Options& options, const StoredResult& result, const StoredStudy& stored,
+ReplayedSample replay_given(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                             const Model& model) {
   std::size_t row = 0;
   if (!result.cases.empty()) {
@@ -101,7 +101,7 @@ ReplayedSample replay_given(const Options& options, const StoredResult& result, 
   return replay_row(stored.study.solver, model, PoseSet(pose.size(), {pose.begin(), pose.end()}), errors);
 }
 
-ReplayedSample replay_of(const Options& options, const StoredResult& result, const StoredStudy& stored,
+ReplayedSample replay_of(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                          const Model& model) {
   if (result.kind == "sensitivity" || result.kind == "monte-carlo") {
     return replay_drawn(options, result, stored, model);
@@ -111,7 +111,7 @@ ReplayedSample replay_of(const Options& options, const StoredResult& result, con
          "replay one of a sensitivity, Monte Carlo or evaluate result");
 }
 
-void warn_of_other_program(const Options& options, const StoredResult& result) {
+void warn_of_other_program(const ReplayOptions& options, const StoredResult& result) {
   if (result.poesy_version == poesy_version() && result.git_commit == git_commit()) return;
   say(Message::warning,
       fmt::format("{} was written by poesy {} ({}), and this is {} ({}): draws and solves may "
@@ -120,7 +120,7 @@ void warn_of_other_program(const Options& options, const StoredResult& result) {
 }
 
 /// Where the result lists this sample as a failure of another kind, or solved where it was not.
-void warn_of_difference(const Options& options, const StoredResult& result, const ReplayedSample& replayed) {
+void warn_of_difference(const ReplayOptions& options, const StoredResult& result, const ReplayedSample& replayed) {
   for (const Failure& failure : listed_failures(result)) {
     if (varied_name(result, failure.slot) != options.factor || failure.pose.value != options.pose ||
         failure.failed.sample.value != options.sample || failure.failed.status == replayed.status) {
@@ -147,7 +147,7 @@ std::string end_text(SolveStatus status, std::uint32_t iterations) {
   return fmt::format("{} after {} iterations", kStatusNames[static_cast<std::size_t>(status)], iterations);
 }
 
-std::string sample_text(const Options& options, const StoredResult& result, const ModelDescription& model,
+std::string sample_text(const ReplayOptions& options, const StoredResult& result, const ModelDescription& model,
                         const ReplayedSample& sample) {
   std::string text = fmt::format("pose {}\n", options.pose);
   const auto pose = result.poses[PoseIndex(options.pose)];
@@ -205,7 +205,7 @@ std::string reference_text(const ModelDescription& model, const ReplayedSample& 
       agreement_text(model, sample, *trace));
 }
 
-int replay(const Options& options) {
+int replay(const ReplayOptions& options) {
   const StoredResult result = read_result_warily(options.result);
   warn_of_other_program(options, result);
   check_number(options, "pose", options.pose, result.poses.size());
@@ -230,7 +230,7 @@ int replay(const Options& options) {
 }  // namespace
 
 void add_replay(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = program.add_subcommand("replay", "solve one sample of a result again, iteration by iteration");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
   command->add_option("factor", options->factor, "error that varied; all: a Monte Carlo result; or the name of a case")

@@ -15,7 +15,7 @@
 namespace poesy::app {
 namespace {
 
-struct Options {
+struct ReportOptions {
   std::vector<std::string> results;
   std::string report;
 };
@@ -46,7 +46,7 @@ void write_whole(const std::string& path, const std::string& html) {
   file.commit();
 }
 
-int report(const Options& options) {
+int report(const ReportOptions& options) {
   const std::string path = options.report.empty() ? default_path(options.results) : options.report;
   check_output_path(path, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
@@ -59,7 +59,7 @@ int report(const Options& options) {
 }  // namespace
 
 void add_report(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportOptions>();
   CLI::App* command =
       program.add_subcommand("report", "one HTML file with figures and tables of a result, or of two compared");
   command->add_option("results", options->results, "result file, or two to be compared")

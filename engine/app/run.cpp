@@ -22,7 +22,7 @@
 namespace poesy::app {
 namespace {
 
-struct Options {
+struct RunCommandOptions {
   std::string study;
   std::string result;
   std::size_t threads = 0;
@@ -34,7 +34,7 @@ struct Options {
 };
 
 /// The command line that continues this run.
-std::string resume_command(const Options& options, const Team* team) {
+std::string resume_command(const RunCommandOptions& options, const Team* team) {
   std::vector<std::string> words;
   if (team != nullptr) words = {"mpirun", "-n", std::to_string(team->ranks().size())};
   words.insert(words.end(), {options.program, "run", options.study});
@@ -52,7 +52,7 @@ std::string resume_command(const Options& options, const Team* team) {
 }
 
 /// study.toml gives study.h5 in the current folder, its second shard of five study.2-of-5.h5.
-std::string default_result(const Options& options) {
+std::string default_result(const RunCommandOptions& options) {
   const std::filesystem::path stem = std::filesystem::path(options.study).filename().stem();
   if (!options.shard) return stem.string() + ".h5";
   return fmt::format("{}.{}-of-{}.h5", stem.string(), options.shard->index + 1, options.shard->count);
@@ -117,7 +117,7 @@ std::optional<Ended> run_to_end(const Job& job, ResumableRun& resumable, Progres
   }
 }
 
-Study study_of(const Options& options) {
+Study study_of(const RunCommandOptions& options) {
   Study study = read_study(options.study, registry(), StudyUse::run);
   if (options.seed) study.seed = *options.seed;
   return study;
@@ -130,7 +130,7 @@ std::string text_of(const CheckpointIdentity& identity) {
 }
 
 /// What the ranks after rank 0 do.
-void follow(const Options& options, std::size_t threads, Team& team) {
+void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
@@ -161,7 +161,7 @@ int leave_before_the_start(const Team& team, ResumableRun& resumable) {
 }
 
 /// In one process, or as rank 0 of a team.
-int run(const Options& options, std::size_t threads, Team* team) {
+int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
   const std::string path = options.result.empty() ? default_result(options) : options.result;
@@ -197,7 +197,7 @@ int run(const Options& options, std::size_t threads, Team* team) {
   return report_end(job, options.study, *ended);
 }
 
-int run_alone_or_on_ranks(const Options& options) {
+int run_alone_or_on_ranks(const RunCommandOptions& options) {
   const auto launch = find_launch();
   if (!launch || launch->size == 1) return run(options, resolved_threads(options.threads), nullptr);
   return run_on_ranks(*launch, [&](Team& team, std::size_t default_threads) -> int {
@@ -211,7 +211,7 @@ int run_alone_or_on_ranks(const Options& options) {
 }  // namespace
 
 void add_run(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunCommandOptions>();
   CLI::App* command = program.add_subcommand("run", "run a study and write its result");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY.toml");
   command->add_option("-o,--output", options->result, "result file; default: the study's name with .h5, in this folder")

@@ -28,7 +28,7 @@ constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --jso
 
 constexpr std::size_t kMostNumber = 1'000'000;
 
-struct Options {
+struct ShowOptions {
   std::string result;
   std::string response;
   std::optional<std::string> sort;
@@ -37,7 +37,7 @@ struct Options {
   bool json = false;
 };
 
-std::string response_of(const Options& options, const StoredResult& result) {
+std::string response_of(const ShowOptions& options, const StoredResult& result) {
   if (options.response.empty()) return default_ranking(result);
   std::string known;
   for (const NamedUnit& response : result.responses) {
@@ -49,7 +49,7 @@ std::string response_of(const Options& options, const StoredResult& result) {
                    "it has " + known);
 }
 
-RowOrder order_of(const Options& options) {
+RowOrder order_of(const ShowOptions& options) {
   if (!options.sort) return RowOrder::effect;
   const auto at = std::ranges::find(kRowOrders, *options.sort);
   if (at != kRowOrders.end()) return static_cast<RowOrder>(at - kRowOrders.begin());
@@ -57,8 +57,8 @@ RowOrder order_of(const Options& options) {
                    suggestion(*options.sort, kRowOrders));
 }
 
-/// Options that speak of ranked errors need some.
-void check_ranks(const Options& options, const StoredResult& result) {
+/// ShowOptions that speak of ranked errors need some.
+void check_ranks(const ShowOptions& options, const StoredResult& result) {
   if (result.kind == "sensitivity") return;
   for (const auto& [given, option] :
        {std::pair(options.sort.has_value(), "--sort"), {options.top.has_value(), "--top"}}) {
@@ -76,7 +76,7 @@ void show_alone(const std::string& response, StoredResult& result) {
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-int show(const Options& options) {
+int show(const ShowOptions& options) {
   const RowOrder order = order_of(options);
   StoredResult result = read_result_warily(options.result);
   check_ranks(options, result);
@@ -95,7 +95,7 @@ int show(const Options& options) {
 }  // namespace
 
 void add_show(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ShowOptions>();
   CLI::App* command = program.add_subcommand("show", "print a result as tables");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
   command->add_option("--response", options->response, "response to rank by, or to show alone where nothing is ranked")

@@ -24,7 +24,7 @@
 namespace poesy::app {
 namespace {
 
-struct Options {
+struct TolerancesOptions {
   std::string result;
   std::string response;
   std::optional<std::string> limit;
@@ -77,7 +77,8 @@ StoredResult read_sensitivity_result(const std::string& path) {
   return result;
 }
 
-std::optional<ReferenceError> reference_of(const Options& options, const StoredResult& result, std::size_t response) {
+std::optional<ReferenceError> reference_of(const TolerancesOptions& options, const StoredResult& result,
+                                           std::size_t response) {
   if (!options.reference) return result.tolerance_reference[response];
   const std::size_t equals = options.reference->find('=');
   const std::size_t factor = position(result.factors, options.reference->substr(0, equals), "--reference", "error");
@@ -86,7 +87,7 @@ std::optional<ReferenceError> reference_of(const Options& options, const StoredR
   return ReferenceError{factor, positive(options.reference->substr(equals + 1), "--reference", named)};
 }
 
-void check_reference(const Options& options, const StoredResult& result, const ResponseStudy& response,
+void check_reference(const TolerancesOptions& options, const StoredResult& result, const ResponseStudy& response,
                      const std::string& name, const std::optional<ReferenceError>& reference) {
   if (!reference) {
     throw InputError({}, fmt::format("--response: no error of this result has an effect on {}", name),
@@ -120,7 +121,7 @@ void check_prediction(const StoredResult& result, const MeanSquare& response, co
   }
 }
 
-LimitTolerances within(const Options& options, const StoredResult& result, const ResponseStudy& study,
+LimitTolerances within(const TolerancesOptions& options, const StoredResult& result, const ResponseStudy& study,
                        const MeanSquare& response, const NamedUnit& named) {
   const double limit = positive(*options.limit, "--limit", named);
   check_prediction(result, response, named.name);
@@ -141,7 +142,7 @@ std::string default_folder(const std::string& result) {
 }
 
 /// Writes the table and the studies that confirm it; says what that was.
-std::string write_files(const Options& options, const StoredResult& result, const ResponseTolerances& found) {
+std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
   const std::string folder = options.folder.empty() ? default_folder(options.result) : options.folder;
   std::string commands;
   if (found.limit) {
@@ -188,7 +189,7 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result) {
   }
 }
 
-int set_tolerances(const Options& options) {
+int set_tolerances(const TolerancesOptions& options) {
   const StoredResult result = read_sensitivity_result(options.result);
   const std::size_t response = position(result.responses, options.response, "--response", "response");
   const NamedUnit& named = result.responses[response];
@@ -208,7 +209,7 @@ int set_tolerances(const Options& options) {
 }  // namespace
 
 void add_tolerances(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TolerancesOptions>();
   CLI::App* command = program.add_subcommand("tolerances", "tolerances from the indices of a sensitivity result");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
   command->add_option("--response", options->response, "response that the tolerances are for")
