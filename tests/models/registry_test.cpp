@@ -114,7 +114,7 @@ TEST_P(EveryMechanism, NamesThingsPlainlyAndOnce) {
   expect_plain_and_different(of_errors);
 }
 
-TEST_P(EveryMechanism, SaysTheSameBeforeAndAfterItIsBuilt) {
+TEST_P(EveryMechanism, SaysTheSameBeforeItIsBuilt) {
   EXPECT_EQ(model_->description().name, description().name);
   EXPECT_EQ(names_of(model_->description().factors), names_of(description().factors));
   EXPECT_EQ(names_of(model_->description().responses), names_of(description().responses));
@@ -145,7 +145,7 @@ TEST_P(EveryMechanism, HasPositionsThatExist) {
   for (const Factor& factor : model.factors) EXPECT_GE(factor.limb, 1u) << factor.name;
 }
 
-TEST_P(EveryMechanism, HasSourcesThatShareNoFactor) {
+TEST_P(EveryMechanism, HasSourcesWithoutCommonFactors) {
   std::set<std::size_t> taken;
   for (const CouplingSource& source : description().sources) {
     ASSERT_NE(description().find_set(source.set), nullptr) << source.name;
@@ -176,7 +176,7 @@ TEST_P(EveryMechanism, RespondsNothingToNoError) {
 }
 
 /// In every bit: a sample does not depend on its neighbours, nor on what was solved before.
-TEST_P(EveryMechanism, SolvesSamplesOfABlockAsItSolvesThemAlone) {
+TEST_P(EveryMechanism, SolvesSamplesOfABlockAsAlone) {
   constexpr std::size_t kCount = 21;
   const ModelDescription& model = description();
   std::vector<FactorIndex> varied;

@@ -44,7 +44,7 @@ struct BadSize {
 
 class BeyondBound : public testing::TestWithParam<BadSize> {};
 
-TEST_P(BeyondBound, IsAnInputErrorWithItsPlace) {
+TEST_P(BeyondBound, IsRefused) {
   const test::Marked marked(kHead + GetParam().rest);
   test::expect_input_error([&] { read(marked.text.substr(kHead.size())); }, {"study.toml", marked.line, marked.column},
                            GetParam().words);

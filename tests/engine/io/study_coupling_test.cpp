@@ -138,7 +138,7 @@ void PrintTo(const BadCoupling& bad, std::ostream* out) { *out << bad.name; }
 
 class BadCouplings : public testing::TestWithParam<BadCoupling> {};
 
-TEST_P(BadCouplings, AreAnInputErrorWithItsPlace) {
+TEST_P(BadCouplings, AreRefused) {
   const test::Marked bad(with_analysis(GetParam().analysis));
   test::expect_input_error([&] { study_of_text(bad.text, "study.toml", kCatalog, StudyUse::run); },
                            {"study.toml", bad.line, bad.column}, GetParam().words);

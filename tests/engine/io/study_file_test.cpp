@@ -190,7 +190,7 @@ void PrintTo(const BadStudy& bad, std::ostream* out) { *out << bad.name; }
 
 class BadStudies : public testing::TestWithParam<BadStudy> {};
 
-TEST_P(BadStudies, AreAnInputErrorWithItsPlace) {
+TEST_P(BadStudies, AreRefused) {
   const BadStudy& parameter = GetParam();
   const test::Marked bad(parameter.passage.empty() ? parameter.replacement
                                                    : changed(parameter.passage, parameter.replacement));

@@ -164,7 +164,7 @@ void PrintTo(const BadAnalysis& bad, std::ostream* out) { *out << bad.name; }
 
 class BadAnalyses : public testing::TestWithParam<BadAnalysis> {};
 
-TEST_P(BadAnalyses, AreAnInputErrorWithItsPlace) {
+TEST_P(BadAnalyses, AreRefused) {
   const test::Marked bad(with_analysis(GetParam().analysis));
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", bad.text);

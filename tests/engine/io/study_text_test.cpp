@@ -4,6 +4,7 @@
 #include "engine/io/study_text.h"
 #include "tests/engine/io/valid_study.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/names.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -112,7 +113,9 @@ INSTANTIATE_TEST_SUITE_P(
                        "limits = { angular_deformation = \"0.1 deg\" }\n"
                        "cases = [{ errors = { linear = \"1 mm\" } }]\n"),
         "title = \"quotes \\\" backslash \\\\ line \\n control \\u0001\\u007f and \xC2\xB5\"\n" +
-            shortest_study("[poses]\ncount = 3\n")));
+            shortest_study("[poses]\ncount = 3\n")),
+    test::named({"Whole", "Shortest", "Limits", "Boundary", "Grid", "GridCounts", "File", "Override", "Background",
+                 "Title"}));
 
 TEST(ResolvedTextOf, TheShortestStudyShowsEveryDefault) {
   EXPECT_EQ(resolved_text(study_of(shortest_study("[poses]\ncount = 3\n"))), R"(format = "poesy-study"

@@ -3,6 +3,7 @@
 #include "engine/io/study_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/names.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -102,7 +103,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "{ curve = \"wave\", origin = [\"0.1234567890123456 mm\", \"11.3 deg\", \"0 rad\"], points = 2, "
                     "time = [\"333 ms\", \"0.0123 min\"] }",
                     "{ file = \"curve.csv\" }", "{ file = \"curve.csv\", points = 12 }",
-                    "{ file = \"curve.csv\", time = [\"0.1 s\", \"1.7 s\"] }"));
+                    "{ file = \"curve.csv\", time = [\"0.1 s\", \"1.7 s\"] }"),
+    test::named({"Curve", "CurveWithOrigin", "File", "FileWithPoints", "FileWithTime"}));
 
 struct Bad {
   const char* name;
@@ -116,7 +118,7 @@ const auto kName = [](const auto& info) { return std::string(info.param.name); }
 
 class BadTrajectoryStudy : public testing::TestWithParam<Bad> {};
 
-TEST_P(BadTrajectoryStudy, IsAnInputErrorWithItsPlace) {
+TEST_P(BadTrajectoryStudy, IsRefused) {
   const test::TempFolder folder;
   const Catalog catalog = test::fake_catalog();
   folder.write("curve.csv", kFile);

@@ -73,7 +73,7 @@ const auto kName = [](const auto& info) { return std::string(info.param.name); }
 
 class BadPoses : public testing::TestWithParam<BadTable> {};
 
-TEST_P(BadPoses, AreAnInputErrorWithItsPlace) {
+TEST_P(BadPoses, AreRefused) {
   const test::TempFolder folder;
   const test::Marked bad(GetParam().text);
   const std::string path = folder.write("poses.csv", bad.text);
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 class BadTrajectory : public testing::TestWithParam<BadTable> {};
 
-TEST_P(BadTrajectory, IsAnInputErrorWithItsPlace) {
+TEST_P(BadTrajectory, IsRefused) {
   const test::TempFolder folder;
   const test::Marked bad(GetParam().text);
   const std::string path = folder.write("curve.csv", bad.text);
@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 class BadErrors : public testing::TestWithParam<BadTable> {};
 
-TEST_P(BadErrors, AreAnInputErrorWithItsPlace) {
+TEST_P(BadErrors, AreRefused) {
   const test::TempFolder folder;
   const test::Marked bad(GetParam().text);
   const std::string path = folder.write("errors.csv", bad.text);

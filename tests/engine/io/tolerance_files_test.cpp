@@ -56,7 +56,7 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
   }
 }
 
-TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectUnlessTheStudyNamesOne) {
+TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
   const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: 2.9e-6 and 2e-3
   EXPECT_EQ(stored.tolerance_reference[0]->factor, 0U);
   EXPECT_EQ(stored.tolerance_reference[0]->tolerance, kDegree);
@@ -96,7 +96,7 @@ TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
   EXPECT_EQ(read_bytes(write_tolerances(folder_.path(), stored, some(false))).find("limit"), std::string::npos);
 }
 
-TEST_F(ToleranceFiles, ConfirmationVariesTheSameErrorsWithTheirTolerances) {
+TEST_F(ToleranceFiles, ConfirmationVariesErrorsByTheirTolerances) {
   example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
   example_.study.analysis.background = Background{{FactorIndex(2)}, 1e-3, 0.0};
   example_.study.seed = 77;
@@ -130,7 +130,7 @@ TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfAFileAlong) {
   for (std::size_t c = 0; c < found.coordinates(); ++c) EXPECT_EQ(found.column(c), example_.poses.poses.column(c));
 }
 
-TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfATrajectoryFileAlong) {
+TEST_F(ToleranceFiles, ConfirmationTakesATrajectorysPosesAlong) {
   example_.study.poses = {};
   example_.study.poses.select = PoseSelection::Select::trajectory;
   example_.study.poses.trajectory.emplace().file = "gone/curve.csv";
@@ -150,7 +150,7 @@ TEST_F(ToleranceFiles, ExportHasTheSameRows) {
             "delta_1,0,1,2,6010,7010,1,0.001,1\n");
 }
 
-TEST_F(ToleranceFiles, ExportLeavesThemOutWhereTheBackgroundIsMissing) {
+TEST_F(ToleranceFiles, ExportLeavesThemOutWithoutABackground) {
   StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
   EXPECT_TRUE(has_tolerances(stored));
   stored.sensitivity.background.clear();

@@ -206,12 +206,12 @@ class Adaptive : public testing::TestWithParam<Case> {
   AdaptiveRun study_{adaptive_study(GetParam().kind, GetParam().relative_error, GetParam().max)};
 };
 
-TEST_P(Adaptive, SameStopAndSameBitsOnAnyNumberOfThreads) {
+TEST_P(Adaptive, SameBitsOnAnyNumberOfThreads) {
   const Bits expected = run(study_, on_threads(1)).value();
   for (const std::size_t threads : {2, 3, 7}) EXPECT_EQ(run(study_, on_threads(threads)), expected) << threads;
 }
 
-TEST_P(Adaptive, StoppedAtAnyMomentItGoesOnToTheSameBits) {
+TEST_P(Adaptive, StoppedItGoesOnToTheSameBits) {
   const Bits expected = run(study_, on_threads(2)).value();
   States kept;
   std::size_t stops = 0;
@@ -254,7 +254,7 @@ std::optional<Bits> run_from(const AdaptiveRun& study, const States& state) {
   return run(study, options);
 }
 
-TEST_P(Adaptive, ALargerMaxGivesTheBitsOfAFreshRun) {
+TEST_P(Adaptive, ALargerMaxGivesAFreshRunsBits) {
   for (const std::size_t max : {GetParam().max + 1, GetParam().max + 700, 2 * GetParam().max, 5 * GetParam().max}) {
     const AdaptiveRun longer(adaptive_study(GetParam().kind, GetParam().relative_error, max));
     const Bits expected = run(longer, on_threads(2)).value();

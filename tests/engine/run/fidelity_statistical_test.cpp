@@ -49,7 +49,7 @@ TEST(FidelityOfAQuadraticModel, HasItsClosedForm) {
 }
 
 // Verdicts turn where bend sigma / weight is 1 %: at sigma = 0.04 for delta_1, at 0.02 for epsilon_1.
-TEST(FidelityOfAQuadraticModel, VerdictsTurnWithTheSizeOfTheErrors) {
+TEST(FidelityOfAQuadraticModel, VerdictsTurnWithTheSize) {
   EXPECT_EQ(compared(0.015, 20'000).linear, (std::vector<std::uint8_t>{1, 1, 1}));
   EXPECT_EQ(compared(0.025, 20'000).linear, (std::vector<std::uint8_t>{1, 0, 1}));
   EXPECT_EQ(compared(0.060, 20'000).linear, (std::vector<std::uint8_t>{0, 0, 1}));

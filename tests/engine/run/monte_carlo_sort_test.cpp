@@ -10,6 +10,7 @@
 #include "engine/random/stream.h"
 #include "engine/run/runner.h"
 #include "tests/engine/stats/plain_sort.h"
+#include "tests/support/names.h"
 
 namespace poesy {
 namespace {
@@ -59,7 +60,7 @@ std::vector<std::vector<double>> solved_samples(const Study& study, const Model&
 
 class MonteCarloOfAllErrors : public testing::TestWithParam<double> {};
 
-TEST_P(MonteCarloOfAllErrors, HasTheQuantilesOfAPlainSort) {
+TEST_P(MonteCarloOfAllErrors, HasSortedQuantiles) {
   const Study study = study_of(GetParam());
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const PoseSet poses = select_poses(study.poses, *model).poses;
@@ -85,7 +86,7 @@ TEST_P(MonteCarloOfAllErrors, HasTheQuantilesOfAPlainSort) {
   EXPECT_GT(worst, 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scales, MonteCarloOfAllErrors, testing::Values(0.1, 1.0));
+INSTANTIATE_TEST_SUITE_P(Scales, MonteCarloOfAllErrors, testing::Values(0.1, 1.0), test::named({"Tenth", "Whole"}));
 
 }  // namespace
 }  // namespace poesy

@@ -103,7 +103,7 @@ TEST_P(RanksOf, GiveTheBitsOfOneProcessOnEveryRank) {
   }
 }
 
-TEST_P(RanksOf, ContinueWhatOneProcessBeganAndTheOtherWayRound) {
+TEST_P(RanksOf, ContinueOneProcessAndTheOtherWayRound) {
   const Prepared prepared(study_of(kind(), 3 * Plan::kUnitSamples + 300));
   const Bits expected = run(prepared, {}).value();
   std::vector<Bytes> kept;
@@ -291,7 +291,7 @@ TEST_P(LeavingRank, AlsoWhenItIsStopped) {
   EXPECT_EQ(ended.left.value_or(RankLeft{LeaveReason::stopped, {}}).reason, LeaveReason::stopped);
 }
 
-INSTANTIATE_TEST_SUITE_P(AnyRank, LeavingRank, testing::Values(0, 1, 3));
+INSTANTIATE_TEST_SUITE_P(AnyRank, LeavingRank, testing::Values(0, 1, 3), testing::PrintToStringParamName());
 
 TEST(Ranks, DoNotWaitForOthersWhenStopped) {
   std::atomic<bool> stop{false};

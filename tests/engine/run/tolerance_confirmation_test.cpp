@@ -56,7 +56,7 @@ struct Found {
   std::vector<double> sigma;
 };
 
-TEST(ToleranceConfirmation, BackgroundIsTheResponseWithoutTheVariedErrors) {
+TEST(ToleranceConfirmation, BackgroundIsTheResponseAlone) {
   const Found found(study_with(2e-3));
   ASSERT_EQ(found.result.background.size(), 2 * kPoses);
   for (std::size_t m = 0; m < kPoses; ++m) {
@@ -64,7 +64,7 @@ TEST(ToleranceConfirmation, BackgroundIsTheResponseWithoutTheVariedErrors) {
   }
 }
 
-TEST(ToleranceConfirmation, VariedErrorsOfTheBackgroundAreZeroInIt) {
+TEST(ToleranceConfirmation, BackgroundHasNoVariedErrors) {
   Study study = study_with(2e-3);
   study.analysis.background->factors = {FactorIndex(1)};
   study.analysis.background->angular = 1e-3;

@@ -89,7 +89,7 @@ TEST(LocalIndexInterval, CoversTheFoldedNormal) {
   EXPECT_LE(std::abs(z_of(hits, kRepetitions)), 3.291) << hits << " of " << kRepetitions;
 }
 
-TEST(LocalIndexWithError, StandardErrorIsTheDeviationOfRepeatedIndices) {
+TEST(LocalIndexWithError, StandardErrorIsThatOfRepetitions) {
   constexpr int kRepetitions = 10000;
   Experiment experiment(12);
   Moments values;
@@ -107,7 +107,7 @@ TEST(GlobalIndexInterval, CoversOverTwentyVeryDifferentPoses) {
   EXPECT_LE(std::abs(z_of_global_coverage(scales_between(0.2, 1.0, 20), 1000, 4000, 21)), 3.291);
 }
 
-TEST(GlobalIndexInterval, CoversOverThePublishedNumberOfPoses) {
+TEST(GlobalIndexInterval, CoversOverThePublishedPoses) {
   EXPECT_LE(std::abs(z_of_global_coverage(scales_between(0.2, 1.0, 158), 1000, 1000, 22)), 3.291);
 }
 
@@ -123,11 +123,11 @@ TEST(GlobalIndexInterval, CoversWhereOnePoseMakesTheSpread) {
 
 // Where the spread is as small as its noise, the interval may cover more than its level, never less.
 
-TEST(GlobalIndexInterval, CoversAtLeastItsLevelWhereSpreadIsAsSmallAsNoise) {
+TEST(GlobalIndexInterval, CoversWhereSpreadIsLikeNoise) {
   EXPECT_GE(z_of_global_coverage(scales_between(0.97, 1.03, 20), 1000, 4000, 31), -3.090);
 }
 
-TEST(GlobalIndexInterval, CoversAtLeastItsLevelWithoutSpreadOverFewPoses) {
+TEST(GlobalIndexInterval, CoversWithoutSpreadOverFewPoses) {
   EXPECT_GE(z_of_global_coverage(std::vector<double>(4, 1.0), 500, 10000, 35), -3.090);
 }
 
@@ -135,11 +135,11 @@ TEST(GlobalIndexInterval, CoversAtLeastItsLevelWithoutSpread) {
   EXPECT_GE(z_of_global_coverage(std::vector<double>(20, 1.0), 1000, 4000, 32), -3.090);
 }
 
-TEST(GlobalIndexInterval, CoversAtLeastItsLevelWithoutSpreadOverThePublishedNumberOfPoses) {
+TEST(GlobalIndexInterval, CoversWithoutSpreadAtPublishedPoses) {
   EXPECT_GE(z_of_global_coverage(std::vector<double>(158, 1.0), 1000, 1000, 33), -3.090);
 }
 
-TEST(GlobalIndexInterval, ReachesUpToThePlainEstimateWithoutSpread) {
+TEST(GlobalIndexInterval, ReachesPlainEstimateWithoutSpread) {
   // Why the interval cannot simply be put about the plain estimate: that takes noise for spread.
   Experiment experiment(34);
   const std::vector<double> scales(158, 1.0);

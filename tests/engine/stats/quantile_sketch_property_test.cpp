@@ -53,7 +53,7 @@ QuantileSketch of(std::span<const double> values) {
 
 class SketchOf : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(SketchOf, AgreesWithAPlainSortWithinTheStatedError) {
+TEST_P(SketchOf, AgreesWithASortAsStated) {
   Engine engine(11);
   for (const std::size_t count : {1u, 2u, 3u, 10u, 97u, 1000u, 4321u}) {
     const std::vector<double> values = drawn(shapes()[GetParam()], count, engine);
@@ -69,7 +69,7 @@ TEST_P(SketchOf, AgreesWithAPlainSortWithinTheStatedError) {
   }
 }
 
-TEST_P(SketchOf, GivesTheSameBitsHoweverItIsCutAndMerged) {
+TEST_P(SketchOf, GivesTheSameBitsHoweverItIsMerged) {
   Engine engine(12);
   const std::vector<double> values = drawn(shapes()[GetParam()], 3000, engine);
   const QuantileSketch whole = of(values);

@@ -51,7 +51,7 @@ TEST(LocalIndexInterval, GrowsWithTheLevel) {
   EXPECT_LT(width(local_index(response, 1.0, 0.95).interval), width(local_index(response, 1.0, 0.999).interval));
 }
 
-TEST(LocalIndexInterval, ScalesWithTheResponseAndAgainstTheError) {
+TEST(LocalIndexInterval, ScalesWithResponseAndAgainstError) {
   const Estimate one = local_index(skewed_response(1.0, 200), 1.0, 0.95);
   const Estimate other = local_index(skewed_response(8.0, 200), 2.0, 0.95);
   EXPECT_DOUBLE_EQ(other.value, 4.0 * one.value);
@@ -59,7 +59,7 @@ TEST(LocalIndexInterval, ScalesWithTheResponseAndAgainstTheError) {
   EXPECT_DOUBLE_EQ(other.interval.high, 4.0 * one.interval.high);
 }
 
-TEST(LocalIndexInterval, AgreesWithTheStandardErrorForManySamples) {
+TEST(LocalIndexInterval, AgreesWithTheStandardErrorOfMany) {
   const Moments response = skewed_response(1.0, 1000000);
   const LocalIndex index = local_index_with_error(response, 1.0);
   EXPECT_NEAR(width(local_index(response, 1.0, 0.95).interval), 2.0 * kZ * index.standard_error,
@@ -117,7 +117,7 @@ TEST(GlobalIndexInterval, GrowsWithTheLevelAndTheNoise) {
   }
 }
 
-TEST(GlobalIndexInterval, IsOrderedAndNotNegativeWhateverTheNoise) {
+TEST(GlobalIndexInterval, IsOrderedAndNotNegativeInAnyNoise) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{5}, std::size_t{158}}) {
     for (const double relative_error : {0.0, 1e-9, 1e-3, 0.1, 1.0, 100.0}) {
       const Estimate index = global_index(different_poses(count, relative_error), 0.95);

@@ -67,7 +67,7 @@ TEST(LocalIndex, StandardErrorIsThatOfTheLogarithmTimesTheIndex) {
   EXPECT_NEAR(index.standard_error, 0.5 * index.value * std::sqrt(0.03 / 99.0), 1e-13 * index.standard_error);
 }
 
-TEST(LocalIndex, StandardErrorIsZeroWithoutSpreadAndUnknownBelowFiveSamples) {
+TEST(LocalIndex, StandardErrorIsZeroWithoutSpreadAndUnknownForFew) {
   EXPECT_EQ(local_index_with_error(moments_of({3, 3}), 1.0).standard_error, 0.0);
   EXPECT_TRUE(std::isnan(local_index_with_error(moments_of({1, 2, 3, 4}), 1.0).standard_error));
 }

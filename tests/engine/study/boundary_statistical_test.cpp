@@ -51,14 +51,14 @@ std::size_t face_of(Point pose) {
 
 class BoundaryOfTheBox : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(BoundaryOfTheBox, MeetsAllFacesEqually) {
+TEST_P(BoundaryOfTheBox, MeetsFacesAlike) {
   const std::size_t dimension = GetParam();
   for (const std::size_t count : {std::size_t{692}, kCount}) {
     expect_shares(boundary_of(test::kWholeBox, dimension, count), std::vector<double>(2 * dimension, 1.0), face_of);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Dimensions, BoundaryOfTheBox, testing::Values(2, 3, 4, 6));
+INSTANTIATE_TEST_SUITE_P(Dimensions, BoundaryOfTheBox, testing::Values(2, 3, 4, 6), testing::PrintToStringParamName());
 
 TEST(BoundaryOfTheBox, CoversEveryFaceEvenly) {
   constexpr std::size_t kPatches = 5;
@@ -85,7 +85,7 @@ TEST(BoundaryOfABall, IsUniformInHeightAndLongitude) {
   });
 }
 
-TEST(BoundaryOfABallCutByTheBox, HasTheSharesOfCapsAndDiscs) {
+TEST(BoundaryOfABallCutByTheBox, HasSharesOfCapsAndDiscs) {
   // A ball of radius 0.6 about the cube's centre: the faces cut discs of radius^2 0.11, and caps of height 0.1 are
   // lost.
   const test::RegionModel ball([](Point p) { return std::hypot(p[0] - 0.5, p[1] - 0.5, p[2] - 0.5) <= 0.6; });

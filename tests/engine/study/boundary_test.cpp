@@ -39,7 +39,7 @@ TEST_P(BoundaryIn, OfABoxLiesOnItsFacesExactly) {
   }
 }
 
-TEST_P(BoundaryIn, OfABallLiesOnItsSurfaceToRounding) {
+TEST_P(BoundaryIn, OfABallLiesOnItsSurface) {
   const std::size_t dimension = GetParam();
   const test::RegionModel ball([](std::span<const double> point) { return distance_to_centre(point) <= 0.49; });
   const SelectedPoses selected = boundary_poses(test::unit_cube(Select::boundary, 200, dimension), ball);
@@ -52,7 +52,7 @@ TEST_P(BoundaryIn, OfABallLiesOnItsSurfaceToRounding) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Dimensions, BoundaryIn, testing::Values(2, 3, 4, 6));
+INSTANTIATE_TEST_SUITE_P(Dimensions, BoundaryIn, testing::Values(2, 3, 4, 6), testing::PrintToStringParamName());
 
 TEST(Boundary, OfOneCoordinateIsTheEndsOfIntervals) {
   const test::RegionModel two_pieces(

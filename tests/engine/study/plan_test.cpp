@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <tuple>
 
 #include "tests/support/fake_model.h"
@@ -49,7 +50,11 @@ TEST_P(PlanOfSize, CoversEverySampleOnceInOrder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, PlanOfSize,
-                         testing::Combine(testing::Values(1, 2, 7), testing::Values(2, 999, 1000, 1001, 2500)));
+                         testing::Combine(testing::Values(1, 2, 7), testing::Values(2, 999, 1000, 1001, 2500)),
+                         [](const auto& size) {
+                           return std::to_string(std::get<0>(size.param)) + "_poses_" +
+                                  std::to_string(std::get<1>(size.param)) + "_samples";
+                         });
 
 TEST(Plan, HasOneSlotWhereAllErrorsVaryTogether) {
   const Catalog catalog = test::fake_catalog();

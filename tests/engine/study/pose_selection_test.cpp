@@ -10,6 +10,7 @@
 #include "tests/engine/study/region.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/names.h"
 
 namespace poesy {
 namespace {
@@ -91,7 +92,7 @@ TEST(InteriorPoses, AreTheFeasibleOnesOfThePlainBoxInOrder) {
   EXPECT_EQ(values_of(selected.poses), expected);
 }
 
-TEST(InteriorPoses, RejectedOnesAreCountedByReasonMostFrequentFirst) {
+TEST(InteriorPoses, RejectedOnesAreCountedMostFrequentFirst) {
   const SelectedPoses selected = select_poses(limited(Select::interior, 500), kModel);
   ASSERT_EQ(selected.rejected.size(), 3u);
   std::set<std::string> reasons;
@@ -124,11 +125,12 @@ TEST_P(FewerPoses, AreTheFirstOfMore) {
 
 INSTANTIATE_TEST_SUITE_P(Selections, FewerPoses,
                          testing::Values(interior(158), limited(Select::interior, 158),
-                                         test::fake_box(Select::boundary, 158), limited(Select::boundary, 158)));
+                                         test::fake_box(Select::boundary, 158), limited(Select::boundary, 158)),
+                         test::named({"Interior", "LimitedInterior", "Boundary", "LimitedBoundary"}));
 
 class LimitedPoses : public testing::TestWithParam<Select> {};
 
-TEST_P(LimitedPoses, AreFeasibleWithTheirConditionNumber) {
+TEST_P(LimitedPoses, AreFeasibleWithTheirCondition) {
   const SelectedPoses selected = select_poses(limited(GetParam(), 300), kModel);
   ASSERT_EQ(selected.poses.size(), 300u);
   ASSERT_EQ(selected.condition.size(), 300u);
@@ -149,7 +151,8 @@ TEST_P(LimitedPoses, AreTheSameEveryTime) {
             values_of(select_poses(limited(GetParam(), 100), kModel).poses));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LimitedPoses, testing::Values(Select::interior, Select::boundary, Select::grid));
+INSTANTIATE_TEST_SUITE_P(All, LimitedPoses, testing::Values(Select::interior, Select::boundary, Select::grid),
+                         test::named({"Interior", "Boundary", "Grid"}));
 
 TEST(GridPoses, OfATableAreTheWholeGridWithBothEnds) {
   PoseSelection selection = test::fake_box(Select::grid, 30);
@@ -189,7 +192,7 @@ TEST(GridPoses, OfANumberThatIsAPowerAreTheFullGrid) {
             values_of(select_poses(table, kModel).poses));
 }
 
-TEST(GridPoses, OfAnyNumberAreThatManyDifferentPointsOfTheCoarsestGrid) {
+TEST(GridPoses, OfAnyNumberAreDifferentPointsOfTheCoarsestGrid) {
   for (const std::size_t count : {1u, 2u, 63u, 65u, 158u}) {
     const PoseSet poses = select_poses(test::fake_box(Select::grid, count), kModel).poses;
     ASSERT_EQ(poses.size(), count);
@@ -258,7 +261,8 @@ TEST_P(EmptyWorkspace, SaysThatEveryPoseIsSingular) {
                            {"the workspace is empty (singular: condition number above 1.125: ", "raise max_condition"});
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EmptyWorkspace, testing::Values(Select::interior, Select::boundary, Select::grid));
+INSTANTIATE_TEST_SUITE_P(All, EmptyWorkspace, testing::Values(Select::interior, Select::boundary, Select::grid),
+                         test::named({"Interior", "Boundary", "Grid"}));
 
 TEST(EmptyTable, NamesTheLimitThatEmptiedIt) {
   PoseSelection selection = limited(Select::grid, 8);

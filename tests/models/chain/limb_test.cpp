@@ -51,7 +51,7 @@ TEST(Limb, SpatialJacobianMatchesFiniteDifferences) {
   }
 }
 
-TEST(Limb, ErrorMultipliesFromTheLeftButInvertedFromTheRightAtTheLastFrame) {
+TEST(Limb, ErrorMultipliesFromTheLeftButAtTheLastFrame) {
   std::mt19937_64 engine(9);
   const Limb limb = random_limb(3, engine);
   FrameError<double> error;

@@ -7,6 +7,7 @@
 
 #include "tests/models/chain/closed_chain.h"
 #include "tests/models/chain/random_chain.h"
+#include "tests/support/names.h"
 
 namespace poesy::chain {
 namespace {
@@ -72,7 +73,8 @@ TEST_P(PassiveCondition, DoesNotDependOnTheUnitOfLength) {
   EXPECT_NEAR(passive_condition(scaled(chain, 1000.0), longer) / expected, 1.0, 1e-10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Joints, PassiveCondition, testing::Values(PassiveJoints::revolute, PassiveJoints::mixed));
+INSTANTIATE_TEST_SUITE_P(Joints, PassiveCondition, testing::Values(PassiveJoints::revolute, PassiveJoints::mixed),
+                         test::named({"Revolute", "Mixed"}));
 
 TEST(PassiveConditionOf, TwoPassiveJointsOnOneAxisIsInfinite) {
   std::mt19937_64 engine(13);

@@ -65,7 +65,7 @@ double smallest_displacement(const Model& exact, const std::vector<double>& pose
   return std::sqrt(square());
 }
 
-TEST(Separation, ResidualIsWhatNoCorrectionOfTheExactMechanismRemoves) {
+TEST(Separation, ResidualIsWhatNoCorrectionRemoves) {
   const auto exact = published("exact");
   constexpr double kStep = 1e-6;
   for (const std::vector<double>& pose : random_poses(3, 11)) {

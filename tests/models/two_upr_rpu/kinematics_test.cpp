@@ -60,7 +60,7 @@ TEST(Kinematics, LegLengthsArePrintedEquationTwo) {
   }
 }
 
-TEST(Kinematics, AnglesAreThePrintedArccosWhereNoLegPassesThePlatform) {
+TEST(Kinematics, AnglesAreThePrintedArccosWithoutPassingLegs) {
   const Geometry g;
   const auto arccos = [](const lie::Vector3<double>& a, const lie::Vector3<double>& b) {
     return std::acos(a.dot(b) / (a.norm() * b.norm()));
