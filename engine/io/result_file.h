@@ -49,8 +49,9 @@ void check_result_path(const std::string& path, std::span<const std::string> inp
 
 /// A pose coordinate or response or factor as a result file names it.
 struct NamedUnit {
-  std::string name;  ///< as in the model's description
-  std::string unit;  ///< "m", "rad" or "1"
+  std::string name;              ///< as in the model's description
+  std::string unit;              ///< "m", "rad" or "1"
+  std::string description = {};  ///< what it is, in words; empty in files of older versions
 };
 
 /// The unit in which people read it: mm for m.

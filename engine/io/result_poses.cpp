@@ -38,7 +38,8 @@ void add_poses(ResultBuilder& result, const ModelDescription& model, const Selec
 std::vector<NamedUnit> read_pose_coordinates(const h5::File& file) {
   std::vector<NamedUnit> coordinates;
   for (const std::string& name : file.attribute<std::string>("/poses", "coordinates")) {
-    coordinates.push_back({name, file.attribute<std::string>("/poses/" + name, "unit").at(0)});
+    coordinates.push_back({name, file.attribute<std::string>("/poses/" + name, "unit").at(0),
+                           file.attribute<std::string>("/poses/" + name, "description").at(0)});
   }
   if (coordinates.empty()) throw h5::Error("/poses has no coordinates");
   return coordinates;

@@ -23,8 +23,12 @@ std::vector<NamedUnit> read_named(const h5::File& file, const std::string& group
   const auto names = read_exactly<std::string>(file, group + "/name", count);
   const auto units = read_exactly<std::string>(file, group + "/unit", count);
   check_names(names, group + "/name");
+  std::vector<std::string> descriptions(count);
+  if (file.exists(group + "/description")) {
+    descriptions = read_exactly<std::string>(file, group + "/description", count);
+  }
   std::vector<NamedUnit> list;
-  for (std::size_t k = 0; k < count; ++k) list.push_back({names[k], units[k]});
+  for (std::size_t k = 0; k < count; ++k) list.push_back({names[k], units[k], descriptions[k]});
   return list;
 }
 

@@ -46,6 +46,8 @@ void add_factors(ResultBuilder& result, const std::vector<Factor>& factors) {
   result.file().make_group("/factors");
   result.add("/factors/name", {"factor"}, names, {"1", "Name of the error"});
   result.add("/factors/unit", {"factor"}, texts(factors, unit_of<Factor>), {"1", "SI unit of the error"});
+  result.add("/factors/description", {"factor"}, texts(factors, &Factor::description),
+             {"1", "What the error is, in words"});
 }
 
 void add_responses(ResultBuilder& result, const ModelDescription& model) {
@@ -55,6 +57,8 @@ void add_responses(ResultBuilder& result, const ModelDescription& model) {
   result.file().make_group("/responses");
   result.add("/responses/name", {"response"}, names, {"1", "Name of the response"});
   result.add("/responses/unit", {"response"}, texts(responses, unit_of<Response>), {"1", "SI unit of the response"});
+  result.add("/responses/description", {"response"}, texts(responses, &Response::description),
+             {"1", "What the response is, in words"});
   const auto add_chosen = [&](const std::string& attribute, const std::vector<std::size_t>& chosen) {
     std::vector<std::string> list;
     for (const std::size_t r : chosen) list.push_back(responses[r].name);

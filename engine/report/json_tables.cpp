@@ -60,6 +60,15 @@ Json table_json(const Table& table) {
           {"rows", rows},       {"shown", shown},           {"notes", table.notes}};
 }
 
+/// Names with their SI units and what they mean.
+Json named_json(const std::vector<NamedUnit>& things) {
+  Json list = Json::array();
+  for (const NamedUnit& thing : things) {
+    list.push_back({{"name", thing.name}, {"unit", thing.unit}, {"description", thing.description}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string json_of(const StoredResult& result, std::span<const Table> tables) {
@@ -73,6 +82,8 @@ std::string json_of(const StoredResult& result, std::span<const Table> tables) {
                  {"content_sha256", result.content_sha256},
                  {"seed", seed_of(result.study_text)},
                  {"poses", result.poses.size()},
+                 {"errors", named_json(result.factors)},
+                 {"responses", named_json(result.responses)},
                  {"solves", solves_json(solves_of(result))},
                  {"run",
                   {{"created", result.facts.created},

@@ -11,6 +11,7 @@ namespace poesy {
 /// A result's summary and its tables as one JSON object, for programs:
 ///
 ///     kind, model, title, poesy_version, git_commit, content_sha256, seed (where the study has one), poses
+///     errors, responses: [{name, unit (SI), description}], the description empty in files of older versions
 ///     solves: total, not_converged, by_status: {converged, stagnated, ...}
 ///     run: created, threads, wall_seconds
 ///     tables: [{name, caption, columns: [{name, heading, unit, kind}], rows, shown, notes}]

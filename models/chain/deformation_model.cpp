@@ -62,12 +62,18 @@ class DeformationEvaluator final : public Evaluator {
 }  // namespace
 
 std::vector<Response> deformation_responses() {
-  return {{"angular_deformation", Dimension::angle,
-           "average angular comprehensive deformation of the limbs (Du et al. 2022, Eq. 49)"},
-          {"linear_deformation", Dimension::length,
-           "average linear comprehensive deformation of the limbs (Du et al. 2022, Eq. 50)"},
-          {"deformation_max", Dimension::number,
-           "largest norm of a residual screw, rad and m mixed (Du et al. 2022, Eq. 45)"}};
+  return {
+      {"angular_deformation", Dimension::angle,
+       "mean mismatch of angle between pairs of limbs, whose errors keep them from holding one rigid platform (Du et "
+       "al. "
+       "2022, Eq. 49)"},
+      {"linear_deformation", Dimension::length,
+       "mean mismatch of position, at the base's origin, between pairs of limbs, whose errors keep them from holding "
+       "one "
+       "rigid platform (Du et al. 2022, Eq. 50)"},
+      {"deformation_max", Dimension::number,
+       "largest mismatch of a pair of limbs: the norm of angle and position together, rad and m mixed (Du et al. 2022, "
+       "Eq. 45)"}};
 }
 
 DeformationMeasure deformation_measure(const ParallelChain& chain) { return {kResponses - 1, rounding_level(chain)}; }

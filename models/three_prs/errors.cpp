@@ -43,26 +43,36 @@ constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable}
                                                 {7, "c", "y", Role::compensable},
                                                 {7, "c", "z", Role::compensable}}};
 
-/// What each source is, in the order of frames.
-constexpr std::array<std::string_view, kFrames> kMeanings{"position error of the rail's upper end A",
-                                                          "error of the carriage's initial position",
-                                                          "attitude error of the rail",
-                                                          "gap of the revolute joint",
-                                                          "attitude error of the revolute joint",
-                                                          "swing angle error of the rod",
-                                                          "error of the rod's length",
-                                                          "position error of the spherical joint C on the platform"};
+/// What the error of a frame displaces, and what the axes are along which it is measured.
+struct Meaning {
+  std::string_view part;
+  std::array<std::string_view, 3> axes;
+};
+constexpr std::array<std::string_view, 3> kLimbAxes{"outwards", "the revolute joint's axis", "down the rail"};
+constexpr std::array<std::string_view, 3> kRodAxes{"across the rod", "the revolute joint's axis", "the rod's own axis"};
+constexpr std::array<std::string_view, 3> kPlatformAxes{"outwards", "across", "the platform's axis"};
+/// In the order of frames (Figures 3 and 4 of the paper).
+constexpr std::array<Meaning, kFrames> kMeanings{{{"position error of the rail's upper end A", kLimbAxes},
+                                                  {"error of the carriage's initial position on its rail", {}},
+                                                  {"attitude error of the rail", kLimbAxes},
+                                                  {"gap of the revolute joint on the carriage", kLimbAxes},
+                                                  {"attitude error of the revolute joint", kLimbAxes},
+                                                  {"swing angle error of the rod", kRodAxes},
+                                                  {"error of the rod's length", {}},
+                                                  {"position error of the spherical joint C", kPlatformAxes}}};
 
 Factor factor(const Entry& entry, std::size_t limb) {
   const std::string number = std::to_string(limb + 1);
   const bool is_angle = entry.source.starts_with("theta");
+  const Meaning& meaning = kMeanings[entry.frame];
   std::string name(entry.source);
-  std::string description(kMeanings[entry.frame]);
+  std::string description = "limb " + number + ": " + std::string(meaning.part);
   if (!entry.axis.empty()) {
-    name += "_" + std::string(entry.axis);
-    description += (is_angle ? " about " : " along ") + std::string(entry.axis);
+    const std::string axis(entry.axis);
+    name += "_" + axis;
+    description += (is_angle ? " about " : " along ") + axis + ", " +
+                   std::string(meaning.axes[static_cast<std::size_t>(axis.front() - 'x')]);
   }
-  description += " of limb " + number;
   if (entry.role == Role::none) description += "; without effect on the platform to first order";
   return {name + "_" + number,    is_angle ? Dimension::angle : Dimension::length, limb + 1, entry.frame, description,
           std::string(entry.axis)};

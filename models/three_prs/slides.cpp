@@ -28,14 +28,14 @@ struct Entry {
 };
 /// In the order of SlideSource.
 constexpr std::array<Entry, kSlideFactors> kEntries{{
-    {"x_position", kXSlide, kXTranslation, "x", "EXX", "position error of the X slide along its travel"},
+    {"x_position", kXSlide, kXTranslation, "x", "EXX", "positioning error of the X slide along its travel"},
     {"x_straightness_y", kXSlide, kXTranslation, "y", "EYX", "straightness error of the X slide along y"},
     {"x_straightness_z", kXSlide, kXTranslation, "z", "EZX", "straightness error of the X slide along z"},
     {"x_roll", kXSlide, kXRotation, "x", "EAX", "roll of the X slide, about x"},
     {"x_pitch", kXSlide, kXRotation, "y", "EBX", "pitch of the X slide, about y"},
     {"x_yaw", kXSlide, kXRotation, "z", "ECX", "yaw of the X slide, about z"},
     {"y_straightness_x", kYSlide, kYTranslation, "x", "EXY", "straightness error of the Y slide along x"},
-    {"y_position", kYSlide, kYTranslation, "y", "EYY", "position error of the Y slide along its travel"},
+    {"y_position", kYSlide, kYTranslation, "y", "EYY", "positioning error of the Y slide along its travel"},
     {"y_straightness_z", kYSlide, kYTranslation, "z", "EZY", "straightness error of the Y slide along z"},
     {"y_pitch", kYSlide, kYRotation, "x", "EAY", "pitch of the Y slide, about x"},
     {"y_roll", kYSlide, kYRotation, "y", "EBY", "roll of the Y slide, about y"},

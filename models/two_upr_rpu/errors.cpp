@@ -21,6 +21,28 @@ constexpr Table kRpuLimb{"ooo.xx",   //
                          "ooox.x"};  //
 constexpr std::array<Table, 3> kLimbs{kUprLimb, kUprLimb, kRpuLimb};
 
+/// What the errors of each frame j = 0..4 of a limb displace, and against what (Tables 1 to 3 and the text below Eq.
+/// 25).
+using Parts = std::array<std::string_view, 5>;
+constexpr Parts kUprParts{"universal joint's first axis against the base",         //
+                          "universal joint's second axis against its first",       //
+                          "lead screw against the universal joint's second axis",  //
+                          "revolute joint against the lead screw",                 //
+                          "revolute joint's hole against the platform"};
+constexpr Parts kRpuParts{"revolute joint against the base",                      //
+                          "lead screw against the revolute joint",                //
+                          "universal joint's first axis against the lead screw",  //
+                          "universal joint's second axis against its first",      //
+                          "universal joint's hole against the platform"};
+constexpr std::array<Parts, 3> kParts{kUprParts, kUprParts, kRpuParts};
+
+/// In whose axes the errors of frame j are measured. The z axis of a frame is its joint's.
+std::string axes_of(std::size_t frame, char axis) {
+  if (frame == 0) return "the base";
+  if (frame == 4) return "the platform";
+  return "frame " + std::to_string(frame) + (axis == 'z' ? ", the joint's axis" : "");
+}
+
 struct Entry {
   std::size_t limb;
   std::size_t frame;
@@ -49,14 +71,12 @@ Factor factor(const Entry& entry) {
   const std::string frame = std::to_string(entry.frame);
   const std::string kind = is_linear(entry) ? "delta" : "epsilon";
   const std::string motion = is_linear(entry) ? "linear error along " : "angular error about ";
-  const std::string where = entry.frame == 0   ? "the base and frame 1"
-                            : entry.frame == 4 ? "frame 4 and the platform"
-                                               : "frames " + frame + " and " + std::to_string(entry.frame + 1);
   return {kind + "_" + limb + "_" + frame + "_" + axis,
           is_linear(entry) ? Dimension::length : Dimension::angle,
           entry.limb + 1,
           entry.frame,
-          motion + axis + " between " + where + " of limb " + limb,
+          "limb " + limb + ", " + std::string(kParts[entry.limb][entry.frame]) + ": " + motion + axis + " of " +
+              axes_of(entry.frame, axis),
           std::string(1, axis)};
 }
 

@@ -114,6 +114,28 @@ TEST_P(EveryMechanism, NamesThingsPlainlyAndOnce) {
   expect_plain_and_different(of_errors);
 }
 
+/// Sentences for people: each its own, in words and not in names, for names have underscores.
+template <class Described>
+void expect_words(const std::vector<Described>& things) {
+  std::set<std::string> different;
+  for (const Described& thing : things) {
+    EXPECT_TRUE(different.insert(thing.description).second) << thing.name << " is described as another one";
+    EXPECT_GE(std::ranges::count(thing.description, ' '), 2) << thing.name << ": " << thing.description;
+    EXPECT_EQ(thing.description.find_first_of("_{}\"<>\n"), std::string::npos) << thing.name;
+  }
+}
+
+TEST_P(EveryMechanism, DescribesEveryErrorAndResponseInWords) {
+  expect_words(description().factors);
+  expect_words(description().responses);
+  for (const Factor& factor : description().factors) {
+    // Which way it acts: along an axis for a length, about one for an angle.
+    if (factor.axis.empty()) continue;
+    const bool angle = factor.dimension == Dimension::angle;
+    EXPECT_NE(factor.description.find(angle ? " about " : " along "), std::string::npos) << factor.description;
+  }
+}
+
 TEST_P(EveryMechanism, SaysTheSameBeforeItIsBuilt) {
   EXPECT_EQ(model_->description().name, description().name);
   EXPECT_EQ(names_of(model_->description().factors), names_of(description().factors));

@@ -88,6 +88,20 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   }
 }
 
+TEST(ResultFile, SaysWhatErrorsAndResponsesAre) {
+  const TempFolder folder;
+  const Example example;
+  example.write_sensitivity(folder / "r.h5");
+  const StoredResult stored = read_result(folder / "r.h5");
+  const ModelDescription& model = example.study.model();
+  for (std::size_t p = 0; p < stored.factors.size(); ++p) {
+    EXPECT_EQ(stored.factors[p].description, model.factors[example.study.analysis.factors[p].value].description);
+  }
+  for (std::size_t r = 0; r < stored.responses.size(); ++r) {
+    EXPECT_EQ(stored.responses[r].description, model.responses[r].description);
+  }
+}
+
 TEST(ResultFile, FactsReadBackAsWritten) {
   const TempFolder folder;
   const Example example;

@@ -266,6 +266,21 @@ TEST(DamagedResult, WithNamesThatLeadElsewhereIsRefused) {
   }
 }
 
+TEST(OlderResult, WithoutDescriptionsIsRead) {
+  const TempFolder folder;
+  const std::string path = folder / "r.h5";
+  Example().write_sensitivity(path);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "/factors/description", H5P_DEFAULT), 0);
+  ASSERT_GE(H5Ldelete(file, "/responses/description", H5P_DEFAULT), 0);
+  H5Fclose(file);
+  const StoredResult stored = read_result(path);
+  ASSERT_FALSE(stored.factors.empty());
+  EXPECT_FALSE(stored.factors[0].name.empty());
+  EXPECT_TRUE(stored.factors[0].description.empty());
+  EXPECT_TRUE(stored.responses[0].description.empty());
+}
+
 TEST(DamagedResult, WithADatasetMissingIsRefused) {
   const TempFolder folder;
   const std::string path = folder / "r.h5";

@@ -50,6 +50,17 @@ TEST(JsonTables, NameEachColumnOnce) {
   }
 }
 
+TEST(JsonTables, SayWhatEachErrorAndResponseIs) {
+  StoredResult result = ranked_result();
+  result.factors[1].description = "a bolt that is too long";
+  const json all = json::parse(json_of(result, {}));
+  ASSERT_EQ(all["errors"].size(), result.factors.size());
+  EXPECT_EQ(all["errors"][1]["name"], result.factors[1].name);
+  EXPECT_EQ(all["errors"][1]["unit"], result.factors[1].unit);
+  EXPECT_EQ(all["errors"][1]["description"], "a bolt that is too long");
+  EXPECT_EQ(all["responses"].size(), result.responses.size());
+}
+
 TEST(JsonTables, HaveTheSummary) {
   StoredResult result = ranked_result();
   result.title = "not UTF-8: \xFF";
