@@ -16,6 +16,10 @@ double rounding_at(const StoredCoupling& stored, std::size_t z) {
   return kIndexRounding * std::fmax(stored.linear[z], stored.angular[z]);  // passes over NaN
 }
 
+Cell place_cell(const StoredResult& result, bool known, std::int64_t pose) {
+  return text_cell(known ? coordinates_text(result, static_cast<std::size_t>(pose)) : std::string());
+}
+
 Cell pose_cell(bool known, std::int64_t pose) {
   return known ? count_cell(static_cast<std::uint64_t>(pose)) : text_cell("");
 }
@@ -33,12 +37,14 @@ std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::siz
   return {text_cell(stored.subsets[at % found.subsets]),
           cell(found.effect_max[at]),
           pose_cell(found.effect_max[at] > rounding, found.effect_max_pose[at]),
+          place_cell(result, found.effect_max[at] > rounding, found.effect_max_pose[at]),
           cell(found.root_sum_square_max[at]),
           cell(found.worst_case_max[at]),
           cell(found.interaction_max[at]),
           opposed ? percent_cell(found.opposed_share[at]) : text_cell(""),
           opposed ? percent_cell(found.cancellation_max[at]) : text_cell(""),
-          pose_cell(opposed, found.cancellation_max_pose[at])};
+          pose_cell(opposed, found.cancellation_max_pose[at]),
+          place_cell(result, opposed, found.cancellation_max_pose[at])};
 }
 
 Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
@@ -51,11 +57,13 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
       .caption = fmt::format("{}: {} [{}]", stored.size_names[z], response.name, unit),
       .columns = {text_column("subset", "subset"), number_column("effect_max", "largest effect", unit),
                   number_column("effect_max_pose", "at pose", "", 1),
+                  text_column("effect_max_where", "largest where", 4),
                   number_column("root_sum_square_max", "root sum square", unit),
                   number_column("worst_case_max", "worst case", unit),
                   number_column("interaction_max", "interaction", unit), percent_column("opposed_share", "opposed", 3),
                   percent_column("cancellation_max", "cancellation", 2),
-                  number_column("cancellation_max_pose", "at pose", "", 2)},
+                  number_column("cancellation_max_pose", "at pose", "", 2),
+                  text_column("cancellation_max_where", "cancelled where", 4)},
       .rows = {},
       .notes = {}};
   for (std::size_t k = 0; k < found.subsets; ++k) {

@@ -38,6 +38,19 @@ std::string number_text(double value, int digits) {
 
 std::string percent_text(double share) { return std::isnan(share) ? "-" : number_text(100.0 * share, 3) + " %"; }
 
+std::string coordinates_text(const StoredResult& result, std::size_t pose) {
+  if (pose >= result.poses.size()) return {};  // a stranger's file may name any number
+  std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));
+  for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
+    const NamedUnit& named = result.pose_coordinates[c];
+    const Unit& unit = display(named);
+    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", named.name,
+                        number_text(result.poses[PoseIndex(pose)][c] / unit.si, 3), unit.name == "1" ? "" : " ",
+                        unit.name == "1" ? "" : unit.name);
+  }
+  return text;
+}
+
 Column text_column(std::string name, std::string heading, int dispensable) {
   return {std::move(name), std::move(heading), "", Column::Kind::text, dispensable};
 }

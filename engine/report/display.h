@@ -22,6 +22,10 @@ std::string number_text(double value, int digits = 4);
 /// A share to three digits, "1.25 %"; "-" for NaN.
 std::string percent_text(double share);
 
+/// Where a pose is, in the units shown: "z -190 mm, beta 20 deg, gamma -30 deg"; on a trajectory with its time before,
+/// "t 1.18 s, ...". To three digits. Empty for a number that is no pose of the result.
+std::string coordinates_text(const StoredResult& result, std::size_t pose);
+
 /// A column of words. dispensable, here and below: as of Column.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
 /// A column of numbers in one unit, or in none.

@@ -54,11 +54,6 @@ void add_line(std::string& text, std::string_view line) {
 /// A text that may come from a stranger's file, without what a terminal would obey.
 std::string harmless(std::string_view text) { return printable(text, std::string_view::npos); }
 
-/// What stands behind the whole part of a number as shown: "4" and ".25", "1" and "e-05".
-std::size_t tail_of(const Cell& cell) {
-  return cell.value ? cell.text.size() - std::min(cell.text.find_first_of(".e"), cell.text.size()) : 0;
-}
-
 /// A column as it will be printed.
 struct TextColumn {
   std::vector<std::string> heading;
@@ -151,6 +146,10 @@ std::string left_out_text(const std::vector<std::string>& headings, std::string_
 }
 
 }  // namespace
+
+std::size_t tail_of(const Cell& cell) {
+  return cell.value ? cell.text.size() - std::min(cell.text.find_first_of(".e"), cell.text.size()) : 0;
+}
 
 std::string prose_of(std::string_view prose, std::size_t width) {
   std::string text;

@@ -16,6 +16,10 @@ inline constexpr std::size_t kUnlimitedWidth = std::numeric_limits<std::size_t>:
 /// What shows the columns that a narrower one has no room for.
 inline constexpr std::string_view kWiderTerminal = "a wider terminal";
 
+/// How many characters of a number as shown stand behind its whole part: of "4.25" and of "1e-05" those from the point
+/// or the exponent on. 0 where the cell is no number.
+std::size_t tail_of(const Cell& cell);
+
 /// A sentence as lines that end with '\n', broken between words at `width`, or at 100 if that is less; a longer word
 /// has a line of its own. Control characters are shown as '?', here and in tables: names may come from a stranger's
 /// file.

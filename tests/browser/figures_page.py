@@ -134,6 +134,21 @@ def add_extremes(page):
         "y": {"label": "B", "value": page.array([-3, -1])}, "units": ["mm"], "names": ["a", "b"]}
 
 
+def add_apart(page):
+    """Two series a hundredfold apart, one of them 0 once, as bars and as dots; and poses in the order of |beta|."""
+    first = np.array([2.0, 1.0, 0.5, 0.2])
+    second = first / [150, 80, 120, np.inf]
+    quantity = {"label": "effect", "units": ["mm"], "value": page.array([first, second]), "low": None, "high": None}
+    page.figures["bars"] = {"type": "bars", "quantities": [quantity], "items": errors(4), "series": ["A", "B"]}
+    page.figures["dots"] = {
+        "type": "scatter", "x": {"label": "A", "value": page.array(first)}, "units": ["mm"], "names": errors(4),
+        "y": {"label": "B", "value": page.array(second)}}
+    beta = {"name": "beta", "unit": "deg", "value": page.array([-30, 10, 20, -5])}
+    page.figures["map"] = {
+        "type": "heatmap", "rows": errors(1), "columns": {"label": "pose", "coordinates": [beta], "order": "|beta|"},
+        "layers": [{"label": "B - A", "unit": "mm", "signed": True, "value": page.array([-4, -2, -3, -1])}]}
+
+
 def add_all(page):
     add_bars(page)
     add_fields(page, "small", 25, 158, 3)
@@ -152,7 +167,8 @@ def figures_page(web, add=add_all):
         f'<figure data-figure="{key}"><div class="plot"></div><figcaption>What is seen.</figcaption></figure></section>'
         for key in page.figures)
     read = lambda name: (Path(web) / name).read_text()
-    data = json.dumps({"figures": page.figures, "arrays": page.arrays}).replace("<", "\\u003c")
+    everything = {"about": {"delta_1_1_x": "a shift of the first hole"}, "figures": page.figures, "arrays": page.arrays}
+    data = json.dumps(everything).replace("<", "\\u003c")
     policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:"
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'

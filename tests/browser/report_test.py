@@ -15,7 +15,7 @@ if browser.missing():
     sys.exit(77)
 
 from figure_checks import EMPTY, FigureChecks
-from figures_page import NO_EFFECT, add_extremes, figures_page
+from figures_page import NO_EFFECT, add_apart, add_extremes, figures_page
 
 PROGRAM = os.environ["POESY_PROGRAM"]
 ROOT = Path(__file__).resolve().parents[2]
@@ -116,7 +116,7 @@ class Figures(PageTest):
         names, said = self.browser.run(
             """const figure = document.querySelector("[data-figure=ranking]");
             const shown = () => [...figure.querySelectorAll("[data-mark='y-axis tick label'] text")].map((t) => t.textContent);
-            const select = [...figure.querySelectorAll("select")].at(-1);
+            const select = [...figure.querySelectorAll("select")].at(1);
             const first = shown();
             select.selectedIndex = 1;
             select.dispatchEvent(new Event("change"));
@@ -148,6 +148,58 @@ class Figures(PageTest):
             return [...svg.querySelectorAll("[data-mark=dot] circle")].map((dot) => dot.cx.baseVal.value)
               .filter((x) => x <= frame[0] || x >= frame[1])""")
         self.assertEqual(outside, [])
+
+    def test_what_is_a_hundredfold_apart_has_a_logarithmic_axis_until_the_reader_chooses(self):
+        self.open(figures_page(WEB, add_apart))
+        ticks, widths, linear = self.browser.run(
+            """const bars = document.querySelector("[data-figure=bars]");
+            const ticks = () => [...bars.querySelectorAll("[data-mark='x-axis tick label'] text")].map((t) => t.textContent);
+            const widths = () => [...bars.querySelectorAll("[data-mark=rect] rect")].map((bar) => bar.width.baseVal.value);
+            const first = [ticks(), widths()];
+            const scale = [...bars.querySelectorAll("select")].at(-1);
+            scale.selectedIndex = 0;
+            scale.dispatchEvent(new Event("change"));
+            return [...first, ticks()]""")
+        self.assertIn("0.01", ticks)
+        self.assertIn("1", ticks)
+        self.assertNotIn("0.0", ticks)
+        self.assertEqual(sum(width > 10 for width in widths), 7)  # all but the 0
+        self.assertIn("0.0", linear)
+        dots = self.browser.run(
+            """return [...document.querySelectorAll("[data-figure=dots] [data-mark=dot] circle")].map((dot) => dot.cy.baseVal.value)""")
+        self.assertEqual(len(dots), 3)
+        self.assertGreater(min(abs(a - b) for a, b in zip(dots, dots[1:])), 10)
+
+    def test_maps_start_in_the_order_that_the_report_names(self):
+        self.open(figures_page(WEB, add_apart))
+        chosen, ticks, legend, said = self.browser.run(
+            """const map = document.querySelector("[data-figure=map]");
+            const texts = (where) => [...map.querySelectorAll(where)].map((text) => text.textContent);
+            map.querySelector(".map").dispatchEvent(new KeyboardEvent("keydown", {key: "ArrowRight"}));
+            return [map.querySelector(".controls label:last-child select").value,
+              texts("[data-mark='x-axis tick label'] text"), texts(".legend svg text"), map.querySelector(".readout").textContent]""")
+        self.assertEqual(chosen, "|beta|")
+        self.assertEqual(ticks, ["5", "10", "20", "30"])
+        self.assertIn("a shift of the first hole", said)
+        self.assertIn("pose 3", said)
+        self.assertIn("4", " ".join(legend))
+        self.assertIn("\u22124", " ".join(legend))  # colours meet at 0 although all are negative
+
+    def test_the_view_that_can_be_turned_has_numbers_and_is_reset(self):
+        self.open(figures_page(WEB))
+        first, turned, back = self.browser.run(
+            """const view = document.querySelector("[data-figure=workspace_small] .turning-view");
+            const texts = () => [...view.querySelectorAll("svg text")].map((text) => text.textContent).join(" ");
+            const where = () => view.querySelector("svg").getAttribute("aria-label");
+            const first = [where(), texts()];
+            view.querySelector(".turning").dispatchEvent(new KeyboardEvent("keydown", {key: "ArrowLeft"}));
+            const turned = where();
+            const button = view.querySelector("button");
+            button.click();
+            return [first, turned, [where(), button.textContent]]""")
+        self.assertRegex(first[1], r"\b550\b.*\b600\b.*\b650\b")
+        self.assertNotEqual(first[0], turned)
+        self.assertEqual(back, [first[0], "Reset view"])
 
     def test_faults_are_found(self):
         """The checks themselves: a page with one fault of each kind."""

@@ -112,6 +112,23 @@ Table table_of(const Comparison& compared, std::size_t option) {
   return table;
 }
 
+/// One number for everything, of each option, and how many times larger it is in B.
+Table totals_table(const Comparison& compared) {
+  Table table{.name = "totals",
+              .caption = compared.total_label,
+              .columns = {text_column("option", compared.option_word), number_column("a", "A"), number_column("b", "B"),
+                          text_column("unit", "unit"), number_column("ratio", "B / A")},
+              .rows = {},
+              .notes = {}};
+  for (std::size_t option = 0; option < compared.options.size(); ++option) {
+    const double a = compared.total_a[option];
+    const double b = compared.total_b[option];
+    table.rows.push_back({text_cell(compared.options[option]), number_cell(a), number_cell(b),
+                          text_cell(compared.quantities.front().units[option].front()), number_cell(b / a)});
+  }
+  return table;
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -157,6 +174,7 @@ void add_comparison(const Comparison& compared, Page& page) {
   for (const auto& [letter, only] : {std::pair("A", &compared.only_a), std::pair("B", &compared.only_b)}) {
     if (!only->empty()) section.paragraph(fmt::format("Only in {}: {}.", letter, joined(*only)));
   }
+  if (!compared.total_label.empty()) section.table(totals_table(compared));
   add_figure(page, section, "side-by-side", bars_of(compared, pool), "A and B side by side" + order_of(compared) + ".");
   std::vector<Table> tables;
   for (std::size_t option = 0; option < compared.options.size(); ++option) tables.push_back(table_of(compared, option));

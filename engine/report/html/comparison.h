@@ -45,7 +45,10 @@ struct Comparison {
   std::vector<std::string> only_b;   ///< what the second alone has
   /// Bars show all of them; the first gives ranks and the points against each other, the last the table.
   std::vector<ComparedQuantity> quantities;
-  bool ranked = true;  ///< whether items have an order by size
+  bool ranked = true;                ///< whether items have an order by size
+  std::string total_label = {};      ///< what the totals are; empty: there are none
+  std::vector<double> total_a = {};  ///< [R] one number for all items together of the first result, in the units shown
+  std::vector<double> total_b = {};  ///< of the second
 };
 
 /// What there is to compare of two results of one kind and mechanism. Throws InputError where they have nothing in

@@ -5,8 +5,11 @@
 #include "engine/base/error.h"
 #include "engine/report/display.h"
 #include "engine/report/html/comparison.h"
+#include "engine/report/html/glossary.h"
 #include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
+#include "engine/report/html/pose_order.h"
+#include "engine/report/html/study_facts.h"
 #include "engine/report/html/warnings.h"
 #include "engine/report/html/what_was_run.h"
 #include "engine/report/ranking.h"
@@ -77,10 +80,11 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   for (const auto& both : common(names_of(a.responses, shown.responses), names_of(b.responses))) {
     const std::size_t r = shown.responses[both.first];
     const NamedUnit& response = a.responses[r];
-    const std::vector<double> values = shown.at_poses(local_differences(a, b, factors, {r, both.second}));
-    const ArrayName array = pool.add(fmt::format("difference/{}", r), values, display(response).si);
-    map.layers.push_back({"B - A, effect on " + response.name, unit_text(response), array});
-    fields.push_back({map.layers.back().label, map.layers.back().unit, array, map.rows});
+    const std::vector<double> values = local_differences(a, b, factors, {r, both.second});
+    const ArrayName array = pool.add(fmt::format("difference/{}", r), shown.at_poses(values), display(response).si);
+    if (map.layers.empty()) map.order = first_order(a, values);
+    map.layers.push_back({"B - A, effect on " + response.name, unit_text(response), array, true});
+    fields.push_back({map.layers.back().label, map.layers.back().unit, array, map.rows, true});
   }
   if (map.layers.empty()) return;
   section.paragraph("The effect of each error at each pose in B, less that in A.");
@@ -116,6 +120,40 @@ void add_unsolved(const ReportedResult& a, const ReportedResult& b, Page& page) 
   page.sections.push_back(std::move(section));
 }
 
+/// What both studies set where they differ (same: where they agree), in the order of A.
+Table settings_table(const StoredResult& a, const StoredResult& b, bool same) {
+  Table table{.name = same ? "settings_alike" : "settings",
+              .caption = same ? "Settings that are the same" : "Settings that differ",
+              .columns = {text_column("setting", "setting"), text_column("a", "A"), text_column("b", "B")},
+              .rows = {},
+              .notes = {}};
+  const std::vector<StudySetting> of_a = study_settings(a.study_text);
+  std::vector<StudySetting> of_b = study_settings(b.study_text);
+  const auto add = [&](const std::string& name, const std::string& in_a, const std::string& in_b) {
+    if ((in_a == in_b) == same) table.rows.push_back({text_cell(name), text_cell(in_a), text_cell(in_b)});
+  };
+  for (const StudySetting& setting : of_a) {
+    const auto at = std::ranges::find(of_b, setting.name, &StudySetting::name);
+    add(setting.name, setting.text, at == of_b.end() ? std::string() : at->text);
+    if (at != of_b.end()) of_b.erase(at);
+  }
+  for (const StudySetting& setting : of_b) add(setting.name, {}, setting.text);
+  return table;
+}
+
+/// What differs between the studies, which is why their numbers do.
+void add_studies(const StoredResult& a, const StoredResult& b, Page& page) {
+  Section section("studies", "How the studies differ");
+  const Table differing = settings_table(a, b, false);
+  if (differing.rows.empty()) {
+    section.paragraph("Both studies have the same settings.");
+  } else {
+    section.table(differing);
+  }
+  section.folded("Settings that are the same in both", settings_table(a, b, true));
+  page.sections.push_back(std::move(section));
+}
+
 std::string name_of(const ReportedResult& result) {
   return result.stored.title.empty() ? result.path : fmt::format("{} ({})", result.stored.title, result.path);
 }
@@ -133,8 +171,11 @@ Page comparison_page(std::span<const ReportedResult> results) {
     for (const std::string& warning : warnings(*result))
       page.warnings.push_back(fmt::format("{}: {}", letter, warning));
   }
+  add_studies(a.stored, b.stored, page);
+  add_responses(a.stored, page);
   add_comparison(comparison(a, b), page);
   if (a.stored.kind == "sensitivity") add_where(a.stored, b.stored, page);
+  add_glossary(a.stored, page);
   add_unsolved(a, b, page);
   page.sections.push_back(what_was_run(results));
   return page;

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/report/display.h"
 #include "engine/report/html/comparison.h"
 #include "engine/report/html/parts.h"
+#include "engine/run/sensitivity.h"
+#include "engine/stats/tolerance.h"
 
 namespace poesy {
 namespace {
@@ -76,6 +79,12 @@ ComparedValues indices(const StoredResult& result, const Pair& pair, const Commo
   return {shown(found.global), shown(found.global_ci_low), shown(found.global_ci_high)};
 }
 
+/// Predicted from the errors one by one (stats/tolerance.h), in the unit shown.
+double total_rms(const StoredResult& result, std::size_t response) {
+  const MeanSquare squares = mean_square(response_study(result.sensitivity, result.factor_sigma, response));
+  return std::sqrt(squares.at(result.factor_sigma)) / display(result.responses[response]).si;
+}
+
 Comparison sensitivity(const Pair& pair) {
   const std::vector<std::string> names_a = names_of(pair.a.factors);
   const std::vector<std::string> names_b = names_of(pair.b.factors);
@@ -86,6 +95,13 @@ Comparison sensitivity(const Pair& pair) {
                           indices(pair.a, pair, factors, true), indices(pair.b, pair, factors, true)},
                          {"global index", "index", index_units(pair.a, of_a(pair.responses), of_a(factors)),
                           indices(pair.a, pair, factors, false), indices(pair.b, pair, factors, false)}};
+  if (pair.a.sensitivity.background.empty() || pair.b.sensitivity.background.empty()) return compared;
+  compared.total_label =
+      "All errors together, predicted from each alone: root mean square over samples and poses, with what is held";
+  for (const auto& [ra, rb] : pair.responses) {
+    compared.total_a.push_back(total_rms(pair.a, ra));
+    compared.total_b.push_back(total_rms(pair.b, rb));
+  }
   return compared;
 }
 

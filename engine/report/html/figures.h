@@ -62,9 +62,10 @@ struct Coordinate {
 
 /// One of the quantities that a map may show.
 struct HeatLayer {
-  std::string label;  ///< for people
-  std::string unit;   ///< of its numbers
-  ArrayName value;    ///< [P x M]
+  std::string label;           ///< for people
+  std::string unit;            ///< of its numbers
+  ArrayName value;             ///< [P x M]
+  bool signed_values = false;  ///< a difference: its colours meet at 0 whatever its values are
 };
 
 /// P rows, M columns.
@@ -74,6 +75,7 @@ struct HeatMap {
   std::string column_label;             ///< what stands from left to right
   std::vector<Coordinate> coordinates;  ///< of the columns
   ArrayName numbers = {};               ///< [M] of the columns; none: they count from 0
+  std::string order = {};  ///< how columns stand at first: a coordinate's name, or "|name|"; none: as they come
 };
 
 /// What may colour M poses; with rows, one of P may be chosen.
@@ -82,6 +84,7 @@ struct Field {
   std::string unit;                    ///< of its numbers
   ArrayName value;                     ///< [M], or [P x M]
   std::vector<std::string> rows = {};  ///< [P]
+  bool signed_values = false;          ///< as of HeatLayer
 };
 
 /// Poses as dots in their coordinates.
@@ -128,8 +131,9 @@ using Figure = std::variant<Bars, HeatMap, WorkspaceMap, Lines, Scatter>;  ///< 
 
 /// The figures of a document by their keys, and the numbers that they show.
 struct FigureSet {
-  std::map<std::string, Figure> figures;  ///< by their names in the page
-  ArrayPool pool;                         ///< the numbers behind them
+  std::map<std::string, std::string> about;  ///< what the names in figures mean, as far as that is known
+  std::map<std::string, Figure> figures;     ///< by their names in the page
+  ArrayPool pool;                            ///< the numbers behind them
 };
 
 /// All of it as JSON that may stand in a script element of HTML: no "<" is in it. Arrays are little-endian 32-bit

@@ -48,11 +48,16 @@ Json json(const BarQuantity& quantity) {
           {"high", name_or_null(quantity.high)}};
 }
 
-Json json(const HeatLayer& layer) { return {{"label", layer.label}, {"unit", layer.unit}, {"value", layer.value}}; }
+Json json(const HeatLayer& layer) {
+  Json all{{"label", layer.label}, {"unit", layer.unit}, {"value", layer.value}};
+  if (layer.signed_values) all["signed"] = true;
+  return all;
+}
 
 Json json(const Field& field) {
   Json all{{"label", field.label}, {"unit", field.unit}, {"value", field.value}};
   if (!field.rows.empty()) all["rows"] = field.rows;
+  if (field.signed_values) all["signed"] = true;
   return all;
 }
 
@@ -78,6 +83,7 @@ Json json(const Bars& bars) {
 Json json(const HeatMap& map) {
   Json columns{{"label", map.column_label}, {"coordinates", list(map.coordinates)}};
   if (!map.numbers.empty()) columns["numbers"] = map.numbers;
+  if (!map.order.empty()) columns["order"] = map.order;
   return {{"type", "heatmap"}, {"layers", list(map.layers)}, {"rows", map.rows}, {"columns", std::move(columns)}};
 }
 
@@ -133,7 +139,7 @@ std::string figures_json(const FigureSet& set) {
   }
   Json arrays = Json::object();
   for (const auto& [name, values] : set.pool.arrays()) arrays[name] = base64_floats(values);
-  const Json all{{"figures", std::move(figures)}, {"arrays", std::move(arrays)}};
+  const Json all{{"about", set.about}, {"figures", std::move(figures)}, {"arrays", std::move(arrays)}};
   return without_tags(all.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/report/html/markup.h"
+#include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
@@ -21,12 +22,33 @@ std::size_t naming_column(const Table& table) {
   return text == table.columns.end() ? 0 : static_cast<std::size_t>(text - table.columns.begin());
 }
 
-std::string row(const Table& table, const std::vector<Cell>& cells, std::size_t naming) {
+/// The longest tail of each column's numbers.
+std::vector<std::size_t> tails_of(const Table& table) {
+  std::vector<std::size_t> tails(table.columns.size(), 0);
+  for (const std::vector<Cell>& cells : table.rows) {
+    for (std::size_t c = 0; c < cells.size(); ++c) tails[c] = std::max(tails[c], tail_of(cells[c]));
+  }
+  return tails;
+}
+
+/// A number with as much room behind it as brings its decimal point below the others; a point is half as wide as a
+/// digit.
+std::string number_element(const Cell& cell, std::size_t longest_tail) {
+  const std::size_t tail = tail_of(cell);
+  const double point = tail == 0 ? 0.5 : 0.0;
+  const double room = static_cast<double>(longest_tail - tail) - point;
+  if (!cell.value || !(room > 0.0)) return element("td", cell.text, "class=\"n\"");
+  return element("td", cell.text, fmt::format("class=\"n\" style=\"--room:{}\"", room));
+}
+
+std::string row(const Table& table, const std::vector<Cell>& cells, const std::vector<std::size_t>& tails,
+                std::size_t naming) {
   std::string html = "<tr>";
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const bool number = table.columns[c].kind == Column::Kind::number;
     html += c == naming ? element("th", cells[c].text, "scope=\"row\"")
-                        : element("td", cells[c].text, number ? "class=\"n\"" : "");
+            : number    ? number_element(cells[c], tails[c])
+                        : element("td", cells[c].text);
   }
   return html + "</tr>\n";
 }
@@ -43,7 +65,8 @@ std::string html_table(const Table& table) {
   for (const Column& column : table.columns) html += heading(column);
   html += "</tr></thead>\n<tbody>\n";
   const std::size_t naming = naming_column(table);
-  for (const std::vector<Cell>& cells : table.rows) html += row(table, cells, naming);
+  const std::vector<std::size_t> tails = tails_of(table);
+  for (const std::vector<Cell>& cells : table.rows) html += row(table, cells, tails, naming);
   html += "</tbody></table></div>\n";
   for (const std::string& note : table.notes) html += element("p", note, "class=\"note\"") + "\n";
   return html;

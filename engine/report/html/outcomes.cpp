@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/report/display.h"
+#include "engine/report/failure_share.h"
 #include "engine/report/html/parts.h"
+#include "engine/report/not_converged.h"
 
 namespace poesy {
 namespace {
@@ -44,34 +49,56 @@ Table status_table(const SolveCounts& solves, std::string_view at_fidelity) {
 }
 
 Table failures_table(const ReportedResult& result) {
-  Table table{
-      .name = "failures",
-      .caption = "Samples that did not converge, in the order of errors, poses and samples",
-      .columns = {text_column("error", "error"), number_column("pose", "pose"), number_column("sample", "sample"),
-                  text_column("status", "status"), text_column("replay", "replay it with")},
-      .rows = {},
-      .notes = {fmt::format("At most {} of each error at a pose are listed, and {} in all.", FailedSamples::kMost,
-                            count_text(kMostFailuresListed))}};
+  Table table{.name = "failures",
+              .caption = "Samples that did not converge, in the order of errors, poses and samples",
+              .columns = {text_column("error", "error"), number_column("pose", "pose"), text_column("where", "where"),
+                          number_column("sample", "sample"), text_column("status", "status"),
+                          text_column("replay", "replay it with")},
+              .rows = {},
+              .notes = {fmt::format("At most {} of each error at a pose are listed, and {} in all.",
+                                    FailedSamples::kMost, count_text(kMostFailuresListed))}};
   for (const Failure& failure : listed_failures(result.stored)) {
     const std::string error = varied_name(result.stored, failure.slot);
     const std::uint64_t sample = failure.failed.sample.value;
     table.rows.push_back(
-        {text_cell(error), count_cell(failure.pose.value), count_cell(sample),
+        {text_cell(error), count_cell(failure.pose.value),
+         text_cell(coordinates_text(result.stored, failure.pose.value)), count_cell(sample),
          text_cell(kStatusNames[static_cast<std::size_t>(failure.failed.status)]),
          text_cell(fmt::format("poesy replay {} {} {} {}", result.path, error, failure.pose.value, sample))});
   }
   return table;
 }
 
+std::string unsolved_text(const StoredResult& result, const SolveTally& outcomes, const SolveCounts& total) {
+  const double share = share_not_converged(total);
+  return fmt::format(
+      "{} of {} solves{} ({}) did not converge.{}{} Each is counted where it happened. Whether the numbers above leave "
+      "such solves out is the study's choice, not_converged under [solver].",
+      count_text(total.not_converged()), count_text(total.total()), at_first_fidelity(result), percent_text(share),
+      doubt_text(share), worst_text(result, outcomes));
+}
+
+/// Of the rows that have any.
+void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
+  const std::vector<double> shares = outcomes.shares_by_row();
+  std::vector<std::string> names;
+  std::vector<double> failing;
+  for (std::size_t row = 0; row < shares.size(); ++row) {
+    if (shares[row] == 0.0) continue;
+    names.push_back(outcomes.names[row]);
+    failing.push_back(shares[row]);
+  }
+  if (outcomes.names.size() < 2) return;
+  const std::size_t others = outcomes.names.size() - names.size();
+  Bars bars{{}, {{"not converged", {{"%"}}, page.figures.pool.add("not_converged_rows", failing, 0.01)}}, names};
+  add_figure(page, section, "not-converged", std::move(bars),
+             fmt::format("Share of the solves of each {} that did not converge{}.", outcomes.row_word,
+                         others == 0 ? "" : fmt::format("; {} more had none", count_text(others))));
+}
+
 void add_figures(const StoredResult& result, const SolveTally& outcomes, Page& page, Section& section) {
   ArrayPool& pool = page.figures.pool;
-  if (outcomes.names.size() > 1) {
-    Bars bars{{},
-              {{"not converged", {{"%"}}, pool.add("not_converged_rows", outcomes.shares_by_row(), 0.01)}},
-              outcomes.names};
-    add_figure(page, section, "not-converged", std::move(bars),
-               fmt::format("Share of the solves of each {} that did not converge.", outcomes.row_word));
-  }
+  add_bars(outcomes, page, section);
   if (outcomes.poses < 2 || outcomes.poses != result.poses.size()) return;
   const ShownCells shown = shown_cells(result);
   std::vector<Field> fields{
@@ -130,6 +157,24 @@ std::string at_first_fidelity(const StoredResult& result) {
   return result.sensitivity.fidelity ? fmt::format(" at fidelity \"{}\"", result.fidelities[0]) : std::string();
 }
 
+std::string worst_text(const StoredResult& result, const SolveTally& outcomes) {
+  std::vector<std::string> places;
+  const auto add = [&](const std::vector<double>& shares, const auto& name) {
+    const auto at = std::ranges::max_element(shares, {}, [](double share) { return std::isnan(share) ? -1.0 : share; });
+    places.push_back(fmt::format("{} {}", name(static_cast<std::size_t>(at - shares.begin())), percent_text(*at)));
+  };
+  if (outcomes.names.size() > 1) add(outcomes.shares_by_row(), [&](std::size_t row) { return outcomes.names[row]; });
+  if (outcomes.poses > 1) add(outcomes.shares_by_pose(), [&](std::size_t m) { return place_text(result, m); });
+  return places.empty() ? std::string() : fmt::format(" The largest shares: {}.", fmt::join(places, "; "));
+}
+
+std::string doubt_text(double share) {
+  if (!(share > kManyNotConverged)) return {};
+  return " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where "
+         "they are many. Left out, they make numbers too small, because they are mostly the large errors; included, "
+         "they fill them with unfinished iterates.";
+}
+
 void add_outcomes(const ReportedResult& result, Page& page) {
   const SolveTally outcomes = tally_of(result.stored);
   const SolveCounts total = sum_of(outcomes.cells);
@@ -138,11 +183,10 @@ void add_outcomes(const ReportedResult& result, Page& page) {
   if (total.not_converged() == 0) {
     section.paragraph(fmt::format("All {} solves{} converged.", count_text(total.total()), at_first));
   } else {
-    section.paragraph(fmt::format(
-        "{} of {} solves{} ({:.3g} %) did not converge. Each is counted where it happened; what the "
-        "numbers above make of them is the study's choice, not_converged under [solver].",
-        count_text(total.not_converged()), count_text(total.total()), at_first, 100.0 * share_not_converged(total)));
-    add_figures(result.stored, outcomes, page, section);
+    section.paragraph(unsolved_text(result.stored, outcomes, total));
+    if (many_not_converged(result.stored, total.not_converged(), total.total())) {
+      add_figures(result.stored, outcomes, page, section);
+    }
   }
   if (const auto second = second_fidelity(result.stored)) {
     const std::string solves = count_text(second->total);

@@ -41,6 +41,13 @@ std::optional<SecondFidelity> second_fidelity(const StoredResult& result);
 /// " at fidelity \"full\"", the first of two; empty where the result does not compare two.
 std::string at_first_fidelity(const StoredResult& result);
 
+/// " The largest shares: ..." of solves that did not converge, of the rows and of the poses; empty where there is
+/// nothing to tell apart.
+std::string worst_text(const StoredResult& result, const SolveTally& outcomes);
+
+/// Why numbers cannot be trusted where more than kManyNotConverged of the solves did not converge; empty below.
+std::string doubt_text(double share);
+
 /// The section that tells what was not solved: how solves ended, which rows and poses have how many that did not
 /// converge, and the listed failures with the commands that replay them.
 void add_outcomes(const ReportedResult& result, Page& page);

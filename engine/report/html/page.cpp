@@ -76,6 +76,13 @@ Section& Section::paragraph(std::string_view text) {
   return *this;
 }
 
+Section& Section::definitions(const std::vector<std::pair<std::string, std::string>>& list) {
+  body_ += "<dl>\n";
+  for (const auto& [name, meaning] : list) body_ += element("dt", name) + element("dd", meaning) + "\n";
+  body_ += "</dl>\n";
+  return *this;
+}
+
 Section& Section::figure(std::string_view key, std::string_view caption) {
   body_ += fmt::format("<figure data-figure=\"{}\"><div class=\"plot\"></div>{}</figure>\n", escaped(key),
                        element("figcaption", caption));

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/report/html/figures.h"
@@ -17,6 +18,8 @@ class Section {
 
   /// Adds one.
   Section& paragraph(std::string_view text);
+  /// Names, each with what it is.
+  Section& definitions(const std::vector<std::pair<std::string, std::string>>& list);
   /// The place of a figure of the page, which is drawn by its script.
   Section& figure(std::string_view key, std::string_view caption);
   /// Adds it, open.

@@ -73,21 +73,9 @@ std::string some_names(const std::vector<std::string>& names) {
   return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
 }
 
-std::string pose_text(const StoredResult& result, std::size_t pose) {
-  return result.time.empty() ? fmt::format("pose {}", pose)
-                             : fmt::format("pose {} (t = {:.4g} s)", pose, result.time[pose]);
-}
-
 std::string place_text(const StoredResult& result, std::size_t pose) {
-  if (!result.time.empty() || result.pose_coordinates.empty()) return pose_text(result, pose);
-  std::string text;
-  for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
-    const NamedUnit& named = result.pose_coordinates[c];
-    const std::string unit = unit_text(named);
-    text += fmt::format("{}{} = {:.4g}{}{}", c == 0 ? "" : ", ", named.name,
-                        result.poses.column(c)[pose] / display(named).si, unit.empty() ? "" : " ", unit);
-  }
-  return fmt::format("pose {} ({})", pose, text);
+  const std::string coordinates = coordinates_text(result, pose);
+  return coordinates.empty() ? fmt::format("pose {}", pose) : fmt::format("pose {} ({})", pose, coordinates);
 }
 
 double without_rounding(double index) { return std::abs(index) < kIndexRounding ? 0.0 : index; }

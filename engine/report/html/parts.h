@@ -28,9 +28,7 @@ std::vector<std::size_t> response_order(const StoredResult& result);
 
 /// "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names);
-/// "pose 14"; on a trajectory "pose 14 (t = 1.18 s)".
-std::string pose_text(const StoredResult& result, std::size_t pose);
-/// The same, with the pose's coordinates where it has no time: "pose 14 (z = -190 mm)".
+/// "pose 14 (z -190 mm)"; see coordinates_text of display.h.
 std::string place_text(const StoredResult& result, std::size_t pose);
 
 /// An index, in SI; 0 where it is rounding (kIndexRounding).

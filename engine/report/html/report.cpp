@@ -5,6 +5,7 @@
 #include "engine/base/contract.h"
 #include "engine/report/display.h"
 #include "engine/report/html/comparison.h"
+#include "engine/report/html/glossary.h"
 #include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/sections.h"
@@ -34,7 +35,9 @@ Page page_of(const ReportedResult& result) {
   page.title = result.stored.title.empty() ? result.path : result.stored.title;
   page.subtitle = subtitle(result.stored);
   page.warnings = warnings(result);
+  add_responses(result.stored, page);
   add_sections_of_kind(result.stored, page);
+  add_glossary(result.stored, page);
   add_outcomes(result, page);
   page.sections.push_back(what_was_run({&result, 1}));
   return page;

@@ -8,6 +8,7 @@
 #include "engine/report/display.h"
 #include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
+#include "engine/report/html/pose_order.h"
 #include "engine/report/html/sections.h"
 #include "engine/report/ranking.h"
 #include "engine/report/tables.h"
@@ -164,6 +165,18 @@ Lines along_trajectory(const StoredResult& result, const ShownCells& shown, Arra
   return lines;
 }
 
+/// With which coordinate the effects of all errors grow or fall; empty where none is clear.
+std::string trend_text(const StoredResult& result) {
+  const std::size_t r = response_named(result, default_ranking(result));
+  const auto order = explaining_order(result, root_sum_squares(local_effects(result, r), result.poses.size()));
+  if (!order || !(std::abs(order->correlation) >= kClearCorrelation)) return {};
+  return fmt::format(
+      "The effect of all errors on {}, the root sum square of theirs, {} with {}: their rank correlation over the "
+      "poses "
+      "is {:.2f}.",
+      result.responses[r].name, order->correlation > 0.0 ? "grows" : "falls", order->name(result), order->correlation);
+}
+
 /// Where the most important error has its largest effect; empty where poses hardly differ.
 std::string worst_place_text(const StoredResult& result) {
   constexpr double kHardlyDiffers = 1.05;
@@ -192,17 +205,22 @@ Section where(const StoredResult& result, Page& page) {
   section.paragraph(
       "The effect of each error at each pose: its local index there times the size that the study gives it. The last "
       "layer is the share of samples that did not converge.");
-  if (const std::string text = worst_place_text(result); !text.empty()) section.paragraph(text);
+  for (const std::string& text : {trend_text(result), worst_place_text(result)}) {
+    if (!text.empty()) section.paragraph(text);
+  }
   if (!shown.note().empty()) section.paragraph(shown.note());
   const std::vector<HeatLayer> shown_layers = layers(result, shown, pool);
   if (!result.time.empty()) {
     add_figure(page, section, "trajectory", along_trajectory(result, shown, pool),
                "The effect of each error along the trajectory.");
   }
-  add_figure(page, section, "heat",
-             HeatMap{shown_layers, names_of(result.factors, ranked_errors(result, default_ranking(result)).rows),
-                     "pose", column_coordinates(result, shown, pool), pose_numbers(shown, pool)},
-             "A row for each error, the most important first, a column for each pose.");
+  add_figure(
+      page, section, "heat",
+      HeatMap{shown_layers, names_of(result.factors, ranked_errors(result, default_ranking(result)).rows), "pose",
+              column_coordinates(result, shown, pool), pose_numbers(shown, pool),
+              first_order(result, local_effects(result, response_named(result, default_ranking(result))))},
+      "A row for each error, the most important first, a column for each pose. Choose above in which order poses "
+      "stand.");
   add_figure(page, section, "workspace",
              WorkspaceMap{pose_coordinates(result, shown, pool), fields(result, shown_layers, shown, pool),
                           pose_numbers(shown, pool)},

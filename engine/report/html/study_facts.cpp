@@ -1,5 +1,7 @@
 #include "engine/report/html/study_facts.h"
 
+#include <map>
+
 #include "engine/base/units.h"
 
 namespace poesy {
@@ -34,6 +36,25 @@ std::string study_setting(std::string_view study_text, std::string_view section,
     }
   }
   return {};
+}
+
+std::vector<StudySetting> study_settings(std::string_view study_text) {
+  std::vector<StudySetting> list;
+  std::map<std::string, std::size_t> repeated;
+  std::string section;
+  while (!study_text.empty()) {
+    const std::string_view line = take_line(study_text);
+    const std::size_t equals = line.find(" = ");
+    if (line.starts_with("[[") && line.ends_with("]]")) {
+      const std::string name(line.substr(2, line.size() - 4));
+      section = name + " " + std::to_string(++repeated[name]);
+    } else if (line.starts_with('[') && line.ends_with(']')) {
+      section = line.substr(1, line.size() - 2);
+    } else if (!section.empty() && equals != std::string_view::npos) {
+      list.push_back({section + "." + std::string(line.substr(0, equals)), readable_setting(line.substr(equals + 3))});
+    }
+  }
+  return list;
 }
 
 std::string readable_setting(std::string_view setting) {

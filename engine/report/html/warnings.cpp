@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "engine/report/display.h"
-#include "engine/report/failure_share.h"
 #include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/study_facts.h"
+#include "engine/report/not_converged.h"
 #include "engine/stats/tolerance.h"
 
 namespace poesy {
@@ -33,37 +33,19 @@ void warn_of_changes(const ReportedResult& result, Warnings& list) {
   }
 }
 
-/// The row and the pose with the largest share of solves that did not converge.
-std::string worst_text(const StoredResult& result, const SolveTally& outcomes) {
-  std::vector<std::string> places;
-  const auto add = [&](const std::vector<double>& shares, const auto& name) {
-    const auto at = std::ranges::max_element(shares, {}, [](double share) { return std::isnan(share) ? -1.0 : share; });
-    places.push_back(fmt::format("{} {}", name(static_cast<std::size_t>(at - shares.begin())), percent_text(*at)));
-  };
-  if (outcomes.names.size() > 1) add(outcomes.shares_by_row(), [&](std::size_t row) { return outcomes.names[row]; });
-  if (outcomes.poses > 1) add(outcomes.shares_by_pose(), [&](std::size_t m) { return pose_text(result, m); });
-  return places.empty() ? std::string() : fmt::format(" The largest shares: {}.", fmt::join(places, "; "));
-}
-
 void warn_of_unsolved(const StoredResult& result, Warnings& list) {
   const SolveTally outcomes = tally_of(result);
   const SolveCounts total = sum_of(outcomes.cells);
-  if (total.not_converged() == 0) return;
+  if (!many_not_converged(result, total.not_converged(), total.total())) return;
   const double share = share_not_converged(total);
-  std::string text = fmt::format("{} of {} solves{} ({}) did not converge.", count_text(total.not_converged()),
-                                 count_text(total.total()), at_first_fidelity(result), percent_text(share));
-  if (share > kManyNotConverged) {
-    text +=
-        " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where "
-        "they are many. Left out, they make numbers too small, for they are mostly the large errors; included, they "
-        "fill them with unfinished iterates.";
-  }
-  list.push_back(text + worst_text(result, outcomes));
+  list.push_back(fmt::format("{} of {} solves{} ({}) did not converge.{}{}", count_text(total.not_converged()),
+                             count_text(total.total()), at_first_fidelity(result), percent_text(share),
+                             doubt_text(share), worst_text(result, outcomes)));
 }
 
 void warn_of_unsolved_at_second_fidelity(const StoredResult& result, Warnings& list) {
   const std::optional<SecondFidelity> second = second_fidelity(result);
-  if (!second || second->not_converged == 0) return;
+  if (!second || !many_not_converged(result, second->not_converged, second->total)) return;
   const double share = static_cast<double>(second->not_converged) / static_cast<double>(second->total);
   list.push_back(fmt::format("{} of {} solves at fidelity \"{}\" ({}) did not converge.",
                              count_text(second->not_converged), count_text(second->total), result.fidelities[1],
@@ -147,7 +129,7 @@ void warn_of_poses(const StoredResult& result, Warnings& list) {
       "{} close to singular: {} a condition number above {:.0e}, the largest is {:.3g} at {}. There small errors do "
       "much, and linear estimates say little.",
       ill == 1 ? "1 pose is" : fmt::format("{} poses are", ill), ill == 1 ? "it has" : "they have", kIllConditioned,
-      *worst, pose_text(result, static_cast<std::size_t>(worst - result.condition.begin()))));
+      *worst, place_text(result, static_cast<std::size_t>(worst - result.condition.begin()))));
 }
 
 void warn_of_fidelity(const StoredResult& result, Warnings& list) {

@@ -8,8 +8,9 @@
 namespace poesy {
 
 /// What a reader of this result must not miss, a sentence or two each: content that was changed, samples that did not
-/// converge and where, errors and poses without a solved sample, intervals that are wide or were not reached, poses
-/// close to singular ones, a first-order fidelity, a commit with changes of its own.
+/// converge, where they are many (report/not_converged.h), and where they are, errors and poses without a solved
+/// sample, intervals that are wide or were not reached, poses close to singular ones, a first-order fidelity, a commit
+/// with changes of its own.
 std::vector<std::string> warnings(const ReportedResult& result);
 
 /// An interval that reaches further than this share of its index is called wide.

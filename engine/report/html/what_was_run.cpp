@@ -121,24 +121,26 @@ void add_run(Facts& facts, const StoredResult& result) {
             result.content_sha256 + (result.changed ? " (the content no longer has this hash)" : ""));
 }
 
-Table facts_table(std::span<const ReportedResult> results) {
-  Table table{.name = "what_was_run",
-              .caption = "What was run",
+/// The facts of one result, or of two where they agree (same) or do not.
+Table facts_table(std::span<const ReportedResult> results, bool same) {
+  const bool two = results.size() == 2;
+  Table table{.name = same ? "what_was_run_alike" : "what_was_run",
+              .caption = !two   ? "What was run"
+                         : same ? "What is the same in both runs"
+                                : "What differs between the runs",
               .columns = {text_column("fact", "fact")},
               .rows = {},
               .notes = {}};
   std::vector<std::vector<RunFact>> columns;
   for (const ReportedResult& result : results) columns.push_back(run_facts(result));
-  const bool two = results.size() == 2;
   for (std::size_t n = 0; n < results.size(); ++n) {
     const std::string letter = two ? std::string(kLetters[n]) : "value";
     table.columns.push_back(text_column(letter, letter));
   }
-  if (two) table.columns.push_back(text_column("differs", "differs"));
   for (std::size_t fact = 0; fact < columns.front().size(); ++fact) {
     std::vector<Cell> row{text_cell(columns.front()[fact].label)};
     for (const std::vector<RunFact>& column : columns) row.push_back(text_cell(column[fact].text));
-    if (two) row.push_back(text_cell(columns[0][fact].text == columns[1][fact].text ? "" : "differs"));
+    if (two && (columns[0][fact].text == columns[1][fact].text) != same) continue;
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -164,7 +166,8 @@ std::vector<RunFact> run_facts(const ReportedResult& result) {
 Section what_was_run(std::span<const ReportedResult> results) {
   Section section("what-was-run", "What was run");
   section.paragraph(from_tables(results.front().stored) ? kOfTables : kOfStudies);
-  section.table(facts_table(results));
+  section.table(facts_table(results, false));
+  if (results.size() == 2) section.folded("What is the same in both", facts_table(results, true));
   for (std::size_t n = 0; n < results.size(); ++n) {
     const std::string name = results.size() == 2 ? fmt::format("The study of {}", kLetters[n]) : "The study";
     section.folded_text(name + ", resolved", results[n].stored.study_text);

@@ -18,7 +18,7 @@ struct RunFact {
 /// How and where the result came into being.
 std::vector<RunFact> run_facts(const ReportedResult& result);
 
-/// The section that tells what was run, of one result, or of two side by side with what differs marked.
+/// The section that tells what was run, of one result, or of two side by side: what differs, and folded what does not.
 Section what_was_run(std::span<const ReportedResult> results);
 
 /// "A" and "B" of two results.

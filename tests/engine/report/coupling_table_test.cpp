@@ -13,6 +13,8 @@ namespace {
 StoredResult example() {
   StoredResult result;
   result.kind = "coupling";
+  result.pose_coordinates = {{"z", "m"}, {"gamma", "rad"}};
+  result.poses = PoseSet(2, {-0.3, 0.0, -0.25, 0.0, -0.2, 0.0, -0.18, 0.1});
   result.responses = {{"tilt", "rad"}, {"x", "m"}};
   result.signed_headline = {1};
   StoredCoupling& stored = result.coupling;
@@ -39,18 +41,21 @@ StoredResult example() {
 }
 
 TEST(CouplingTable, ShowsEachHeadlineResponseAtEachSize) {
-  EXPECT_EQ(text_of(result_tables(example(), "x"), kUnlimitedWidth),
-            "0.1 mm: x [mm]\n"
-            "        largest    at  root sum  worst                                        at\n"
-            "subset   effect  pose    square   case  interaction  opposed  cancellation  pose\n"
-            "           [mm]            [mm]   [mm]         [mm]      [%]           [%]\n"
-            "FS        0.04      3   0.04     0.04         0            -             -     -\n"
-            "T         0.01      0   0.01     0.01         0            -             -     -\n"
-            "FS+T      0.035     3   0.04125  0.045        1e-05       75            50     2\n"
-            "2 sources of errors, alone and together; largest values over 4 poses\n"
-            "interaction: together minus the sum of each alone\n"
-            "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much\n"
-            "at most; a norm, which has no sign, cannot tell\n");
+  EXPECT_EQ(
+      text_of(result_tables(example(), "x"), kUnlimitedWidth),
+      "0.1 mm: x [mm]\n"
+      "        largest    at                             root sum  worst                                        at\n"
+      "subset   effect  pose  largest where                square   case  interaction  opposed  cancellation  pose  "
+      "cancelled where\n"
+      "           [mm]                                       [mm]   [mm]         [mm]      [%]           [%]\n"
+      "FS        0.04      3  z -180 mm, gamma 5.73 deg   0.04     0.04         0            -             -     -  -\n"
+      "T         0.01      0  z -300 mm, gamma 0 deg      0.01     0.01         0            -             -     -  -\n"
+      "FS+T      0.035     3  z -180 mm, gamma 5.73 deg   0.04125  0.045        1e-05       75            50     2  z "
+      "-200 mm, gamma 0 deg\n"
+      "2 sources of errors, alone and together; largest values over 4 poses\n"
+      "interaction: together minus the sum of each alone\n"
+      "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much\n"
+      "at most; a norm, which has no sign, cannot tell\n");
 }
 
 TEST(CouplingTable, SaysWherePosesAreLeftOut) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "engine/report/html/html_table.h"
 #include "engine/report/html/markup.h"
 #include "engine/report/html/study_facts.h"
+#include "engine/report/not_converged.h"
 
 namespace poesy {
 namespace {
@@ -51,6 +53,21 @@ TEST(ArrayPool, KeepsEachNameOnceInTheUnitShown) {
   EXPECT_TRUE(std::isnan(kept[2]));
 }
 
+TEST(FiguresJson, SaysWhatNamesMeanAndWhatIsADifference) {
+  FigureSet set;
+  set.about = {{"delta", "a shift"}};
+  set.figures.emplace("k", HeatMap{.layers = {{"B - A", "mm", "v", true}, {"A", "mm", "v"}},
+                                   .rows = {},
+                                   .column_label = "pose",
+                                   .coordinates = {},
+                                   .order = "|x|"});
+  const nlohmann::json json = nlohmann::json::parse(figures_json(set));
+  EXPECT_EQ(json["about"]["delta"], "a shift");
+  EXPECT_EQ(json["figures"]["k"]["columns"]["order"], "|x|");
+  EXPECT_TRUE(json["figures"]["k"]["layers"][0]["signed"]);
+  EXPECT_FALSE(json["figures"]["k"]["layers"][1].contains("signed"));
+}
+
 TEST(FiguresJson, HasNoTags) {
   FigureSet set;
   set.figures.emplace("k", HeatMap{.layers = {}, .rows = {"</script><!--"}, .column_label = "pose", .coordinates = {}});
@@ -72,6 +89,45 @@ TEST(HtmlTable, NamesRowsByTheFirstTextAndShowsUnitsAndNotes) {
                            "<tr><td class=\"n\">1</td><th scope=\"row\">&lt;a&gt;</th><td class=\"n\">2.5</td></tr>",
                            "<p class=\"note\">a note</p>", "data-table=\"t\""}) {
     EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
+  }
+}
+
+TEST(HtmlTable, PutsDecimalPointsBelowEachOther) {
+  const Table table{.name = "t",
+                    .caption = "c",
+                    .columns = {{"error", "error", "", Column::Kind::text}, {"x", "x", "mm", Column::Kind::number}},
+                    .rows = {{{"a", {}}, {"2.616", 2.616}},
+                             {{"b", {}}, {"0.4", 0.4}},
+                             {{"c", {}}, {"0", 0.0}},
+                             {{"d", {}}, {"-", {}}}},
+                    .notes = {}};
+  const std::string html = html_table(table);
+  for (const char* part : {"<td class=\"n\">2.616</td>", "<td class=\"n\" style=\"--room:2\">0.4</td>",
+                           "<td class=\"n\" style=\"--room:3.5\">0</td>", "<td class=\"n\">-</td>"}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
+  }
+}
+
+/// Of a study with this line under [solver].
+bool many_of_a_hundred_thousand(std::uint64_t failed, const std::string& line) {
+  StoredResult result;
+  result.study_text = "max_not_converged = 0.7\n[solver]\nmethod = \"newton\"\n" + line + "\n";
+  return many_not_converged(result, failed, 100'000);
+}
+
+TEST(NotConverged, IsWorthAWarningAboveWhatTheStudyAllows) {
+  EXPECT_FALSE(many_of_a_hundred_thousand(2000, "max_not_converged = 0.02"));
+  EXPECT_TRUE(many_of_a_hundred_thousand(2001, "max_not_converged = 0.02"));
+  EXPECT_FALSE(many_of_a_hundred_thousand(1, "max_not_converged = 1e-05"));
+  EXPECT_TRUE(many_of_a_hundred_thousand(2, "max_not_converged = 1e-05"));
+  EXPECT_FALSE(many_of_a_hundred_thousand(0, "max_not_converged = 0"));
+  EXPECT_TRUE(many_of_a_hundred_thousand(1, "max_not_converged = 0"));
+}
+
+TEST(NotConverged, IsWorthAWarningAboveATenthOfAPercentWhereTheStudyAllowsAny) {
+  for (const char* line : {"max_not_converged = 1", "tolerance = 1e-15"}) {
+    EXPECT_FALSE(many_of_a_hundred_thousand(100, line)) << line;
+    EXPECT_TRUE(many_of_a_hundred_thousand(101, line)) << line;
   }
 }
 

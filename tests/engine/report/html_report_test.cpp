@@ -285,6 +285,81 @@ TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {
   EXPECT_NE(html.find("2.5 times its mean over the poses"), std::string::npos);
 }
 
+TEST_F(HtmlReport, PutsPosesInTheOrderThatExplainsTheEffects) {
+  ReportedResult result = sensitivity();
+  StoredResult& stored = result.stored;
+  stored.poses = PoseSet(3, {-0.2, 0.1, -0.6, -0.3, 0.3, 0.1, -0.1, -0.2, 0.4, -0.4, 0.5, -0.3});
+  for (std::size_t at = 0; at < stored.sensitivity.local.size(); ++at) {
+    stored.sensitivity.local[at] = std::exp(std::abs(stored.poses[PoseIndex(at % 4)][2]));
+  }
+  const std::string html = report(result);
+  EXPECT_EQ(data(html)["figures"]["heat"]["columns"]["order"], "|gamma|");
+  EXPECT_NE(html.find("grows with |gamma|: their rank correlation over the poses is 1.00."), std::string::npos);
+  for (double& value : stored.sensitivity.local) value = 1.0 / value;
+  EXPECT_NE(report(result).find("falls with |gamma|"), std::string::npos);
+  stored.sensitivity.local = {2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5};
+  EXPECT_EQ(report(result).find("with |gamma|:"), std::string::npos);
+  stored.time = {0.0, 1.0, 2.0, 3.0};
+  EXPECT_FALSE(data(report(result))["figures"]["heat"]["columns"].contains("order"));
+}
+
+/// Of so many solves in each of 8 cells, one does not converge.
+ReportedResult with_one_failure(ReportedResult result, std::uint64_t solves) {
+  for (SolveCounts& cell : result.stored.sensitivity.solves) cell.by_status = {solves, 0, 0, 0, 0};
+  result.stored.sensitivity.solves[5].by_status = {solves - 1, 0, 1, 0, 0};
+  return result;
+}
+
+TEST_F(HtmlReport, NamesAFewFailuresWhereTheyBelongAndDrawsNothing) {
+  const std::string few = report(with_one_failure(sensitivity(), 1000));
+  const std::size_t section = few.find("<section id=\"not-solved\"");
+  const std::size_t line = few.find("1 of 8 000 solves (0.0125 %) did not converge.");
+  EXPECT_LT(section, line);
+  EXPECT_EQ(few.find("1 of 8 000 solves", line + 1), std::string::npos);
+  EXPECT_FALSE(data(few)["figures"].contains("not-converged"));
+  EXPECT_FALSE(data(few)["figures"].contains("not-converged-where"));
+  EXPECT_NE(few.find("The largest shares: delta_1 0.025 %; pose 1 (z "), std::string::npos);
+}
+
+TEST_F(HtmlReport, WarnsOfManyFailuresAndDrawsThoseThatHaveSome) {
+  const ReportedResult result = with_one_failure(sensitivity(), 100);
+  const std::string many = report(result);
+  EXPECT_LT(many.find("1 of 800 solves (0.125 %) did not converge."), many.find("<section id=\"what-is-measured\""));
+  const Json page = data(many);
+  EXPECT_EQ(page["figures"]["not-converged"]["items"], Json{result.stored.factors[1].name});
+  EXPECT_NE(many.find("that did not converge; 1 more had none."), std::string::npos);
+  EXPECT_TRUE(page["figures"].contains("not-converged-where"));
+}
+
+TEST_F(HtmlReport, HoldsToWhatTheStudyAllows) {
+  ReportedResult result = with_one_failure(sensitivity(), 100);
+  result.stored.study_text = "[solver]\nmax_not_converged = 0.01\n";
+  EXPECT_FALSE(data(report(result))["figures"].contains("not-converged"));
+  result = with_one_failure(sensitivity(), 1000);
+  result.stored.study_text = "[solver]\nmax_not_converged = 0.0001\n";
+  EXPECT_TRUE(data(report(result))["figures"].contains("not-converged"));
+}
+
+TEST_F(HtmlReport, SaysWhatItsNamesMean) {
+  ReportedResult result = sensitivity();
+  StoredResult& stored = result.stored;
+  stored.factors[0].description = "tilt of the bolt";
+  stored.responses[1].description = "how far <it> moves";
+  const std::string html = report(result);
+  check_page(html);
+  EXPECT_NE(html.find("<dt>linear_deformation</dt><dd>How far &lt;it&gt; moves.</dd>"), std::string::npos);
+  EXPECT_LT(html.find("<section id=\"what-is-measured\""), html.find("<section id=\"which-errors-matter\""));
+  EXPECT_NE(html.find("<td>tilt of the bolt</td>"), std::string::npos);
+  EXPECT_EQ(data(html)["about"]["epsilon_1"], "tilt of the bolt");
+  for (auto* things : {&stored.factors, &stored.responses, &stored.pose_coordinates}) {
+    for (NamedUnit& thing : *things) thing.description.clear();
+  }
+  const std::string older = report(result);
+  check_page(older);
+  EXPECT_EQ(older.find("id=\"what-is-measured\""), std::string::npos);
+  EXPECT_EQ(older.find("id=\"names\""), std::string::npos);
+}
+
 TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
@@ -314,8 +389,9 @@ TEST_F(HtmlReport, TakesRoundingForNoDifference) {
   for (const float value : array(page, page["figures"]["heat"]["layers"][0]["value"])) {
     EXPECT_TRUE(value == 0.0F || std::isnan(value)) << value;
   }
-  const std::string numbers = html.substr(0, html.find("<section id=\"what-was-run\""));
-  EXPECT_TRUE(all(body(numbers), "(e-1[0-9]( %)?)</td>").empty());
+  const std::size_t begin = html.find("<section id=\"differences\"");
+  const std::string numbers = html.substr(begin, html.find("<section id=\"what-was-run\"") - begin);
+  EXPECT_TRUE(all(numbers, "(e-1[0-9]( %)?)</td>").empty());
 }
 
 TEST_F(HtmlReport, OfCoupledSourcesOpensAtTheLastSize) {
@@ -350,7 +426,8 @@ TEST_F(HtmlReport, EscapesWhateverComesFromTheFile) {
   StoredResult& stored = result.stored;
   for (std::string* text : {&stored.title, &stored.model, &stored.study_text, &stored.poesy_version, &stored.git_commit,
                             &stored.content_sha256, &stored.facts.created, &stored.facts.host, &stored.facts.cpu,
-                            &stored.factors[0].name, &stored.responses[0].name, &stored.pose_coordinates[0].name}) {
+                            &stored.factors[0].name, &stored.responses[0].name, &stored.pose_coordinates[0].name,
+                            &stored.factors[0].description, &stored.responses[0].description}) {
     *text = evil;
   }
   const std::string html = report(result);
@@ -431,7 +508,54 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   EXPECT_FLOAT_EQ(effects[r], static_cast<float>(a.stored.sensitivity.global[0] * scale));
   EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(b.stored.sensitivity.global[0] * scale));
   EXPECT_NE(html.find("Only in B: another."), std::string::npos);
-  EXPECT_NE(html.find("<td>differs</td>"), std::string::npos);
+  for (const Json& layer : page["figures"]["heat"]["layers"]) EXPECT_TRUE(layer["signed"]);
+}
+
+/// The text of a table's element.
+std::string table(const std::string& html, const std::string& name) {
+  const std::size_t begin = html.find("data-table=\"" + name + "\"");
+  return begin == std::string::npos ? "" : html.substr(begin, html.find("</table>", begin) - begin);
+}
+
+TEST_F(HtmlReport, OfTwoResultsSaysFirstHowTheStudiesDiffer) {
+  ReportedResult a = sensitivity();
+  ReportedResult b = a;
+  a.stored.study_text = "title = \"x\"\n[errors]\nlinear = { sigma = \"0.001 m\" }\n[run]\nseed = 1\n[[g]]\nk = 1\n";
+  b.stored.study_text =
+      "title = \"y\"\n[errors]\nlinear = { sigma = \"1e-05 m\" }\n[run]\nseed = 1\n[[g]]\nk = 2\nm = 3\n";
+  b.stored.facts.host = "elsewhere";
+  const std::string html = report(a, b);
+  check_page(html);
+  EXPECT_EQ(all(body(html), "<section id=\"([^\"]*)\"").at(html.find("id=\"warnings\"") == std::string::npos ? 0 : 1),
+            "studies");
+  const std::string rows = table(html, "settings");
+  EXPECT_NE(rows.find("<th scope=\"row\">errors.linear</th><td>sigma = 1 mm</td><td>sigma = 0.01 mm</td>"),
+            std::string::npos)
+      << rows;
+  EXPECT_NE(rows.find("<th scope=\"row\">g 1.k</th><td>1</td><td>2</td>"), std::string::npos) << rows;
+  EXPECT_NE(rows.find("<th scope=\"row\">g 1.m</th><td>-</td><td>3</td>"), std::string::npos) << rows;
+  EXPECT_EQ(rows.find("run.seed"), std::string::npos);
+  EXPECT_NE(table(html, "settings_alike").find("run.seed"), std::string::npos);
+  EXPECT_NE(table(html, "what_was_run").find("elsewhere"), std::string::npos);
+  EXPECT_EQ(table(html, "what_was_run").find("threads"), std::string::npos);
+  EXPECT_NE(table(html, "what_was_run_alike").find("threads"), std::string::npos);
+  EXPECT_NE(report(a, a).find("Both studies have the same settings."), std::string::npos);
+}
+
+TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
+  ReportedResult a = sensitivity();
+  a.stored.sensitivity.count.assign(16, 1000.0);
+  a.stored.sensitivity.background.assign(8, 0.0);
+  a.stored.sensitivity.mean.assign(16, 3e-3);
+  a.stored.sensitivity.std.assign(16, 4e-3);
+  ReportedResult b = a;
+  for (auto* values : {&b.stored.sensitivity.mean, &b.stored.sensitivity.std}) values->assign(16, 0.0);
+  b.stored.sensitivity.mean.assign(16, 0.5e-3);
+  const std::string rows = table(report(a, b), "totals");
+  // Two errors: sqrt(2 (3^2 + 4^2 999 / 1000)) = 7.069 mm, and sqrt(2) 0.5 mm.
+  EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\">7.069</td>"), std::string::npos)
+      << rows;
+  EXPECT_NE(rows.find(">0.7071</td><td>mm</td><td class=\"n\">0.1</td>"), std::string::npos) << rows;
 }
 
 TEST_F(HtmlReport, OfTwoResultsOfEveryKindIsWhole) {

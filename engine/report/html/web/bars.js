@@ -14,8 +14,14 @@ function bars(figure, data) {
   let quantity = data.quantities[0];
   let all = false;
 
+  const SCALES = ["linear", "logarithmic"];
+  let scale; // a position among them that the reader chose
+
   const place = new Place(figure, (width) => {
     const rows = rowsShown();
+    const offered = differ(rows);
+    scales.hidden = !offered;
+    scales.querySelector("select").selectedIndex = Number(isLog(rows));
     more.hidden = names.length <= FIRST_BARS;
     more.textContent = all ? `Show the first ${FIRST_BARS} of ${names.length}` : `Show all ${names.length}`;
     return rows.some(({ value }) => Number.isFinite(value)) ? [drawBars(rows, width)].flat() : nothing();
@@ -29,6 +35,10 @@ function bars(figure, data) {
       place.redraw();
     },
   });
+  const scales = select("Scale", SCALES, (i) => {
+    scale = i;
+    place.redraw();
+  });
   const quantities = data.quantities.map(({ label }) => label);
   place.controls.append(
     ...choices.controls,
@@ -36,6 +46,7 @@ function bars(figure, data) {
       quantity = data.quantities[i];
       place.redraw();
     }),
+    scales,
   );
   place.plot.after(more);
 
@@ -84,11 +95,19 @@ function bars(figure, data) {
     );
   }
 
+  /// Whether bars stand on a logarithmic axis: as the reader chose, else where series are hundredfold apart, so that
+  /// the shorter bars could not be seen.
+  function isLog(rows) {
+    if (!differ(rows)) return false;
+    if (scale !== undefined) return scale === 1;
+    return d3.groups(rows, ({ name }) => name).some(([, same]) => same.length > 1 && differ(same));
+  }
+
   function drawBars(rows, width) {
     const oneUnit = new Set(rows.map(({ unit }) => unit)).size === 1;
-    const axis = barAxis(rows, oneUnit ? rows[0].unit : undefined);
+    const axis = barAxis(rows, oneUnit ? rows[0].unit : undefined, isLog(rows));
     const valueText = ({ value, unit }) => (oneUnit ? number(value / axis.factor) : withUnit(number(value), unit));
-    const said = (d) => [d.name, series[d.series], withInterval(d, d.unit)].filter(Boolean).join("\n");
+    const said = (d) => [d.name, about(d.name), series[d.series], withInterval(d, d.unit)].filter(Boolean).join("\n");
     const marginLeft = Math.min(textWidth(...rows.map(({ name }) => name)) + 10, width * 0.42);
     const marginRight = textWidth(...rows.map(valueText)) + 14;
     const shown = rows.filter((d) => d.series === 0).map(({ name }) => name);
@@ -111,7 +130,7 @@ function bars(figure, data) {
       },
       marks: [
         series.map((_, s) => seriesMarks(rows, s, series.length, axis, valueText)),
-        Plot.ruleX([0], { stroke: "var(--ink)" }),
+        Plot.ruleX([axis.start], { stroke: "var(--ink)" }),
         tip(rows, { x: (d) => axis.at(d.value), y: "name", title: said, anchor: "left" }, Plot.pointerY),
       ],
     });
@@ -141,15 +160,39 @@ function bars(figure, data) {
   return place;
 }
 
-/// The axis of bars, which holds 0; at(value) is where a value stands on it.
-function barAxis(rows, unit) {
+const HUNDREDFOLD = 100;
+
+/// Whether values without sign are hundredfold apart, so that a logarithmic axis shows them better.
+function differ(rows) {
+  const numbers = rows.map(({ value }) => value).filter(Number.isFinite);
+  if (d3.min(numbers) < 0) return false;
+  const [low, high] = d3.extent(numbers.filter((v) => v > 0));
+  return high >= HUNDREDFOLD * low;
+}
+
+/// The axis of bars, which holds 0 unless it is logarithmic; bars begin at start, at(value) is where a value stands.
+function barAxis(rows, unit, log) {
   const numbers = rows.flatMap(({ value, low, high }) => [value, low, high]).filter(Number.isFinite);
+  if (log) return logAxis(rows, unit, d3.max(numbers));
   const range = d3.extent([0, ...numbers]);
   const whole = range[0] < range[1] ? range : [0, 1];
   const axis = unit === undefined ? { factor: 1, unit: "" } : axisUnit(whole, unit);
   const domain = whole.map((v) => v / axis.factor);
   const options = (width) => ({ domain, ticks: Math.max(2, Math.floor(width / 90)) });
-  return { ...axis, options, at: (v) => v / axis.factor };
+  return { ...axis, options, start: 0, at: (v) => v / axis.factor };
+}
+
+/// From half the smallest value, and at most six powers of ten, for what is less is rounding; a 0 has no length.
+function logAxis(rows, unit, high) {
+  const smallest = d3.min(rows, ({ value }) => (value > 0 ? value : undefined));
+  const start = Math.max(0.5 * smallest, 1e-6 * high);
+  const options = (width) => ({
+    type: "log",
+    domain: [start, high],
+    ticks: logTicks([start, high], Math.max(2, Math.floor(width / 90))),
+    tickFormat: logTick,
+  });
+  return { factor: 1, unit: unit ?? "", options, start, at: (v) => Math.max(v, start) };
 }
 
 /// The bars of series s of so many, their intervals, and their values behind them.
@@ -157,7 +200,7 @@ function seriesMarks(rows, s, of, axis, valueText) {
   const mine = rows.filter((d) => d.series === s);
   const dy = (s + 0.5 - of / 2) * BAR;
   const colours = of === 1 ? { fill: "var(--bar)", stroke: "var(--bar)" } : SERIES_FILLS[s % SERIES_FILLS.length];
-  const end = ({ value, high }) => d3.max([0, ...[value, high].map(axis.at)]);
+  const end = ({ value, high }) => d3.max([axis.start, ...[value, high].map(axis.at)]);
   return [
     fullBars(mine, axis, dy, (BAR * (of - 1) + BAR_GAP) / 2, colours),
     Plot.ruleY(
@@ -178,5 +221,5 @@ function seriesMarks(rows, s, of, axis, valueText) {
 
 function fullBars(rows, axis, dy, inset, colours) {
   const edges = { insetTop: inset + dy + 0.5, insetBottom: inset - dy + 0.5 };
-  return Plot.rect(rows, { y: "name", x1: 0, x2: (d) => axis.at(d.value), ...edges, ...colours, strokeWidth: 1 });
+  return Plot.rect(rows, { y: "name", x1: axis.start, x2: (d) => axis.at(d.value), ...edges, ...colours, strokeWidth: 1 });
 }

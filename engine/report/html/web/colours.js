@@ -7,9 +7,10 @@ function swatch(fill, stroke, text) {
 }
 
 /// The colours of a field: colour(value), null where it is not known, and legend(width) with its label and unit.
-/// A field with both signs has two hues that meet at 0; another one has the colours of viridis.
-function fieldColours(array, label, unit) {
-  const domain = symmetric(valueExtent(array));
+/// A field with both signs, and a difference whatever its values, has two hues that meet at 0; another one has the
+/// colours of viridis.
+function fieldColours(array, { label, unit, signed }) {
+  const domain = symmetric(valueExtent(array), signed);
   const interpolate = domain[0] < 0 && domain[1] > 0 ? d3.interpolatePuOr : d3.interpolateViridis;
   const scale = d3.scaleSequential(domain, interpolate);
   const colour = (value) => (Number.isFinite(value) ? scale(value) : null);
@@ -36,8 +37,8 @@ function fieldColours(array, label, unit) {
   return { colour, legend };
 }
 
-/// A range with both signs is made as long on either side of 0.
-function symmetric([low, high]) {
+/// A range with both signs, or of a difference, is made as long on either side of 0.
+function symmetric([low, high], signed) {
   const largest = Math.max(-low, high);
-  return low < 0 && high > 0 ? [-largest, largest] : [low, high];
+  return signed || (low < 0 && high > 0) ? [-largest, largest] : [low, high];
 }

@@ -13,6 +13,11 @@ function values(name) {
   return decoded.get(name);
 }
 
+/// What a name means, in words; empty where nobody says.
+function about(name) {
+  return report.about[name] ?? "";
+}
+
 /// Row r of an array of rows of that length. An array of one row is that row for every r.
 function row(array, r, length) {
   return array.length === length ? array : array.subarray(r * length, (r + 1) * length);

@@ -1,13 +1,14 @@
 // A field over items and poses as an image of one pixel for each value, with a cursor that pointer and arrow keys move.
 
-const ROW_HEIGHT = 14;
+const ROW_HEIGHT = 16;
 const MAP_HEIGHT = 1400;
 
 function heatmap(figure, data) {
   const rows = data.rows;
   const coordinates = data.columns.coordinates;
   let layer = data.layers[0];
-  let orderedBy = null; // a coordinate, or null: the number of the pose
+  const orders = columnOrders(coordinates);
+  let orderedBy = orders.find(({ name }) => name === data.columns.order) ?? orders[0];
   const cursor = { row: 0, column: 0 };
   const count = values(layer.value).length / rows.length;
   const numberOf = (m) => (data.columns.numbers ? values(data.columns.numbers)[m] : m);
@@ -23,24 +24,29 @@ function heatmap(figure, data) {
         place.redraw();
       },
     ),
-    select(`Order ${noun}s by`, ["number", ...coordinates.map(({ name }) => name)], (i) => {
-      orderedBy = i ? coordinates[i - 1] : null;
-      place.redraw();
-    }),
+    select(
+      `Order ${noun}s by`,
+      orders.map(({ name }) => name),
+      (i) => {
+        orderedBy = orders[i];
+        place.redraw();
+      },
+      orders.indexOf(orderedBy),
+    ),
   );
   const said = readout("Point at the map, or focus it and use the arrow keys, to read a value.");
   place.plot.after(said);
 
   /// The poses as they stand from left to right.
   function order() {
-    const by = orderedBy && values(orderedBy.value);
-    return d3.range(count).sort((a, b) => (by ? d3.ascending(by[a], by[b]) : 0) || a - b);
+    const { by } = orderedBy;
+    return d3.range(count).sort((a, b) => (by ? d3.ascending(by(a), by(b)) : 0) || a - b);
   }
 
   function drawMap(width) {
     const array = values(layer.value);
     const poses = order();
-    const colours = fieldColours(array, layer.label, layer.unit);
+    const colours = fieldColours(array, layer);
     const rowHeight = Math.max(2, Math.min(ROW_HEIGHT, MAP_HEIGHT / rows.length));
     const named = d3.range(0, rows.length, Math.ceil((ROW_HEIGHT - 1) / rowHeight));
     const marginLeft = Math.min(textWidth(...rows) + 10, width * 0.36);
@@ -61,7 +67,7 @@ function heatmap(figure, data) {
           ticks.map(({ at }) => at),
           {
             tickFormat: (at) => ticks.find((tick) => tick.at === at).text,
-            label: labelled(orderedBy ? `${noun}s in the order of ${orderedBy.name}` : noun, orderedBy?.unit),
+            label: labelled(orderedBy.by ? `${noun}s in the order of ${orderedBy.name}` : noun, orderedBy.unit),
             labelAnchor: "center",
             labelArrow: "none",
           },
@@ -90,14 +96,14 @@ function heatmap(figure, data) {
 
   /// Columns that are numbered below the map.
   function ticksAt(poses, width) {
-    const by = orderedBy && values(orderedBy.value);
+    const { by } = orderedBy;
     if (!by)
       return d3
         .ticks(0, count - 1, Math.min(count, width / 70))
         .filter(Number.isInteger)
         .map((v) => ({ at: v + 0.5, text: plain(numberOf(v)) }));
     const step = Math.max(1, Math.ceil(count / Math.max(2, Math.floor(width / 70))));
-    return d3.range(0, count, step).map((c) => ({ at: c + 0.5, text: plain(Number(by[poses[c]].toPrecision(3))) }));
+    return d3.range(0, count, step).map((c) => ({ at: c + 0.5, text: plain(Number(by(poses[c]).toPrecision(3))) }));
   }
 
   function sentence(array) {
@@ -125,7 +131,8 @@ function heatmap(figure, data) {
       const pose = poses[cursor.column];
       const where = coordinates.length ? ` (${positionOf(pose, coordinates).join(", ")})` : "";
       const value = withUnit(number(array[cursor.row * count + pose]), layer.unit);
-      said.textContent = `${rows[cursor.row]}, ${noun} ${numberOf(pose)}${where}: ${value}`;
+      const meaning = about(rows[cursor.row]);
+      said.textContent = `${rows[cursor.row]}, ${noun} ${numberOf(pose)}${where}: ${value}${meaning && ` – ${meaning}`}`;
     };
     map.addEventListener("pointermove", (event) => {
       const scale = svg.viewBox.baseVal.width / svg.getBoundingClientRect().width;
@@ -172,6 +179,18 @@ function heatmap(figure, data) {
   }
 
   return place;
+}
+
+/// [{name, unit, by}] for a map's columns: by(m) of column m, or none, as they come; coordinates, and the magnitudes of
+/// those with both signs.
+function columnOrders(coordinates) {
+  const orders = [{ name: "number" }];
+  for (const { name, unit, value } of coordinates) orders.push({ name, unit, by: (m) => values(value)[m] });
+  for (const { name, unit, value } of coordinates) {
+    const [low, high] = extent(values(value));
+    if (low < 0 && high > 0) orders.push({ name: `|${name}|`, unit, by: (m) => Math.abs(values(value)[m]) });
+  }
+  return orders;
 }
 
 /// value -> [red, green, blue, alpha], transparent where unknown; each colour is parsed once.

@@ -107,9 +107,12 @@ function lines(figure, data) {
           title: (point) =>
             [
               label,
+              about(label),
               `${data.x.label} ${withUnit(plain(point.x), data.x.unit)}`,
               withInterval({ ...point, value: point.y }, unit),
-            ].join("\n"),
+            ]
+              .filter(Boolean)
+              .join("\n"),
         }),
       ].flat(),
     );

@@ -7,15 +7,21 @@ function powerOfTen(exponent) {
   return `10${exponent < 0 ? "⁻" : ""}${digits}`;
 }
 
-/// Three significant digits; powers of ten where zeros would have to be counted.
+/// Digits of a whole number in groups of three, as the tables have them.
+function grouped(digits) {
+  return digits.replace(/\B(?=(\d{3})+$)/g, "\u202f");
+}
+
+/// Three significant digits, as in the tables without zeros behind them; powers of ten where zeros would have to be
+/// counted.
 function number(value) {
   if (!Number.isFinite(value)) return "unknown";
   if (value === 0) return "0";
   const sign = value < 0 ? "−" : "";
   const [mantissa, exponent] = Math.abs(value).toExponential(2).split("e").map(Number);
-  if (exponent < -3 || exponent > 5) return `${sign}${mantissa.toFixed(2)} × ${powerOfTen(exponent)}`;
-  const text = Math.abs(value).toFixed(Math.max(0, 2 - exponent));
-  return sign + (exponent > 3 ? Number(text).toLocaleString("en") : text);
+  if (exponent < -3 || exponent > 5) return `${sign}${mantissa} × ${powerOfTen(exponent)}`;
+  const text = String(Number(Math.abs(value).toFixed(Math.max(0, 2 - exponent))));
+  return sign + (exponent >= 3 ? grouped(text) : text);
 }
 
 /// At full precision as far as it is short: for coordinates and counts.
@@ -66,7 +72,10 @@ function logTicks([low, high], most) {
 
 function logTick(value) {
   const exponent = Math.floor(Math.log10(value) + 1e-9);
-  if (exponent >= -2 && exponent <= 5) return Number(value.toPrecision(1)).toLocaleString("en");
+  if (exponent >= -2 && exponent <= 5) {
+    const text = String(Number(value.toPrecision(1)));
+    return exponent >= 3 ? grouped(text) : text;
+  }
   const multiple = Math.round(value / 10 ** exponent);
   return `${multiple > 1 ? `${multiple} × ` : ""}${powerOfTen(exponent)}`;
 }

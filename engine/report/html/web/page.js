@@ -11,10 +11,12 @@ function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-/// A select with a visible label; change(index) is called when another option is chosen. Hidden where nothing can be.
-function select(label, options, change) {
+/// A select with a visible label; change(index) is called when another option than the first one is chosen. Hidden where
+/// nothing can be.
+function select(label, options, change, first = 0) {
   const made = element("select", { onchange: () => change(made.selectedIndex) });
   made.append(...options.map((option) => element("option", {}, option)));
+  made.selectedIndex = first;
   return element(
     "label",
     { class: "control", ...(options.length < 2 && { hidden: "" }) },

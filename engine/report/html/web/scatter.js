@@ -11,19 +11,24 @@ function scatter(figure, data) {
   function drawScatter(width) {
     const [x, y] = [data.x, data.y].map(({ value }) => row(values(value), choices.row, names.length));
     const unit = data.units?.[choices.row] ?? "";
-    const points = names
+    const all = names
       .map((name, p) => ({ name, x: x[p], y: y[p] }))
       .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
-    if (!points.length) return nothing();
+    if (!all.length) return nothing();
+    const log = apart(all);
+    const points = log ? all.filter(positive) : all;
     const [low, high] = valueExtent(points.flatMap((point) => [point.x, point.y]));
     const margin = 0.04 * (high - low);
-    const axis = axisUnit([low, high], unit);
-    const domain = [low < 0 ? low - margin : 0, high + margin].map((v) => v / axis.factor);
+    const axis = log ? { factor: 1, unit } : axisUnit([low, high], unit);
+    const domain = log ? [low / 1.5, high * 1.5] : [low < 0 ? low - margin : 0, high + margin].map((v) => v / axis.factor);
     const size = Math.min(width, 600);
     const at = { x: (point) => point.x / axis.factor, y: (point) => point.y / axis.factor };
     const said = (point) =>
       `${point.name}\n${data.x.label}: ${withUnit(number(point.x), unit)}\n${data.y.label}: ${withUnit(number(point.y), unit)}`;
-    const ticks = Math.max(3, Math.floor(size / 90));
+    const most = Math.max(3, Math.floor(size / 90));
+    const scale = log
+      ? { type: "log", domain, grid: true, ticks: logTicks(domain, most), tickFormat: logTick }
+      : { domain, grid: true, ticks: most };
     return draw(sentence(points, unit), {
       width: size,
       height: size,
@@ -31,15 +36,8 @@ function scatter(figure, data) {
       marginBottom: 42,
       marginTop: 30,
       marginRight: 16,
-      x: {
-        domain,
-        label: labelled(data.x.label, axis.unit),
-        labelAnchor: "center",
-        labelArrow: "none",
-        grid: true,
-        ticks,
-      },
-      y: { domain, label: labelled(data.y.label, axis.unit), labelArrow: "none", grid: true, ticks },
+      x: { ...scale, label: labelled(data.x.label, axis.unit), labelAnchor: "center", labelArrow: "none" },
+      y: { ...scale, label: labelled(data.y.label, axis.unit), labelArrow: "none" },
       marks: [
         Plot.line(
           domain.map((v) => [v, v]),
@@ -60,6 +58,16 @@ function scatter(figure, data) {
   }
 
   return place;
+}
+
+function positive({ x, y }) {
+  return x > 0 && y > 0;
+}
+
+/// Whether some item is hundredfold larger in one of two results, so that both axes are logarithmic; without signs only.
+function apart(points) {
+  if (points.some(({ x, y }) => x < 0 || y < 0)) return false;
+  return points.filter(positive).some(({ x, y }) => Math.max(x / y, y / x) >= HUNDREDFOLD);
 }
 
 /// Names beside dots, the most telling first, where no dot and no other name is in the way.

@@ -69,7 +69,7 @@ function workspace(figure, data) {
   function drawViews(width) {
     const array = shown();
     const what = field.rows ? `${field.label}, ${field.rows[item]}` : field.label;
-    const { colour, legend } = fieldColours(array, what, field.unit);
+    const { colour, legend } = fieldColours(array, { ...field, label: what });
     const poses = d3.range(count).map((m) => ({
       m,
       value: array[m],
@@ -118,7 +118,7 @@ function workspace(figure, data) {
       class: "turning",
       tabindex: "0",
       role: "application",
-      "aria-label": "View that can be turned: drag it, or use the arrow keys; Home turns it back.",
+      "aria-label": "View that can be turned: drag it, or use the arrow keys; Home resets it.",
     });
     const show = () => box.replaceChildren(turned(poses, chosen, size, view, sentence));
     const turn = (yaw, pitch) => {
@@ -150,7 +150,7 @@ function workspace(figure, data) {
       "div",
       { class: "turning-view" },
       box,
-      element("button", { type: "button", onclick: reset }, "Turn back"),
+      element("button", { type: "button", onclick: reset }, "Reset view"),
     );
   }
 
@@ -196,6 +196,14 @@ function turned(poses, chosen, size, { yaw, pitch }, sentence) {
     ...project(AXIS_STARTS[k].with(k, 0.6)),
     text: labelled(name, unit),
   }));
+  // A little outside the box, so that numbers and dots do not cover each other.
+  const besides = (k, at) => AXIS_STARTS[k].map((v, j) => (j === k ? at : 1.22 * v));
+  const numbers = chosen.flatMap((_, k) =>
+    d3.ticks(...ranges[k], 3).map((v) => ({
+      ...project(besides(k, (v - ranges[k][0]) / (ranges[k][1] - ranges[k][0]) - 0.5)),
+      text: plain(v),
+    })),
+  );
   return draw(`Dots in three dimensions, turned by ${Math.round(yaw)} and ${Math.round(pitch)} degrees: ${sentence}`, {
     width: size,
     height: Math.round(size * 0.72),
@@ -213,6 +221,7 @@ function turned(poses, chosen, size, { yaw, pitch }, sentence) {
         strokeWidth: (d) => (d.axis ? 1.5 : 1),
       }),
       Plot.dot(dots, { x: "x", y: "y", fill: "colour", r: dotSize(poses.length), ...DOT_EDGE }),
+      Plot.text(numbers, { x: "x", y: "y", text: "text", fill: "var(--quiet)" }),
       ["end", "middle", "start"].map((textAnchor, side) =>
         Plot.text(
           names.filter(({ x }) => (x < -0.1 ? 0 : x < 0.1 ? 1 : 2) === side),

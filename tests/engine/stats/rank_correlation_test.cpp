@@ -1,0 +1,51 @@
+#include "engine/stats/rank_correlation.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace poesy {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(RankCorrelation, IsOneForWhateverOnlyGrows) {
+  std::vector<double> x;
+  std::vector<double> grows;
+  std::vector<double> falls;
+  for (int n = 0; n < 50; ++n) {
+    x.push_back(std::sin(n) * n);
+    grows.push_back(std::exp(0.3 * x.back()));
+    falls.push_back(-std::cbrt(x.back()));
+  }
+  EXPECT_DOUBLE_EQ(rank_correlation(x, grows), 1.0);
+  EXPECT_DOUBLE_EQ(rank_correlation(x, falls), -1.0);
+}
+
+/// By hand: ranks of x 3.5, 1, 5, 3.5, 6, 2 and of y 2, 5, 3.5, 3.5, 1, 6, both with sum of squares 17 about 3.5.
+TEST(RankCorrelation, SharesRanksAmongEqualValues) {
+  const std::array x{0.3, -1.2, 2.5, 0.3, 4.0, -0.7};
+  const std::array y{1.0, 5.0, 2.0, 2.0, 0.5, 7.0};
+  EXPECT_NEAR(rank_correlation(x, y), -13.75 / 17.0, 1e-15);
+}
+
+TEST(RankCorrelation, LeavesOutWhatIsNotKnown) {
+  const std::array x{1.0, kNaN, 2.0, 3.0, 4.0};
+  const std::array y{2.0, -9.0, 3.0, kNaN, 5.0};
+  EXPECT_DOUBLE_EQ(rank_correlation(x, y), 1.0);
+}
+
+TEST(RankCorrelation, IsNotKnownOfTwoPairsOrOfEqualValues) {
+  const std::array two{1.0, 2.0};
+  EXPECT_TRUE(std::isnan(rank_correlation(two, two)));
+  const std::array grows{1.0, 2.0, 3.0};
+  const std::array same{5.0, 5.0, 5.0};
+  EXPECT_TRUE(std::isnan(rank_correlation(grows, same)));
+  EXPECT_TRUE(std::isnan(rank_correlation(same, grows)));
+}
+
+}  // namespace
+}  // namespace poesy
