@@ -15,7 +15,12 @@ add_test(NAME architecture.type_names
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/type_names.py ${PROJECT_SOURCE_DIR})
 add_test(NAME architecture.type_names_finds_violations
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/type_names_test.py)
+add_test(NAME architecture.ctest_lines
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/ctest_lines.py ${PROJECT_BINARY_DIR})
+add_test(NAME architecture.ctest_lines_finds_violations
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/ctest_lines_test.py)
 set_tests_properties(architecture.include_table architecture.include_table_finds_violations
+                     architecture.ctest_lines architecture.ctest_lines_finds_violations
                      architecture.readme_commands architecture.readme_commands_finds_violations
                      architecture.page_links architecture.page_links_finds_violations
                      architecture.type_names architecture.type_names_finds_violations

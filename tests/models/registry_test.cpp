@@ -125,7 +125,7 @@ void expect_words(const std::vector<Described>& things) {
   }
 }
 
-TEST_P(EveryMechanism, DescribesEveryErrorAndResponseInWords) {
+TEST_P(EveryMechanism, DescribesErrorsAndResponses) {
   expect_words(description().factors);
   expect_words(description().responses);
   for (const Factor& factor : description().factors) {
@@ -167,7 +167,7 @@ TEST_P(EveryMechanism, HasPositionsThatExist) {
   for (const Factor& factor : model.factors) EXPECT_GE(factor.limb, 1u) << factor.name;
 }
 
-TEST_P(EveryMechanism, HasSourcesWithoutCommonFactors) {
+TEST_P(EveryMechanism, HasSourcesThatShareNothing) {
   std::set<std::size_t> taken;
   for (const CouplingSource& source : description().sources) {
     ASSERT_NE(description().find_set(source.set), nullptr) << source.name;

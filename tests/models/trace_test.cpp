@@ -78,7 +78,7 @@ TEST_P(Trace, StepsBecomeSmallerThanTheTolerance) {
 }
 
 std::string name_of(const testing::TestParamInfo<Case>& made) {
-  std::string text = made.param.model + std::string(made.param.iterates ? "" : "_first_order");
+  std::string text = made.param.model;
   std::ranges::replace(text, '-', '_');
   return text;
 }

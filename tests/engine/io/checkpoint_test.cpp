@@ -160,7 +160,7 @@ TEST(CheckpointIdentity, LeavesTheLimitOnFailuresOpen) {
   EXPECT_FALSE(identity_of(example.study, example.poses.poses) == without);
 }
 
-TEST(CheckpointIdentity, LeavesLimitsOpenButNotTheShareThatTheyAreJudgedBy) {
+TEST(CheckpointIdentity, LeavesLimitsOpenButNotTheirShare) {
   Example example;
   Analysis& analysis = example.study.analysis;
   analysis.kind = Analysis::Kind::monte_carlo;

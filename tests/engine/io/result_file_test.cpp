@@ -153,7 +153,7 @@ TEST_P(EvaluationFile, ReadsBackAsWritten) {
 INSTANTIATE_TEST_SUITE_P(BothPairings, EvaluationFile,
                          testing::Values(Pairing::every_pose_with_every_row, Pairing::row_by_row),
                          [](const auto& pairing) {
-                           return pairing.param == Pairing::row_by_row ? "RowByRow" : "EveryPoseWithEveryRow";
+                           return pairing.param == Pairing::row_by_row ? "RowByRow" : "EveryRow";
                          });
 
 TEST(ResultFile, SameResultGivesSameBytes) {

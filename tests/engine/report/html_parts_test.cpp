@@ -124,7 +124,7 @@ TEST(NotConverged, IsWorthAWarningAboveWhatTheStudyAllows) {
   EXPECT_TRUE(many_of_a_hundred_thousand(1, "max_not_converged = 0"));
 }
 
-TEST(NotConverged, IsWorthAWarningAboveATenthOfAPercentWhereTheStudyAllowsAny) {
+TEST(NotConverged, IsAWarningAboveATenthOfAPercent) {
   for (const char* line : {"max_not_converged = 1", "tolerance = 1e-15"}) {
     EXPECT_FALSE(many_of_a_hundred_thousand(100, line)) << line;
     EXPECT_TRUE(many_of_a_hundred_thousand(101, line)) << line;

@@ -32,7 +32,7 @@ Recorded record(const Prepared& prepared, States start = {}) {
 
 class Continuation : public testing::TestWithParam<Kind> {};
 
-TEST_P(Continuation, FromAnyMomentGivesTheSameBits) {
+TEST_P(Continuation, GivesTheSameBits) {
   for (const std::size_t samples : {2 * Plan::kUnitSamples, 2 * Plan::kUnitSamples + 300, std::size_t{300}}) {
     const Prepared prepared(study_of(GetParam(), samples));
     const Bits expected = run(prepared, {}).value();
@@ -49,7 +49,7 @@ TEST_P(Continuation, FromAnyMomentGivesTheSameBits) {
   }
 }
 
-TEST_P(Continuation, StopsWithAStateThatIsContinued) {
+TEST_P(Continuation, StopsInAStateToContinue) {
   const Prepared prepared(study_of(GetParam(), 2 * Plan::kUnitSamples + 300));
   const Bits expected = run(prepared, {}).value();
   States kept;
@@ -129,7 +129,7 @@ States run_shard(const Prepared& prepared, const Shard& shard) {
 
 class Sharding : public testing::TestWithParam<Kind> {};
 
-TEST_P(Sharding, ShardsTogetherHaveTheBitsOfTheWhole) {
+TEST_P(Sharding, TogetherHasTheBitsOfTheWhole) {
   for (const std::size_t samples : {2 * Plan::kUnitSamples, Plan::kUnitSamples + 300, std::size_t{300}}) {
     const Prepared prepared(study_of(GetParam(), samples));
     const Bits expected = run(prepared, {}).value();
@@ -203,7 +203,7 @@ TEST_P(Continuation, RefusesEveryTruncation) {
   }
 }
 
-TEST_P(Continuation, TakesOrRefusesAnyOtherBytes) {
+TEST_P(Continuation, TakesOrRefusesOtherBytes) {
   // Nothing to compare with: neither the program nor a sanitizer may find fault with it.
   const Prepared prepared(study_of(GetParam(), Plan::kUnitSamples + 300));
   const std::vector<States> states = record(prepared).states;

@@ -130,7 +130,7 @@ TEST_P(Failures, AreTheFirstThousandInAll) {
   EXPECT_EQ(run(prepared, {}), expected);
 }
 
-TEST_P(Failures, AreTheSameForARunThatWasStoppedOrExtended) {
+TEST_P(Failures, AreTheSameAfterAStopOrAnExtension) {
   const Prepared shorter(study_of(GetParam(), 1300, 2));
   const Prepared longer(study_of(GetParam(), 3300, 2));
   std::vector<std::vector<Bytes>> states;

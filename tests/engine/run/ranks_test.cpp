@@ -103,7 +103,7 @@ TEST_P(RanksOf, GiveTheBitsOfOneProcessOnEveryRank) {
   }
 }
 
-TEST_P(RanksOf, ContinueOneProcessAndTheOtherWayRound) {
+TEST_P(RanksOf, ContinueOneProcessAndViceVersa) {
   const Prepared prepared(study_of(kind(), 3 * Plan::kUnitSamples + 300));
   const Bits expected = run(prepared, {}).value();
   std::vector<Bytes> kept;

@@ -28,8 +28,8 @@ const std::vector<Shape>& shapes() {
       {"Normal", normal},
       {"FoldedSmall", [](Engine& e) { return std::abs(1e-12 * normal(e)); }},
       {"Negative", [](Engine& e) { return -1.0 - uniform(e); }},
-      {"LognormalOverDecades", [](Engine& e) { return std::exp(20.0 * normal(e)); }},
-      {"BothSignsOverAllExponents",
+      {"Lognormal", [](Engine& e) { return std::exp(20.0 * normal(e)); }},
+      {"AllExponents",
        [](Engine& e) { return std::copysign(std::ldexp(1.0 + uniform(e), int(2044 * uniform(e)) - 1022), normal(e)); }},
       {"HalfZero", [](Engine& e) { return std::max(0.0, normal(e)); }},
       {"TwoPoints", [](Engine& e) { return uniform(e) < 0.3 ? -1e200 : 1e-200; }},
@@ -69,7 +69,7 @@ TEST_P(SketchOf, AgreesWithASortAsStated) {
   }
 }
 
-TEST_P(SketchOf, GivesTheSameBitsHoweverItIsMerged) {
+TEST_P(SketchOf, SameBitsHoweverItIsMerged) {
   Engine engine(12);
   const std::vector<double> values = drawn(shapes()[GetParam()], 3000, engine);
   const QuantileSketch whole = of(values);

@@ -94,11 +94,11 @@ class Lanes : public testing::TestWithParam<std::tuple<const char*, Kind, Solver
   std::optional<test::ForcedIsa> forced_;
 };
 
-TEST_P(Lanes, DoNotDependOnTheBlockSize) {
+TEST_P(Lanes, IgnoreBlockSize) {
   for (const std::size_t block : {1u, 2u, 3u, 8u, 17u, 64u}) expect_whole(positions(0, kCount), block);
 }
 
-TEST_P(Lanes, DoNotDependOnThePosition) {
+TEST_P(Lanes, IgnorePosition) {
   std::mt19937_64 engine(47);
   std::vector<std::size_t> order = positions(0, kCount);
   for (const std::size_t block : {std::size_t{5}, std::size_t{16}, kCount}) {
@@ -107,7 +107,7 @@ TEST_P(Lanes, DoNotDependOnThePosition) {
   }
 }
 
-TEST_P(Lanes, DoNotDependOnWhatWasSolvedBefore) {
+TEST_P(Lanes, DoNotRemember) {
   BlockSolver solver(samples_.chain, options_);
   std::mt19937_64 engine(53);
   BlockSamples other = single_error_samples(random_pose(engine), 12, 0.2, 3 * kCount, engine);
@@ -119,7 +119,7 @@ TEST_P(Lanes, DoNotDependOnWhatWasSolvedBefore) {
   for (std::size_t b = 0; b < kCount; ++b) expect_same(whole_, b, again, b);
 }
 
-TEST_P(Lanes, DoNotDependOnAwfulNeighbours) {
+TEST_P(Lanes, IgnoreNeighbours) {
   const double awful[] = {
       std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, -1e6, 3.0, -0.5};
   for (const double value : awful) {

@@ -77,12 +77,12 @@ class ClosureLanes : public testing::TestWithParam<std::tuple<const char*, Kind>
   std::optional<test::ForcedIsa> forced_;
 };
 
-TEST_P(ClosureLanes, DoNotDependOnTheBlockSize) {
+TEST_P(ClosureLanes, IgnoreBlockSize) {
   for (std::size_t block = 1; block <= 2 * kMostLanes + 1; ++block) expect_whole(positions(kCount), block);
   for (const std::size_t block : {kTile - 1, kTile, kTile + 1}) expect_whole(positions(kCount), block);
 }
 
-TEST_P(ClosureLanes, DoNotDependOnThePosition) {
+TEST_P(ClosureLanes, IgnorePosition) {
   std::mt19937_64 engine(29);
   std::vector<std::size_t> order = positions(kCount);
   for (const std::size_t block : {std::size_t{5}, std::size_t{16}, kCount}) {
@@ -91,7 +91,7 @@ TEST_P(ClosureLanes, DoNotDependOnThePosition) {
   }
 }
 
-TEST_P(ClosureLanes, DoNotDependOnWhatWasSolvedBefore) {
+TEST_P(ClosureLanes, DoNotRemember) {
   ClosureSolver solver(samples_.geometry, {});
   std::mt19937_64 engine(31);
   solve(solver, one_varied({-0.1, 0.1, 0.8}, 3, 0.05, 2 * kCount, engine));
@@ -99,7 +99,7 @@ TEST_P(ClosureLanes, DoNotDependOnWhatWasSolvedBefore) {
   for (std::size_t b = 0; b < kCount; ++b) expect_same(*whole_, b, again, b);
 }
 
-TEST_P(ClosureLanes, DoNotDependOnAwfulNeighbours) {
+TEST_P(ClosureLanes, IgnoreNeighbours) {
   const double awful[] = {
       std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, 1e7, -1e3, 3.0, -0.5};
   for (const double value : awful) {
