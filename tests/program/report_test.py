@@ -139,7 +139,9 @@ class Report(ProgramTest):
         page = self.page("r-s.html")
         self.assertEqual(page.data["figures"]["side-by-side"]["series"], ["A", "B"])
         facts = {row[0]: row[1:] for row in page.tables["what_was_run"]}
-        self.assertEqual(facts["seed"], ["5", "6", "differs"])
+        self.assertEqual(facts["seed"], ["5", "6"])
+        self.assertEqual(page.tables["settings"][1:], [["run.seed", "5", "6"]])
+        self.assertEqual(page.sections[0], "studies")
         self.assertEqual(facts["kind of study"], ["sensitivity", "sensitivity", "-"])
         self.assertEqual({row[-1] for row in page.tables["differences_1"][1:]}, {"overlap"})
 

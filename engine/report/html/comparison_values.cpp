@@ -96,8 +96,7 @@ Comparison sensitivity(const Pair& pair) {
                          {"global index", "index", index_units(pair.a, of_a(pair.responses), of_a(factors)),
                           indices(pair.a, pair, factors, false), indices(pair.b, pair, factors, false)}};
   if (pair.a.sensitivity.background.empty() || pair.b.sensitivity.background.empty()) return compared;
-  compared.total_label =
-      "All errors together, predicted from each alone: root mean square over samples and poses, with what is held";
+  compared.total_label = "All errors together, predicted from each alone: root mean square over samples and poses";
   for (const auto& [ra, rb] : pair.responses) {
     compared.total_a.push_back(total_rms(pair.a, ra));
     compared.total_b.push_back(total_rms(pair.b, rb));
