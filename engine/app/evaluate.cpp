@@ -11,6 +11,7 @@
 #include "engine/app/facts.h"
 #include "engine/app/failure_limit.h"
 #include "engine/app/interrupt.h"
+#include "engine/app/limits.h"
 #include "engine/app/message.h"
 #include "engine/app/output_width.h"
 #include "engine/app/progress.h"
@@ -22,6 +23,7 @@
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/run/runner.h"
+#include "engine/run/verdict.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -89,11 +91,13 @@ int evaluate(const EvaluateOptions& options) {
     return kInterrupted;
   }
   const SolveCounts total = result->total();
-  StoredResult shown;
-  for (const Response& response : model->description().responses) {
-    shown.headline.push_back(shown.responses.size());
-    shown.responses.push_back({response.name, std::string(si_unit(response.dimension))});
+  if (const auto& limits = study.analysis.limits; !limits.empty()) {
+    result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
   }
+  StoredResult shown = with_verdicts(study, poses, result->verdicts);
+  shown.cases.clear();  // the study's own are not what was evaluated
+  shown.pairing = pairing;
+  for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
   if (!options.result.empty()) {
     write_evaluation(options.result, study, poses, errors, pairing, *result,
                      run_facts(seconds, threads, total.total()));
@@ -103,9 +107,14 @@ int evaluate(const EvaluateOptions& options) {
                          text_of(evaluation_table(shown), output_width()))
                  .c_str(),
              stdout);
-  return judge_failures(study, total, options.study,
-                        options.result.empty() ? "run it again with -o RESULT.h5 to see which failed"
-                                               : "the result is kept: see /evaluate/status in " + options.result);
+  const bool kept = !options.result.empty();
+  const ExitCode limits =
+      judge_limits(shown, options.study,
+                   kept ? "the result is kept; see /limits in " + options.result : "-o RESULT.h5 keeps the result");
+  const ExitCode failures = judge_failures(study, total, options.study,
+                                           kept ? "the result is kept: see /evaluate/status in " + options.result
+                                                : "run it again with -o RESULT.h5 to see which failed");
+  return failures != kDone ? failures : limits;
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ enum ExitCode : int {
   kBadInput = 2,
   kFileTrouble = 3,
   kInterrupted = 4,
-  kTooManyNotConverged = 5
+  kTooManyNotConverged = 5,
+  kLimitNotKept = 6
 };
 
 }  // namespace poesy::app

@@ -7,12 +7,14 @@
 #include "engine/app/exit_code.h"
 #include "engine/app/facts.h"
 #include "engine/app/failure_limit.h"
+#include "engine/app/limits.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
 #include "engine/run/cases.h"
 #include "engine/run/coupling.h"
 #include "engine/run/fidelity.h"
 #include "engine/run/separation.h"
+#include "engine/run/verdict.h"
 
 namespace poesy::app {
 namespace {
@@ -34,7 +36,7 @@ std::vector<Dimension> response_dimensions(const ModelDescription& model) {
 }
 
 // Each runs a study of its kind and writes the result. Nothing when it was interrupted, and for a shard, which has no
-// result of its own.
+// result of its own. Those whose limits may be stated return what became of them.
 
 /// The study at both of its fidelities, on the same draws.
 std::optional<SensitivityResult> run_both_fidelities(const Job& job, const Plan& plan) {
@@ -78,18 +80,24 @@ void run_identification_study(const Job& job) {
   if (result && job.writes()) write_identification(job.path, job.study, job.poses, *result, ended(job).facts);
 }
 
-void run_cases_study(const Job& job) {
+std::optional<LimitVerdicts> run_cases_study(const Job& job) {
   auto evaluation = run_evaluation(job.model, job.study.solver, job.poses.poses, case_table(job.study.analysis.cases),
                                    Pairing::every_pose_with_every_row, job.options);
-  if (!evaluation || !job.writes()) return;
+  if (!evaluation || !job.writes()) return std::nullopt;
+  if (const auto& limits = job.study.analysis.limits; !limits.empty()) {
+    evaluation->verdicts = judge_rows(limits, *evaluation, Pairing::every_pose_with_every_row, job.study.not_converged);
+  }
   const CaseResult result = case_result(std::move(*evaluation), job.study.not_converged);
   write_cases(job.path, job.study, job.poses, result, ended(job).facts);
+  return result.evaluation.verdicts;
 }
 
-void run_monte_carlo_study(const Job& job) {
+std::optional<LimitVerdicts> run_monte_carlo_study(const Job& job) {
   const Plan plan(job.study, job.poses.poses);
   const auto result = run_monte_carlo(plan, job.model, job.study.analysis, job.options);
-  if (result && job.writes()) write_monte_carlo(job.path, job.study, job.poses, *result, ended(job).facts);
+  if (!result || !job.writes()) return std::nullopt;
+  write_monte_carlo(job.path, job.study, job.poses, *result, ended(job).facts);
+  return result->verdicts;
 }
 
 void run_coupling_study(const Job& job) {
@@ -102,27 +110,32 @@ void run_coupling_study(const Job& job) {
   write_coupling(job.path, job.study, job.poses, result, ended(job).facts);
 }
 
-void run_any(const Job& job) {
+std::optional<LimitVerdicts> run_any(const Job& job) {
   switch (job.study.analysis.kind) {
     case Analysis::Kind::sensitivity:
-      return run_sensitivity_study(job);
+      run_sensitivity_study(job);
+      break;
     case Analysis::Kind::identification:
-      return run_identification_study(job);
+      run_identification_study(job);
+      break;
     case Analysis::Kind::evaluate:
       return run_cases_study(job);
     case Analysis::Kind::monte_carlo:
       return run_monte_carlo_study(job);
     case Analysis::Kind::coupling:
-      return run_coupling_study(job);
+      run_coupling_study(job);
+      break;
   }
+  return std::nullopt;
 }
 
 }  // namespace
 
 std::optional<Ended> run_study(const Job& job) {
-  run_any(job);
+  const std::optional<LimitVerdicts> verdicts = run_any(job);
   if (!job.checkpoints().complete()) return std::nullopt;
-  const Ended end = ended(job);
+  Ended end = ended(job);
+  end.verdicts = verdicts;
   if (const auto& shard = job.options.shard; shard && job.writes()) {
     write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), end.facts);
   }
@@ -136,9 +149,11 @@ int report_end(const Job& job, const std::string& study_path, const Ended& ended
                          ranks, ended.solves.not_converged())
                  .c_str(),
              stdout);
-  if (job.options.shard) return kDone;  // the limit on failures is one of the whole study
-  return judge_failures(job.study, ended.solves, study_path,
-                        fmt::format("the result is kept; see 'poesy show {}'", job.path));
+  if (job.options.shard) return kDone;  // the whole study is judged
+  const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
+  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, ended.verdicts), study_path, remedy);
+  const ExitCode failures = judge_failures(job.study, ended.solves, study_path, remedy);
+  return failures != kDone ? failures : limits;  // with so many failures no limit can be trusted
 }
 
 }  // namespace poesy::app

@@ -27,10 +27,11 @@ struct Job {
   bool writes() const { return options.team == nullptr || options.team->leads(); }
 };
 
-/// How a study's solves ended, and what they took, in all parts of the run.
+/// How a study's solves ended, what they took, in all parts of the run, and what became of its limits.
 struct Ended {
   SolveCounts solves;
   RunFacts facts;
+  std::optional<LimitVerdicts> verdicts = std::nullopt;
 };
 
 /// Runs a study of any kind, or a shard of it, and writes its result, on rank 0 if there are several. Empty when it was

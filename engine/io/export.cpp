@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "engine/base/units.h"
@@ -7,7 +9,12 @@
 namespace poesy {
 namespace {
 
-std::string cell(double value) { return std::isnan(value) ? "NaN" : shortest(value); }
+/// A count is written with all its digits.
+std::string cell(double value) {
+  constexpr double kLongest = 1e15;
+  if (std::isnan(value)) return "NaN";
+  return std::abs(value) < kLongest && value == std::trunc(value) ? fmt::format("{:.0f}", value) : shortest(value);
+}
 
 void write_poses(TableFolder& folder, const StoredResult& result) {
   std::vector<std::string> columns{"pose"};
@@ -50,10 +57,11 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& colu
   text_ += '\n';
 }
 
-void CsvTable::row(const std::string& first, std::span<const double> rest) {
+void CsvTable::row(const std::string& first, std::span<const double> rest, const std::string& last) {
   constexpr std::size_t kChunk = 1 << 20;
   text_ += first;
   for (const double value : rest) text_ += ',' + cell(value);
+  if (!last.empty()) text_ += ',' + last;
   text_ += '\n';
   if (text_.size() > kChunk) flush();
 }

@@ -113,6 +113,7 @@ void write_case_sums(TableFolder& folder, const StoredResult& result) {
 }  // namespace
 
 void export_evaluation(TableFolder& folder, const StoredResult& result) {
+  export_limits(folder, result.evaluation.verdicts, result);
   write_solves(folder, result);
   write_joints(folder, result);
   if (result.cases.empty()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,8 +20,9 @@ class CsvTable {
   /// Writes the line of names.
   CsvTable(const std::string& path, const std::vector<std::string>& columns);
 
-  /// A line: its first cell (or cells, with their commas) as it stands, then numbers; NaN as "NaN".
-  void row(const std::string& first, std::span<const double> rest);
+  /// A line: its first cell (or cells, with their commas) as it stands, then numbers, with NaN as "NaN" and all digits
+  /// of whole numbers, then a text where one is given.
+  void row(const std::string& first, std::span<const double> rest, const std::string& last = {});
   /// The file appears under its name.
   void commit();
 
@@ -112,7 +114,9 @@ void export_history(TableFolder& folder, const StoredResult& result);
 void export_evaluation(TableFolder& folder, const StoredResult& result);
 /// groups.csv, identification.csv and couplings.csv.
 void export_identification(TableFolder& folder, const StoredResult& result);
-/// overall.csv, and monte_carlo_RESPONSE.csv for every response.
+/// limits.csv; nothing where the study states none.
+void export_limits(TableFolder& folder, const std::optional<LimitVerdicts>& verdicts, const StoredResult& result);
+/// overall.csv, limits.csv, and monte_carlo_RESPONSE.csv and histogram_RESPONSE.csv for every response.
 void export_monte_carlo(TableFolder& folder, const StoredResult& result);
 /// coupling.csv and coupling_summary.csv.
 void export_coupling(TableFolder& folder, const StoredResult& result);

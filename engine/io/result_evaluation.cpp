@@ -160,6 +160,7 @@ void read_case_sums(const h5::File& file, StoredResult& result) {
 void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found) {
   result.add_axis("sample", positions(found.samples), {"1", "Number of the sample at each pose, from 0"});
   add_solves(result, model, found, kTableAxes);
+  if (found.verdicts) add_limits(result, model, *found.verdicts);
 }
 
 void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing) {
@@ -173,6 +174,7 @@ void add_cases(ResultBuilder& result, const Study& study, const CaseResult& foun
   result.add_axis("case", texts(cases, &ErrorCase::name), {"1", "Name of the case"});
   add_solves(result, study.model(), transposed(found.evaluation), kCaseAxes);
   add_error_values(result, "case", case_table(cases).values, result_format::kEveryPoseWithEveryRow);
+  if (found.evaluation.verdicts) add_limits(result, study.model(), *found.evaluation.verdicts);
   const Axes axes{"response", "case"};
   const std::string unit = "SI: response unit, see /responses/unit";
   result.show_axes("/evaluate", {"response"});
@@ -194,6 +196,7 @@ void read_evaluation(const h5::File& file, StoredResult& result) {
   }
   const bool row_by_row = file.attribute<std::string>("/errors", "pairing").at(0) == result_format::kRowByRow;
   result.pairing = row_by_row ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
+  result.evaluation.verdicts = read_limits(file, result);
   const std::size_t rows = row_by_row ? result.evaluation.poses : result.evaluation.samples;
   result.errors = read_exactly<double>(file, "/errors/values", rows * result.factors.size());
 }

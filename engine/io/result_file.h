@@ -176,8 +176,14 @@ Verification verify_result(const std::string& path);
 ///
 /// Tables of a Monte Carlo result: poses.csv, factors.csv, failures.csv (its factor is "all") and
 ///
-///     monte_carlo_RESPONSE.csv   pose | mean, mean_ci_low, mean_ci_high, std, min, max, count, q_0.05 ... (quantiles)
-///     overall.csv                response | mean, std, min, max, count, q_0.05 ... over the samples of all poses, SI
+///     monte_carlo_RESPONSE.csv   pose | mean, mean_ci_low, mean_ci_high, std, min, max, count, q_0.05 ... (quantiles),
+///                                rms, q_0.05_ci_low, q_0.05_ci_high ... (intervals of the quantiles)
+///     overall.csv                response | mean, std, min, max, count, q_0.05 ..., rms, q_0.05_ci_low ... over the
+///                                samples of all poses, SI; the last column names the unit
+///     histogram_RESPONSE.csv     bin | its ends, and how many samples of all poses it holds
+///     limits.csv                 response | value, limit, passed (1 or 0), tried, within, pose, row (-1: none), unit,
+///     as
+///                                /limits; of any kind of result whose study states limits
 ///     not_converged.csv          pose | not_converged, iterations_mean, iterations_max, solves_STATUS
 ///     convergence.csv, convergence_RESPONSE.csv   "all" | as for a sensitivity result, with the mean for the index
 ///

@@ -1,5 +1,6 @@
 #include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
@@ -17,11 +18,42 @@ void add_at_poses(ResultBuilder& result, const MonteCarloResult& found) {
   add("std", found.std, "Sample standard deviation");
   add("min", found.min, "Smallest sample");
   add("max", found.max, "Largest sample");
+  add("rms", found.rms, "Root mean square of the samples; NaN where none counts");
   result.add("/monte_carlo/count", axes, found.count,
              {"1", "Samples behind these: solved, or as not_converged has it"});
   result.add(
       "/monte_carlo/quantiles", {"response", "pose", "quantile"}, found.quantiles,
       {kUnit, "Order statistic of rank ceil(q n) of n samples, off by its part quantile_relative_error at most"});
+}
+
+constexpr const char* kIntervalRule =
+    " end of an interval for the quantile of the distribution, whatever that is, from order statistics (binomial); it "
+    "is "
+    "wide enough for what quantile_relative_error rounds away, and infinite where the samples are too few for an end";
+
+void add_quantile_intervals(ResultBuilder& result, const MonteCarloResult& found) {
+  const Axes at_poses{"response", "pose", "quantile"};
+  const Axes overall{"response", "quantile"};
+  const std::string low = std::string("Lower") + kIntervalRule;
+  const std::string high = std::string("Upper") + kIntervalRule;
+  result.add("/monte_carlo/quantiles_ci_low", at_poses, found.quantiles_ci_low, {kUnit, low});
+  result.add("/monte_carlo/quantiles_ci_high", at_poses, found.quantiles_ci_high, {kUnit, high});
+  result.add("/monte_carlo/overall_quantiles_ci_low", overall, found.overall_quantiles_ci_low, {kUnit, low});
+  result.add("/monte_carlo/overall_quantiles_ci_high", overall, found.overall_quantiles_ci_high, {kUnit, high});
+}
+
+void add_histogram(ResultBuilder& result, const MonteCarloResult& found) {
+  const std::size_t bins = found.histogram_counts.size() / found.responses;
+  result.add_axis("bin", positions(bins), {"1", "Number of the histogram's bin, from 0"});
+  result.add_axis("edge", positions(bins + 1), {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
+  result.show_axes("/monte_carlo", {"bin", "edge"});
+  result.add("/monte_carlo/histogram_edges", {"response", "edge"}, found.histogram_edges,
+             {kUnit,
+              "Edges of the bins; the first and the last are the extremes; bins that are not needed have no width "
+              "and stand at the end; NaN where no sample counts"});
+  result.add(
+      "/monte_carlo/histogram_counts", {"response", "bin"}, found.histogram_counts,
+      {"1", "Samples of all poses in each bin, exact; the first and the last bin hold the outermost 0.05 % each"});
 }
 
 void add_overall(ResultBuilder& result, const MonteCarloResult& found) {
@@ -33,9 +65,37 @@ void add_overall(ResultBuilder& result, const MonteCarloResult& found) {
   add("std", found.overall_std, "Sample standard deviation");
   add("min", found.overall_min, "Smallest value");
   add("max", found.overall_max, "Largest value");
+  add("rms", found.overall_rms, "Root mean square");
   result.add("/monte_carlo/overall_count", axes, found.overall_count, {"1", "Samples of all poses that count"});
   result.add("/monte_carlo/overall_quantiles", {"response", "quantile"}, found.overall_quantiles,
              {kUnit, "As quantiles, over the samples of all poses"});
+}
+
+/// What files of older versions do not have; their root mean squares follow from the rest.
+void read_added(const h5::File& file, MonteCarloResult& found) {
+  const std::size_t cells = found.responses * found.poses;
+  const auto read = [&](const char* name, std::size_t count, std::vector<double>& into) {
+    const std::string path = std::string("/monte_carlo/") + name;
+    if (file.exists(path)) into = read_exactly<double>(file, path, count);
+  };
+  read("rms", cells, found.rms);
+  read("overall_rms", found.responses, found.overall_rms);
+  for (std::size_t k = found.rms.size(); k < cells; ++k) {
+    found.rms.push_back(root_mean_square(found.mean[k], found.std[k], found.count[k]));
+  }
+  for (std::size_t r = found.overall_rms.size(); r < found.responses; ++r) {
+    found.overall_rms.push_back(root_mean_square(found.overall_mean[r], found.overall_std[r], found.overall_count[r]));
+  }
+  const std::size_t levels = found.levels.size();
+  read("quantiles_ci_low", cells * levels, found.quantiles_ci_low);
+  read("quantiles_ci_high", cells * levels, found.quantiles_ci_high);
+  read("overall_quantiles_ci_low", found.responses * levels, found.overall_quantiles_ci_low);
+  read("overall_quantiles_ci_high", found.responses * levels, found.overall_quantiles_ci_high);
+  read("share_magnitude", cells, found.share_magnitude);
+  if (!file.exists("/monte_carlo/histogram_counts")) return;
+  const std::size_t bins = axis_length(file, "bin");
+  found.histogram_counts = read_exactly<std::uint64_t>(file, "/monte_carlo/histogram_counts", found.responses * bins);
+  read("histogram_edges", found.responses * (bins + 1), found.histogram_edges);
 }
 
 }  // namespace
@@ -51,7 +111,18 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
   file.set_attribute("/monte_carlo", "conf_level", found.conf_level);
   add_at_poses(result, found);
   add_overall(result, found);
-  for (const char* interval : {"mean_ci_low", "mean_ci_high"}) {
+  add_quantile_intervals(result, found);
+  add_histogram(result, found);
+  if (found.verdicts) add_limits(result, study.model(), *found.verdicts);
+  if (!found.share_magnitude.empty()) {
+    result.add("/monte_carlo/share_magnitude", {"response", "pose"}, found.share_magnitude,
+               {kUnit,
+                "Within this magnitude stays the share of all draws that [analysis] share asks for; draws that do "
+                "not count are outside; infinite where they are too many"});
+    file.set_attribute("/monte_carlo/share_magnitude", "share", study.analysis.share);
+  }
+  for (const char* interval : {"mean_ci_low", "mean_ci_high", "quantiles_ci_low", "quantiles_ci_high",
+                               "overall_quantiles_ci_low", "overall_quantiles_ci_high"}) {
     file.set_attribute(std::string("/monte_carlo/") + interval, "conf_level", found.conf_level);
   }
   for (const char* quantiles : {"quantiles", "overall_quantiles"}) {
@@ -89,6 +160,8 @@ void read_monte_carlo(const h5::File& file, StoredResult& result) {
   found.overall_max = read("overall_max", found.responses);
   found.overall_count = read_exactly<std::uint64_t>(file, "/monte_carlo/overall_count", found.responses);
   found.overall_quantiles = read("overall_quantiles", found.responses * found.levels.size());
+  read_added(file, found);
+  found.verdicts = read_limits(file, result);
   if (file.exists("/convergence")) found.convergence = read_convergence(file, result.kind);
   found.solves = read_solver(file, found.poses);
   found.failures = read_failures(file, result);

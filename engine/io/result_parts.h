@@ -120,6 +120,11 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
 /// Fills in `monte_carlo` and `factor_sigma`.
 void read_monte_carlo(const h5::File& file, StoredResult& result);
 
+/// How the study's limits were kept: /limits.
+void add_limits(ResultBuilder& result, const ModelDescription& model, const LimitVerdicts& verdicts);
+/// None where the study states none. Reads `responses` of the result.
+std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResult& result);
+
 /// /coupling: what sources do one by one and together.
 void add_coupling(ResultBuilder& result, const Study& study, const CouplingResult& found);
 /// Fills in `coupling`.

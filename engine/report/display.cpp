@@ -36,7 +36,22 @@ std::string number_text(double value, int digits) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
 }
 
-std::string percent_text(double share) { return std::isnan(share) ? "-" : number_text(100.0 * share, 3) + " %"; }
+std::string percent_number(double share) {
+  const double percent = 100.0 * share;
+  if (!(percent > 90.0 && percent < 100.0)) return number_text(percent, 3);
+  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(100.0 - percent))), 1, 12);
+  std::string text = fmt::format("{:.{}f}", percent, decimals);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+std::string percent_text(double share) { return std::isnan(share) ? "-" : percent_number(share) + " %"; }
+
+std::string unit_text(const NamedUnit& named) {
+  const std::string_view name = display(named).name;
+  return std::string(name == "1" ? "" : name);
+}
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
   if (pose >= result.poses.size()) return {};  // a stranger's file may name any number
@@ -49,6 +64,11 @@ std::string coordinates_text(const StoredResult& result, std::size_t pose) {
                         unit.name == "1" ? "" : unit.name);
   }
   return text;
+}
+
+std::string place_text(const StoredResult& result, std::size_t pose) {
+  const std::string coordinates = coordinates_text(result, pose);
+  return coordinates.empty() ? fmt::format("pose {}", pose) : fmt::format("pose {} ({})", pose, coordinates);
 }
 
 Column text_column(std::string name, std::string heading, int dispensable) {
@@ -69,7 +89,7 @@ Cell number_cell(double value, int digits) { return cell(number_text(value, digi
 
 Cell count_cell(std::uint64_t count) { return {count_text(count), static_cast<double>(count)}; }
 
-Cell percent_cell(double share) { return number_cell(100.0 * share, 3); }
+Cell percent_cell(double share) { return cell(percent_number(share), 100.0 * share); }
 
 Cell index_cell(double index, double scale) {
   return cell(std::abs(index) < kIndexRounding ? "0" : number_text(index * scale), index * scale);

@@ -19,12 +19,19 @@ std::string count_text(std::uint64_t count);
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 /// To this many significant digits; "-" for NaN.
 std::string number_text(double value, int digits = 4);
-/// A share to three digits, "1.25 %"; "-" for NaN.
+/// A share in percent, to three digits; above 90 %, to three digits of what is missing from 100 %: "1.25", "99.73"; "-"
+/// for NaN.
+std::string percent_number(double share);
+/// The same with its sign, "99.73 %".
 std::string percent_text(double share);
+/// The unit in which people read it, "mm"; empty for a pure number.
+std::string unit_text(const NamedUnit& named);
 
 /// Where a pose is, in the units shown: "z -190 mm, beta 20 deg, gamma -30 deg"; on a trajectory with its time before,
 /// "t 1.18 s, ...". To three digits. Empty for a number that is no pose of the result.
 std::string coordinates_text(const StoredResult& result, std::size_t pose);
+/// "pose 14 (z -190 mm)".
+std::string place_text(const StoredResult& result, std::size_t pose);
 
 /// A column of words. dispensable, here and below: as of Column.
 Column text_column(std::string name, std::string heading, int dispensable = 0);

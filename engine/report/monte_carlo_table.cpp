@@ -38,13 +38,6 @@ std::vector<Column> overall_columns(const std::vector<double>& levels) {
   return columns;
 }
 
-/// Over all samples, from their mean and standard deviation; NaN without samples.
-double root_mean_square(const MonteCarloResult& found, std::size_t r) {
-  const auto count = static_cast<double>(found.overall_count[r]);
-  return std::sqrt(found.overall_mean[r] * found.overall_mean[r] +
-                   found.overall_std[r] * found.overall_std[r] * (count - 1.0) / count);
-}
-
 std::vector<Cell> overall_row(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = result.monte_carlo;
   const Unit& unit = display(result.responses[r]);
@@ -52,7 +45,7 @@ std::vector<Cell> overall_row(const StoredResult& result, std::size_t r) {
   const auto add = [&](double value) { row.push_back(number_cell(value / unit.si, kDigits)); };
   add(found.overall_mean[r]);
   add(found.overall_std[r]);
-  add(root_mean_square(found, r));
+  add(found.overall_rms[r]);
   add(found.overall_min[r]);
   for (std::size_t q = 0; q < found.levels.size(); ++q) add(found.overall_quantiles[r * found.levels.size() + q]);
   add(found.overall_max[r]);
@@ -69,55 +62,124 @@ Table overall_table(const StoredResult& result) {
               .columns = overall_columns(found.levels),
               .rows = {},
               .notes = {fmt::format(
-                  "{} at each pose; std: standard deviation; rms: root mean square; {}: {:.3g} % of the samples lie "
-                  "below it (quantiles to {:.2g} % of their value)",
+                  "{} at each pose; std: standard deviation; rms: root mean square; {}: {} of the samples lie "
+                  "below it (quantiles to {} of their value)",
                   counted(found.solves.front().total(), "sample", "samples"), quantile_heading(found.levels.back()),
-                  100.0 * found.levels.back(), 100.0 * found.quantile_relative_error)}};
+                  percent_text(found.levels.back()), percent_text(found.quantile_relative_error))}};
   for (const std::size_t r : result.headline) table.rows.push_back(overall_row(result, r));
   return table;
 }
 
-/// The largest of one number of each pose, and its pose; NaN counts as least.
-void add_worst_pose(std::vector<Cell>& row, const std::vector<double>& at_poses, const Unit& unit) {
+/// The pose where a number is largest; NaN counts as least.
+std::size_t worst_pose(const std::vector<double>& at_poses) {
   const auto worst =
       std::ranges::max_element(at_poses, [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
-  row.push_back(number_cell(*worst / unit.si, kDigits));
-  row.push_back(std::isnan(*worst) ? text_cell("") : count_cell(static_cast<std::uint64_t>(worst - at_poses.begin())));
+  return static_cast<std::size_t>(worst - at_poses.begin());
+}
+
+/// The largest of one number of each pose, and its pose.
+void add_worst_pose(std::vector<Cell>& row, const std::vector<double>& at_poses, const Unit& unit) {
+  const std::size_t worst = worst_pose(at_poses);
+  row.push_back(number_cell(at_poses[worst] / unit.si, kDigits));
+  row.push_back(std::isnan(at_poses[worst]) ? text_cell("") : count_cell(worst));
+}
+
+/// The highest quantile of a response at each pose, or an end of its interval, [M]; empty where there is none.
+std::vector<double> highest_at_poses(const MonteCarloResult& found, const std::vector<double>& quantiles,
+                                     std::size_t r) {
+  std::vector<double> values;
+  if (quantiles.empty()) return values;
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    values.push_back(quantiles[(r * found.poses + m + 1) * found.levels.size() - 1]);
+  }
+  return values;
+}
+
+/// The poses where the highest quantile of a response is the largest.
+struct WorstPoses {
+  std::vector<double> quantile;  ///< [M]
+  std::size_t worst;             ///< the pose of the largest
+  double low;                    ///< its interval; NaN in files of older versions
+  double high;
+  std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, the largest quantile first
+};
+
+WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  WorstPoses poses{highest_at_poses(found, found.quantiles, r), 0, kNaN, kNaN, {}};
+  poses.worst = worst_pose(poses.quantile);
+  const std::vector<double> low = highest_at_poses(found, found.quantiles_ci_low, r);
+  const std::vector<double> high = highest_at_poses(found, found.quantiles_ci_high, r);
+  if (low.empty()) return poses;
+  poses.low = low[poses.worst];
+  poses.high = high[poses.worst];
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    if (m != poses.worst && high[m] > poses.low) poses.alike.push_back(m);
+  }
+  std::ranges::stable_sort(poses.alike, std::ranges::greater(), [&](std::size_t m) { return poses.quantile[m]; });
+  return poses;
 }
 
 std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = result.monte_carlo;
   const Unit& unit = display(result.responses[r]);
   std::vector<double> mean;
-  std::vector<double> highest_quantile;
   double sum = 0.0;
   for (std::size_t m = 0; m < found.poses; ++m) {
-    const std::size_t cell = r * found.poses + m;
-    mean.push_back(found.mean[cell]);
-    sum += found.mean[cell];
-    highest_quantile.push_back(found.quantiles[(cell + 1) * found.levels.size() - 1]);
+    mean.push_back(found.mean[r * found.poses + m]);
+    sum += mean.back();
   }
   std::vector<Cell> row{text_cell(result.responses[r].name), text_cell(unit.name),
                         number_cell(sum / static_cast<double>(found.poses) / unit.si, kDigits)};
   add_worst_pose(row, mean, unit);
-  add_worst_pose(row, highest_quantile, unit);
+  const WorstPoses poses = worst_poses(found, r);
+  add_worst_pose(row, poses.quantile, unit);
+  row.push_back(number_cell(poses.low / unit.si, kDigits));
+  row.push_back(number_cell(poses.high / unit.si, kDigits));
+  row.push_back(std::isnan(poses.low) ? text_cell("") : count_cell(poses.alike.size()));
   return row;
+}
+
+/// Names the poses that cannot be told from the worst; empty where there is none.
+std::string alike_text(const StoredResult& result, std::size_t r) {
+  constexpr std::size_t kMost = 5;
+  const WorstPoses poses = worst_poses(result.monte_carlo, r);
+  if (poses.alike.empty()) return {};
+  std::string names;
+  const std::size_t named = std::min(kMost, poses.alike.size());
+  for (std::size_t k = 0; k < named; ++k) names += (k == 0 ? "" : ", ") + place_text(result, poses.alike[k]);
+  if (poses.alike.size() > named) {
+    names += fmt::format(" and {}", counted(poses.alike.size() - named, "other", "others"));
+  }
+  return fmt::format("{}: the largest {} is at {}, but its samples do not tell it from {}", result.responses[r].name,
+                     quantile_heading(result.monte_carlo.levels.back()), place_text(result, poses.worst), names);
 }
 
 /// Precondition: there are poses and quantiles.
 Table poses_table(const StoredResult& result) {
-  const std::vector<double>& levels = result.monte_carlo.levels;
-  Table table{.name = "poses",
-              .caption = "Pose by pose: the mean of the poses' means, and the worst poses",
-              .columns = {text_column("response", "response"), text_column("unit", "unit"),
-                          number_column("mean_of_means", "mean of means"),
-                          number_column("largest_mean", "largest mean"), number_column("largest_mean_pose", "at pose"),
-                          number_column("largest_" + quantile_name(levels.back()),
-                                        "largest " + quantile_heading(levels.back())),
-                          number_column("largest_quantile_pose", "at pose")},
-              .rows = {},
-              .notes = {}};
+  const MonteCarloResult& found = result.monte_carlo;
+  const std::string name = "largest_" + quantile_name(found.levels.back());
+  const std::string heading = quantile_heading(found.levels.back());
+  Table table{
+      .name = "poses",
+      .caption = "Pose by pose: the mean of the poses' means, and the worst poses",
+      .columns = {text_column("response", "response"), text_column("unit", "unit"),
+                  number_column("mean_of_means", "mean of means"), number_column("largest_mean", "largest mean"),
+                  number_column("largest_mean_pose", "at pose"), number_column(name, "largest " + heading),
+                  number_column("largest_quantile_pose", "at pose"), number_column(name + "_low", "low", "", 1),
+                  number_column(name + "_high", "high", "", 1), number_column("poses_like_it", "poses like it")},
+      .rows = {},
+      .notes = {}};
   for (const std::size_t r : result.headline) table.rows.push_back(poses_row(result, r));
+  if (found.quantiles_ci_low.empty()) return table;
+  table.notes.push_back(
+      fmt::format("low, high: {} interval of the largest {}, from order statistics; inf: too few samples for an end. "
+                  "poses like it: "
+                  "other poses whose interval reaches above low",
+                  percent_text(found.conf_level), heading));
+  for (const std::size_t r : result.headline) {
+    if (std::string text = alike_text(result, r); !text.empty()) table.notes.push_back(std::move(text));
+  }
   return table;
 }
 

@@ -84,12 +84,17 @@ std::vector<Table> result_tables(const StoredResult& result, std::string_view ra
   if (result.kind == "sensitivity") return sensitivity_tables(result, ranked_errors(result, ranked_by, order));
   if (result.kind == "identification") return identification_tables(result);
   if (result.kind == "monte-carlo") {
-    std::vector<Table> tables = monte_carlo_tables(result);
+    std::vector<Table> tables;
+    add(tables, limits_table(result));
+    for (Table& table : monte_carlo_tables(result)) tables.push_back(std::move(table));
     add(tables, convergence_table(result));
     return tables;
   }
   if (result.kind == "coupling") return coupling_tables(result);
-  return {result.cases.empty() ? evaluation_table(result) : cases_table(result)};
+  std::vector<Table> tables;
+  add(tables, limits_table(result));
+  tables.push_back(result.cases.empty() ? evaluation_table(result) : cases_table(result));
+  return tables;
 }
 
 void keep_first(std::size_t most, std::vector<Table>& tables) {

@@ -56,6 +56,12 @@ std::vector<Table> identification_tables(const StoredResult& result);
 /// then the mean of the poses' means, and the largest mean and highest quantile with the pose where it is.
 std::vector<Table> monte_carlo_tables(const StoredResult& result);
 
+/// What became of the study's limits; none where it states none.
+const std::optional<LimitVerdicts>& verdicts_of(const StoredResult& result);
+
+/// PASS or FAIL for each limit, with the value that was found and the limit; none where the study states none.
+std::optional<Table> limits_table(const StoredResult& result);
+
 /// The tables that suit the result's kind. ranked_by is a response of the result; the errors of a sensitivity result
 /// stand in this order.
 std::vector<Table> result_tables(const StoredResult& result, std::string_view ranked_by,

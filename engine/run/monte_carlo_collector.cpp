@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/run/verdict.h"
+#include "engine/stats/histogram.h"
 #include "engine/stats/mean_interval.h"
 
 namespace poesy {
@@ -12,9 +14,24 @@ namespace {
 
 constexpr std::uint64_t kKind = 2;  ///< no other state begins with this number
 
+constexpr std::size_t kHistogramBins = 128;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
 /// NaN where nothing counts.
-double mean_of(const Moments& moments) {
-  return moments.count() == 0 ? std::numeric_limits<double>::quiet_NaN() : moments.mean();
+double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }
+
+/// Calls visit(numbers) with all that a finished pose of a result knows from a response's sketch.
+template <class Result, class Visit>
+void visit_sketched(Result& result, std::size_t response, std::size_t pose, const Visit& visit) {
+  const std::size_t cell = response * result.poses + pose;
+  const std::size_t levels = result.levels.size();
+  visit(std::span(result.min).subspan(cell, 1));
+  visit(std::span(result.max).subspan(cell, 1));
+  visit(std::span(result.quantiles).subspan(cell * levels, levels));
+  visit(std::span(result.quantiles_ci_low).subspan(cell * levels, levels));
+  visit(std::span(result.quantiles_ci_high).subspan(cell * levels, levels));
+  if (!result.share_magnitude.empty()) visit(std::span(result.share_magnitude).subspan(cell, 1));
 }
 
 /// Throws unless these are the solves of whole units, of so many samples at most.
@@ -67,6 +84,7 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
                                          bool for_longer_study)
     : plan_(&plan),
       responses_(responses),
+      analysis_(analysis),
       for_longer_study_(for_longer_study),
       sketches_(responses),
       moments_(plan.poses().size() * responses),
@@ -78,12 +96,15 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
   result_.quantile_relative_error = QuantileSketch::kRelativeError;
   result_.levels = analysis.quantiles;
   const std::size_t cells = responses * result_.poses;
-  for (std::vector<double>* values :
-       {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std, &result_.min, &result_.max}) {
+  for (std::vector<double>* values : {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std,
+                                      &result_.min, &result_.max, &result_.rms}) {
     values->resize(cells);
   }
+  if (analysis.judge == Judge::share) result_.share_magnitude.resize(cells);
   result_.count.resize(cells);
-  result_.quantiles.resize(cells * result_.levels.size());
+  for (std::vector<double>* values : {&result_.quantiles, &result_.quantiles_ci_low, &result_.quantiles_ci_high}) {
+    values->resize(cells * result_.levels.size());
+  }
   result_.solves.resize(result_.poses);
 }
 
@@ -128,20 +149,46 @@ void MonteCarloCollector::set_moments(std::size_t response, std::size_t pose, co
   result_.mean_ci_low[cell] = interval.low;
   result_.mean_ci_high[cell] = interval.high;
   result_.std[cell] = moments.standard_deviation();
+  result_.rms[cell] = root_mean_square(moments.mean(), moments.standard_deviation(), moments.count());
   result_.count[cell] = moments.count();
   moments_[pose * responses_ + response] = moments;
+}
+
+const std::vector<RankInterval>& MonteCarloCollector::ranks_of(std::uint64_t samples) {
+  if (ranks_.empty() || ranked_samples_ != samples) {
+    ranks_.clear();
+    for (const double level : result_.levels) {
+      ranks_.push_back(quantile_ranks(samples, level, result_.conf_level));
+    }
+    ranked_samples_ = samples;
+  }
+  return ranks_;
+}
+
+void MonteCarloCollector::set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch) {
+  const std::size_t cell = response * result_.poses + pose;
+  const std::vector<Bucket> buckets = sketch.buckets();
+  const std::vector<RankInterval>& ranks = ranks_of(sketch.count());
+  result_.min[cell] = sketch.min();
+  result_.max[cell] = sketch.max();
+  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
+    const std::size_t at = cell * result_.levels.size() + q;
+    const Interval interval = quantile_interval(buckets, ranks[q]);
+    result_.quantiles[at] = sketch.quantile(result_.levels[q]);
+    result_.quantiles_ci_low[at] = interval.low;
+    result_.quantiles_ci_high[at] = interval.high;
+  }
+  if (analysis_.judge != Judge::share) return;
+  const std::uint64_t rank = quantile_rank(analysis_.share, at_pose_.solves.total());
+  result_.share_magnitude[cell] =
+      rank <= sketch.count() ? sketch.magnitudes().order_statistic(rank) : std::numeric_limits<double>::infinity();
 }
 
 void MonteCarloCollector::finish_pose() {
   for (std::size_t r = 0; r < responses_; ++r) {
     const auto& [moments, sketch] = at_pose_.responses[r];
-    const std::size_t cell = r * result_.poses + open_.value;
     set_moments(r, open_.value, moments);
-    result_.min[cell] = sketch.min();
-    result_.max[cell] = sketch.max();
-    for (std::size_t q = 0; q < result_.levels.size(); ++q) {
-      result_.quantiles[cell * result_.levels.size() + q] = sketch.quantile(result_.levels[q]);
-    }
+    set_quantiles(r, open_.value, sketch);
     sketches_[r].merge(sketch);
   }
   result_.solves[open_.value] = at_pose_.solves;
@@ -167,6 +214,28 @@ SolveCounts MonteCarloCollector::total() const {
   return sum;
 }
 
+void MonteCarloCollector::set_overall(std::size_t response, const Moments& moments) {
+  const QuantileSketch& sketch = sketches_[response];
+  result_.overall_mean.push_back(mean_of(moments));
+  result_.overall_std.push_back(moments.standard_deviation());
+  result_.overall_rms.push_back(root_mean_square(moments.mean(), moments.standard_deviation(), moments.count()));
+  result_.overall_min.push_back(sketch.min());
+  result_.overall_max.push_back(sketch.max());
+  result_.overall_count.push_back(moments.count());
+  const std::vector<Bucket> buckets = sketch.buckets();
+  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
+    const Interval interval = quantile_interval(buckets, ranks_of(sketch.count())[q]);
+    result_.overall_quantiles.push_back(sketch.quantile(result_.levels[q]));
+    result_.overall_quantiles_ci_low.push_back(interval.low);
+    result_.overall_quantiles_ci_high.push_back(interval.high);
+  }
+  Histogram bins = buckets.empty() ? Histogram{std::vector<double>(kHistogramBins + 1, kNaN), {}}
+                                   : histogram(buckets, kHistogramBins);
+  bins.counts.resize(kHistogramBins);
+  result_.histogram_edges.insert(result_.histogram_edges.end(), bins.edges.begin(), bins.edges.end());
+  result_.histogram_counts.insert(result_.histogram_counts.end(), bins.counts.begin(), bins.counts.end());
+}
+
 MonteCarloResult MonteCarloCollector::result() && {
   for (std::size_t r = 0; r < responses_; ++r) {
     Moments overall;
@@ -174,25 +243,17 @@ MonteCarloResult MonteCarloCollector::result() && {
       POESY_EXPECTS(is_finished(m));
       overall.merge(moments_[m * responses_ + r]);
     }
-    result_.overall_mean.push_back(mean_of(overall));
-    result_.overall_std.push_back(overall.standard_deviation());
-    result_.overall_min.push_back(sketches_[r].min());
-    result_.overall_max.push_back(sketches_[r].max());
-    result_.overall_count.push_back(overall.count());
-    for (const double level : result_.levels) result_.overall_quantiles.push_back(sketches_[r].quantile(level));
+    set_overall(r, overall);
   }
   for (std::size_t m = 0; m < result_.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], result_.failures);
+  if (!analysis_.limits.empty()) result_.verdicts = judge_draws(analysis_, result_, sketches_);
   return std::move(result_);
 }
 
 void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const {
-  const std::size_t levels = result_.levels.size();
   for (std::size_t r = 0; r < responses_; ++r) {
-    const std::size_t cell = r * result_.poses + pose;
     moments_[pose * responses_ + r].write(to);
-    to.real(result_.min[cell]);
-    to.real(result_.max[cell]);
-    to.reals(std::span(result_.quantiles).subspan(cell * levels, levels));
+    visit_sketched(result_, r, pose, [&](std::span<const double> numbers) { to.reals(numbers); });
   }
   result_.solves[pose].write(to);
   failed_[pose].write(to);
@@ -200,13 +261,9 @@ void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const
 
 void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std::size_t samples) {
   if (is_finished(pose) || is_open(pose)) throw BytesError("has a pose twice");
-  const std::size_t levels = result_.levels.size();
   for (std::size_t r = 0; r < responses_; ++r) {
-    const std::size_t cell = r * result_.poses + pose;
     set_moments(r, pose, Moments::read(from));
-    result_.min[cell] = from.real();
-    result_.max[cell] = from.real();
-    from.reals(std::span(result_.quantiles).subspan(cell * levels, levels));
+    visit_sketched(result_, r, pose, [&](std::span<double> numbers) { from.reals(numbers); });
   }
   result_.solves[pose] = SolveCounts::read(from);
   if (result_.solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");

@@ -7,6 +7,7 @@
 #include "engine/base/bytes.h"
 #include "engine/run/monte_carlo.h"
 #include "engine/run/result.h"
+#include "engine/stats/quantile_interval.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -76,6 +77,12 @@ class MonteCarloCollector {
   bool is_finished(std::size_t pose) const { return result_.solves[pose].total() > 0; }
   bool is_open(std::size_t pose) const { return pose == open_.value && at_pose_.solves.total() > 0; }
   void finish_pose();
+  /// What follows from a sketch of a response at a pose.
+  void set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch);
+  /// The ranks for quantile intervals of so many samples, [Q].
+  const std::vector<RankInterval>& ranks_of(std::uint64_t samples);
+  /// What follows from the samples of all poses together.
+  void set_overall(std::size_t response, const Moments& moments);
   /// What follows from the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
   /// Keeps the open pose's samples, which make up whole units so far, if there is room for them.
@@ -89,12 +96,15 @@ class MonteCarloCollector {
 
   const Plan* plan_;
   std::size_t responses_;
+  Analysis analysis_;
   bool for_longer_study_;
   PoseIndex open_;                        ///< the open pose, if there is one
   PoseSamples at_pose_;                   ///< its samples
   std::vector<QuantileSketch> sketches_;  ///< [R] of the finished poses together
   std::vector<Moments> moments_;          ///< [M x R] of the finished poses
   MonteCarloResult result_;               ///< of the finished poses
+  std::uint64_t ranked_samples_ = 0;      ///< number of samples of which ranks_ are
+  std::vector<RankInterval> ranks_;       ///< [Q]
   std::vector<FailedSamples> failed_;     ///< [M] of the finished poses
   std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; others from a shorter study
   std::size_t kept_bytes_ = 0;

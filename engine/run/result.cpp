@@ -67,4 +67,8 @@ SolveCounts EvaluationResult::total() const {
   return sum;
 }
 
+bool LimitVerdicts::passed() const {
+  return std::ranges::all_of(limits, [](const LimitVerdict& one) { return one.passed; });
+}
+
 }  // namespace poesy

@@ -11,6 +11,7 @@
 #include "engine/model/pose_set.h"
 #include "engine/model/status.h"
 #include "engine/run/failed_samples.h"
+#include "engine/study/study.h"
 
 namespace poesy {
 
@@ -119,6 +120,29 @@ struct SensitivityResult {
   SolveCounts total() const;
 };
 
+/// How a limit of a response was kept (engine/run/verdict.h). SI; values are magnitudes.
+struct LimitVerdict {
+  std::size_t response = 0;  ///< position among the responses
+  double limit = 0.0;        ///< the study's
+  double value = 0.0;        ///< what is compared with it; infinite or NaN where too few samples were solved
+  bool passed = false;       ///< whether the limit is kept
+  std::uint64_t tried = 0;   ///< draws at all poses together; of an evaluation its rows
+  std::uint64_t within = 0;  ///< of these, those within the limit; a row is if it is at each of its poses
+  std::optional<std::size_t> pose = std::nullopt;  ///< where `value` was found, if at one pose
+  std::optional<std::size_t> row = std::nullopt;   ///< of an evaluation: the row of `value`
+};
+
+/// All limits of a study.
+struct LimitVerdicts {
+  /// By which number draws are judged; none in an evaluation, whose rows are judged one by one.
+  std::optional<Judge> judge = std::nullopt;
+  double share = 0.0;                ///< for Judge::share: of the draws at each pose
+  std::vector<LimitVerdict> limits;  ///< in the order of the responses
+
+  /// Whether every limit is kept.
+  bool passed() const;
+};
+
 /// What a Monte Carlo study found, all errors varying together: R responses, M poses, Q quantiles; SI; NaN where
 /// undefined. The overall numbers are over the samples of all poses together.
 struct MonteCarloResult {
@@ -136,17 +160,33 @@ struct MonteCarloResult {
   std::vector<double> max;           ///< [R x M]
   std::vector<std::uint64_t> count;  ///< [R x M] samples behind these
   std::vector<double> quantiles;     ///< [R x M x Q]
+  std::vector<double> rms;           ///< [R x M] root mean square
+  /// [R x M x Q] interval of the distribution's quantile (stats/quantile_interval.h), an end infinite where the samples
+  /// are too few for it; empty in files of older versions.
+  std::vector<double> quantiles_ci_low;
+  std::vector<double> quantiles_ci_high;  ///< likewise
+  /// [R x M] where limits are judged by a share of the draws: the magnitude within which that share of them stays.
+  /// Draws that do not count never stay within anything; infinite where they are too many.
+  std::vector<double> share_magnitude;
 
-  std::vector<double> overall_mean;          ///< [R]
-  std::vector<double> overall_std;           ///< [R]
-  std::vector<double> overall_min;           ///< [R]
-  std::vector<double> overall_max;           ///< [R]
-  std::vector<std::uint64_t> overall_count;  ///< [R]
-  std::vector<double> overall_quantiles;     ///< [R x Q]
-  std::vector<SolveCounts> solves;           ///< [M]
-  std::vector<Failure> failures;             ///< the first, in the order of poses and samples
+  std::vector<double> overall_mean;               ///< [R]
+  std::vector<double> overall_std;                ///< [R]
+  std::vector<double> overall_min;                ///< [R]
+  std::vector<double> overall_max;                ///< [R]
+  std::vector<std::uint64_t> overall_count;       ///< [R]
+  std::vector<double> overall_quantiles;          ///< [R x Q]
+  std::vector<double> overall_rms;                ///< [R]
+  std::vector<double> overall_quantiles_ci_low;   ///< [R x Q] empty in files of older versions
+  std::vector<double> overall_quantiles_ci_high;  ///< [R x Q] likewise
+  /// Histograms of the samples of all poses (stats/histogram.h), B bins each; empty in files of older versions.
+  std::vector<double> histogram_edges;          ///< [R x (B + 1)]
+  std::vector<std::uint64_t> histogram_counts;  ///< [R x B]
+  std::vector<SolveCounts> solves;              ///< [M]
+  std::vector<Failure> failures;                ///< the first, in the order of poses and samples
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
+  /// Where it states limits.
+  std::optional<LimitVerdicts> verdicts;
 
   /// Over all poses.
   SolveCounts total() const;
@@ -164,6 +204,7 @@ struct EvaluationResult {
   std::vector<SolveStatus> status;         ///< [M x S]
   std::vector<std::uint32_t> iterations;   ///< [M x S]
   std::vector<double> joint_displacement;  ///< [M x joints], nominal
+  std::optional<LimitVerdicts> verdicts;   ///< where the study states limits
 
   /// Over all poses and samples.
   SolveCounts total() const;

@@ -126,4 +126,10 @@ Moments Moments::read(ByteReader& from) {
   return moments;
 }
 
+double root_mean_square(double mean, double standard_deviation, std::uint64_t count) {
+  const double spread = count < 2 ? 0.0 : standard_deviation;  // a single value has none
+  const auto n = static_cast<double>(count);
+  return std::sqrt(mean * mean + spread * spread * (n - 1.0) / n);
+}
+
 }  // namespace poesy

@@ -42,4 +42,7 @@ class Moments {
   double m4_ = 0.0;  ///< sum of (x - mean)^4
 };
 
+/// The root mean square of `count` values with this mean and sample standard deviation; NaN without values.
+double root_mean_square(double mean, double standard_deviation, std::uint64_t count);
+
 }  // namespace poesy

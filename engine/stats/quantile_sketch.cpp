@@ -31,14 +31,8 @@ double middle(std::size_t bucket) {
   return std::bit_cast<double>(lower | (std::uint64_t{1} << (kIgnoredBits - 1)));
 }
 
-/// The smallest k >= 1 with k / n >= q. q n may be rounded past a whole number.
-std::uint64_t rank(double q, std::uint64_t n) {
-  const auto whole = static_cast<double>(n);
-  double k = std::clamp(std::ceil(q * whole), 1.0, whole);
-  if (k > 1.0 && (k - 1.0) / whole >= q) k -= 1.0;
-  if (k < whole && k / whole < q) k += 1.0;
-  return static_cast<std::uint64_t>(k);
-}
+/// The smallest magnitude of a bucket, which is where the bucket before it ends.
+double edge(std::size_t bucket) { return std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kIgnoredBits); }
 
 /// A whole number that ascends with the value: -0.0 is below 0.0.
 [[gnu::always_inline]] inline std::int64_t ordinal(double value) {
@@ -123,6 +117,15 @@ POESY_EACH_INSTRUCTION_SET void from_planes(std::span<const std::byte> planes, s
 }
 
 }  // namespace
+
+std::uint64_t quantile_rank(double q, std::uint64_t n) {
+  const auto whole = static_cast<double>(n);
+  double k = std::clamp(std::ceil(q * whole), 1.0, whole);
+  // q n may be rounded past a whole number.
+  if (k > 1.0 && (k - 1.0) / whole >= q) k -= 1.0;
+  if (k < whole && k / whole < q) k += 1.0;
+  return static_cast<std::uint64_t>(k);
+}
 
 BucketedValues::BucketedValues(std::span<const double> values) : buckets(values.size()) {
   POESY_EXPECTS(std::ranges::all_of(values, [](double value) { return std::isfinite(value); }));
@@ -246,10 +249,13 @@ std::uint64_t QuantileSketch::count() const { return negative_.total + zeros_ + 
 double QuantileSketch::quantile(double q) const {
   POESY_EXPECTS(q >= 0.0 && q <= 1.0);
   const std::uint64_t n = count();
-  if (n == 0) return std::numeric_limits<double>::quiet_NaN();
-  const std::uint64_t k = rank(q, n);
+  return n == 0 ? std::numeric_limits<double>::quiet_NaN() : order_statistic(quantile_rank(q, n));
+}
+
+double QuantileSketch::order_statistic(std::uint64_t k) const {
+  POESY_EXPECTS(k >= 1 && k <= count());
   if (k == 1) return min_;
-  if (k == n) return max_;
+  if (k == count()) return max_;
   double value = 0.0;
   if (k <= negative_.total) {
     value = -negative_.magnitude(negative_.total - k + 1);
@@ -257,6 +263,34 @@ double QuantileSketch::quantile(double q) const {
     value = positive_.magnitude(k - negative_.total - zeros_);
   }
   return std::clamp(value, min_, max_);
+}
+
+std::vector<Bucket> QuantileSketch::buckets() const {
+  std::vector<Bucket> filled;
+  const auto add = [&](double lower, double upper, std::uint64_t values) {
+    if (values == 0) return;
+    const std::uint64_t before = filled.empty() ? 0 : filled.back().up_to;
+    filled.push_back({std::max(lower, min_), std::min(upper, max_), values, before + values});
+  };
+  for (std::size_t k = negative_.counts.size(); k-- > 0;) {
+    add(-edge(negative_.first + k + 1), -edge(negative_.first + k), negative_.counts[k]);
+  }
+  add(0.0, 0.0, zeros_);
+  for (std::size_t k = 0; k < positive_.counts.size(); ++k) {
+    add(edge(positive_.first + k), edge(positive_.first + k + 1), positive_.counts[k]);
+  }
+  return filled;
+}
+
+QuantileSketch QuantileSketch::magnitudes() const {
+  if (count() == 0 || min_ >= 0.0) return *this;
+  QuantileSketch folded;
+  folded.positive_ = positive_;
+  folded.positive_.merge(negative_);
+  folded.zeros_ = zeros_;
+  folded.min_ = std::max(0.0, -max_);
+  folded.max_ = std::max(-min_, max_);
+  return folded;
 }
 
 void QuantileSketch::write(ByteWriter& to) const {

@@ -10,6 +10,10 @@
 
 namespace poesy {
 
+/// The rank of the order statistic of n values that stands for the quantile q: the smallest k >= 1 with k / n >= q.
+/// Precondition: n > 0.
+std::uint64_t quantile_rank(double q, std::uint64_t n);
+
 /// A block of numbers as a sketch takes it: all that can be worked out without the sketch.
 struct BucketedValues {
   BucketedValues() = default;
@@ -29,6 +33,14 @@ struct BucketedValues {
   void write(ByteWriter& to) const;
   /// Throws BytesError for what no numbers give.
   static BucketedValues read(ByteReader& from);
+};
+
+/// One filled bucket of a sketch.
+struct Bucket {
+  double lower;         ///< no value of it is below
+  double upper;         ///< nor above
+  std::uint64_t count;  ///< values in it
+  std::uint64_t up_to;  ///< values in it and in those before it
 };
 
 /// Quantiles of a stream of numbers without keeping them: a histogram whose buckets are the numbers' own leading bits,
@@ -58,6 +70,12 @@ class QuantileSketch {
   /// The order statistic of rank k, the smallest k >= 1 with k / n >= q: the inverse of the empirical distribution
   /// function, rank ceil(q n), to kRelativeError. NaN when empty. Precondition: 0 <= q <= 1.
   double quantile(double q) const;
+  /// The k-th smallest value, to kRelativeError. Precondition: 1 <= k <= count().
+  double order_statistic(std::uint64_t k) const;
+  /// The filled buckets, ascending, cut off at min() and max(). Values taken for zero have a bucket of no width.
+  std::vector<Bucket> buckets() const;
+  /// A sketch of the values' magnitudes. Where there are values of both signs, its min() is 0.
+  QuantileSketch magnitudes() const;
 
   /// Every count of it, and back: about two bytes for each bucket. read() throws BytesError for counts that no stream
   /// of numbers gives.

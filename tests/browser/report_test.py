@@ -264,7 +264,12 @@ class Reports(PageTest):
 
     def test_monte_carlo(self):
         template = self.poesy("template", "3-prs", "monte-carlo")
-        self.check_page(self.report("monte-carlo", self.result("monte-carlo", template)))
+        limited = template.replace("[solver]", '[analysis.limits]\nposition = "5 mm"\nrotation = "5 deg"\n[solver]')
+        self.check_page(self.report("monte-carlo", self.result("monte-carlo", limited)))
+        marked = self.browser.run(
+            """return [...document.querySelectorAll("[data-figure^=distribution] svg")].map((svg) =>
+              [...svg.querySelectorAll("text")].filter((text) => text.textContent === "limit").length)""")
+        self.assertEqual(sorted(marked), [0, 0, 1, 1, 1, 1])  # two panels of each of three responses, two with a limit
 
     def test_comparison(self):
         template = self.poesy("template", "2upr-rpu")

@@ -49,7 +49,8 @@ def check_xarray(path, file):
             opened.load()
             for name in [name for name in file[group] if isinstance(file[group][name], h5py.Dataset)]:
                 assert name in opened.variables, f"xarray does not see /{group}/{name}"
-            if group in ("sensitivity", "sensitivity/history", "solver", "evaluate", "errors", "monte_carlo", "coupling"):
+            if group in ("sensitivity", "sensitivity/history", "solver", "evaluate", "errors", "monte_carlo", "coupling",
+                         "limits"):
                 for dimension in opened.dims:
                     assert dimension in opened.coords, f"/{group} shows no names for {dimension}"
 

@@ -104,6 +104,34 @@ class SameNumbers(ProgramTest):
                 for one, other in zip(drawn, wanted):
                     self.assertTrue(math.isclose(one, other, rel_tol=FLOAT, abs_tol=BELOW_ROUNDING), (one, other))
 
+    def test_monte_carlo(self):
+        """Root mean squares and intervals of quantiles, in the terminal's units, in SI in the tables, and in the file."""
+        self.write("mc.toml", STUDY.replace('"sensitivity"', '"monte-carlo"'))
+        self.succeeds("run", "mc.toml", "-o", "mc.h5", "--quiet")
+        self.succeeds("export", "mc.h5", "-d", "mc")
+        overall, poses = json.loads(self.succeeds("show", "mc.h5", "--json"))["tables"]
+        with open(self.folder / "mc/overall.csv", newline="", encoding="utf-8") as file:
+            exported = {row["response"]: row for row in csv.DictReader(file)}
+        with h5py.File(self.folder / "mc.h5") as file:
+            found = {name: file["monte_carlo"][name][:] for name in file["monte_carlo"]}
+        for row, worst in zip(overall["rows"], poses["rows"]):
+            response = self.responses.index(row["response"])
+            unit = self.response_display[response]
+            other = exported[row["response"]]
+            self.assertTrue(math.isclose(row["rms"] * unit, found["overall_rms"][response], rel_tol=1e-12))
+            self.assertEqual(float(other["rms"]), found["overall_rms"][response])
+            self.assertEqual(other["count"], str(found["overall_count"][response]))
+            self.assertEqual(DISPLAY[other["unit"]], unit)
+            mean_square = (found["rms"][response] ** 2).mean()  # as many samples at each pose
+            self.assertTrue(math.isclose(found["overall_rms"][response] ** 2, mean_square, rel_tol=1e-10))
+            pose = found["quantiles"][response, :, -1].argmax()
+            for name, key in (("largest_q_0_95_low", "quantiles_ci_low"), ("largest_q_0_95_high", "quantiles_ci_high")):
+                self.assertTrue(math.isclose(worst[name] * unit, found[key][response, pose, -1], rel_tol=1e-12))
+            self.assertEqual(found["histogram_counts"][response].sum(), found["overall_count"][response])
+            with open(self.folder / f"mc/histogram_{row['response']}.csv", newline="", encoding="utf-8") as file:
+                bins = list(csv.DictReader(file))
+            self.assertEqual(sum(int(one["count"]) for one in bins), found["overall_count"][response])
+
     def test_rounding_is_told_apart(self):
         self.assertTrue(shown_alike("2.809", 2.80938))
         self.assertTrue(shown_alike("2.81", 2.80996))

@@ -110,12 +110,19 @@ struct Panel {
   std::vector<Series> series;  ///< the curves
 };
 
+/// A value of x that is marked in every panel.
+struct Mark {
+  std::string label;  ///< for people
+  double value;       ///< in the unit of x
+};
+
 /// Panels below one another, over the same axis.
 struct Lines {
-  Coordinate x;               ///< of all panels
-  std::vector<Panel> panels;  ///< from above
-  bool log = false;           ///< of x
-  std::size_t most = 8;       ///< series that are shown until the reader asks for more
+  Coordinate x;                  ///< of all panels
+  std::vector<Panel> panels;     ///< from above
+  bool log = false;              ///< of x
+  std::size_t most = 8;          ///< series that are shown until the reader asks for more
+  std::vector<Mark> marks = {};  ///< may lie beyond the values of x
 };
 
 /// Points with names: R options of the choice, P points.

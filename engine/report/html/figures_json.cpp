@@ -23,6 +23,7 @@ Json json(const HeatLayer& layer);
 Json json(const Field& field);
 Json json(const Series& series);
 Json json(const Panel& panel);
+Json json(const Mark& mark);
 
 template <class Part>
 Json list(const std::vector<Part>& parts) {
@@ -70,6 +71,8 @@ Json json(const Series& series) {
 
 Json json(const Panel& panel) { return {{"label", panel.label}, {"unit", panel.unit}, {"series", list(panel.series)}}; }
 
+Json json(const Mark& mark) { return {{"label", mark.label}, {"value", mark.value}}; }
+
 Json json(const Bars& bars) {
   Json all{{"type", "bars"},
            {"choices", list(bars.choices)},
@@ -97,7 +100,8 @@ Json json(const Lines& lines) {
   return {{"type", "lines"},
           {"x", {{"label", lines.x.name}, {"unit", lines.x.unit}, {"value", lines.x.value}, {"log", lines.log}}},
           {"panels", list(lines.panels)},
-          {"most", lines.most}};
+          {"most", lines.most},
+          {"marks", list(lines.marks)}};
 }
 
 Json json(const Scatter& scatter) {

@@ -34,11 +34,6 @@ std::size_t rows_of_cells(const StoredResult& result) {
 
 }  // namespace
 
-std::string unit_text(const NamedUnit& named) {
-  const std::string_view name = display(named).name;
-  return std::string(name == "1" ? "" : name);
-}
-
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things) {
   std::vector<std::string> list;
   for (const NamedUnit& thing : things) list.push_back(thing.name);
@@ -71,11 +66,6 @@ std::string some_names(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t n = 0; n < std::min(names.size(), kMost); ++n) text += (n == 0 ? "" : ", ") + names[n];
   return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
-}
-
-std::string place_text(const StoredResult& result, std::size_t pose) {
-  const std::string coordinates = coordinates_text(result, pose);
-  return coordinates.empty() ? fmt::format("pose {}", pose) : fmt::format("pose {} ({})", pose, coordinates);
 }
 
 double without_rounding(double index) { return std::abs(index) < kIndexRounding ? 0.0 : index; }

@@ -15,8 +15,6 @@
 /// What the sections of all kinds of results share.
 namespace poesy {
 
-/// The unit in which people read it, "mm"; empty for a pure number.
-std::string unit_text(const NamedUnit& named);
 /// The names, in order.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things);
 /// The names at these positions.
@@ -28,8 +26,6 @@ std::vector<std::size_t> response_order(const StoredResult& result);
 
 /// "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names);
-/// "pose 14 (z -190 mm)"; see coordinates_text of display.h.
-std::string place_text(const StoredResult& result, std::size_t pose);
 
 /// An index, in SI; 0 where it is rounding (kIndexRounding).
 double without_rounding(double index);

@@ -26,6 +26,9 @@ void add_separation(const StoredResult& result, std::vector<Table>& tables, Page
 void add_fidelity(const StoredResult& result, std::vector<Table>& tables, Page& page);
 /// @}
 
+/// What became of the study's limits, where it states any; its table is taken out of those given.
+void add_limits(std::vector<Table>& tables, Page& page);
+
 /// How the indices or means of a sampled result settled with the number of samples.
 void add_certainty(const StoredResult& result, std::vector<Table>& tables, Page& page);
 

@@ -89,13 +89,21 @@ constexpr std::string_view kNoCourseOfMeans =
 
 }  // namespace
 
+void add_limits(std::vector<Table>& tables, Page& page) {
+  for (const Table& table : take_tables(tables, std::vector<std::string_view>{"limits"})) {
+    Section section("limits", "Are the limits kept");
+    section.table(table);
+    page.sections.push_back(std::move(section));
+  }
+}
+
 void add_certainty(const StoredResult& result, std::vector<Table>& tables, Page& page) {
   const bool indices = result.kind == "sensitivity";
   Section section("how-sure", indices ? "How sure are the indices" : "How sure are the means");
   section.paragraph(
-      fmt::format("Intervals are {:.3g} % ones and speak of the samples alone: other poses, other sizes of errors, and "
+      fmt::format("Intervals are {} ones and speak of the samples alone: other poses, other sizes of errors, and "
                   "samples that did not converge are not in them.",
-                  100.0 * (indices ? result.sensitivity.conf_level : result.monte_carlo.conf_level)));
+                  percent_text(indices ? result.sensitivity.conf_level : result.monte_carlo.conf_level)));
   if (indices) section.paragraph(kAtTheUpperEnd);
   if (const std::optional<Course> course = course_of(result)) {
     section.paragraph(

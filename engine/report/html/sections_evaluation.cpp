@@ -131,11 +131,13 @@ std::string rows_text(const StoredResult& result) {
 void add_evaluation(const StoredResult& result, Page& page) {
   const bool cases = !result.cases.empty();
   const ShownCells shown = shown_cells(result);
+  std::vector<Table> tables = result_tables(result, default_ranking(result));
+  add_limits(tables, page);
   Section section("responses", cases ? "What each case does" : "What the errors do");
   section.paragraph(cases ? "Each case is a fixed set of errors. Poses where it was not solved are left out."
                           : rows_text(result) + " Samples that were not solved are left out.");
   if (!cases) add_distribution(result, page, section);
-  for (const Table& table : result_tables(result, default_ranking(result))) section.table(table);
+  for (const Table& table : tables) section.table(table);
   page.sections.push_back(std::move(section));
   Section where("where", result.time.empty() ? "Where in the workspace" : "Along the trajectory");
   if (!shown.note().empty()) where.paragraph(shown.note());

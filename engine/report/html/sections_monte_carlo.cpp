@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <optional>
 
 #include "engine/base/units.h"
@@ -13,72 +13,92 @@
 namespace poesy {
 namespace {
 
-/// 0, the levels, 1: where a distribution's smallest value, quantiles and largest value stand.
-std::vector<double> all_levels(const MonteCarloResult& found) {
-  std::vector<double> levels{0.0};
-  levels.insert(levels.end(), found.levels.begin(), found.levels.end());
-  levels.push_back(1.0);
-  return levels;
-}
+/// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. Without the first and
+/// the last bin, which reach out to the extremes.
+struct Outline {
+  std::vector<double> x;        ///< [2 B] each bin's lower and upper end, in the unit shown
+  std::vector<double> density;  ///< [2 B] share of the samples per unit of x
+  std::vector<double> below;    ///< [2 B] share of the samples below x
+};
 
-std::vector<double> distribution(const MonteCarloResult& found, std::size_t r) {
-  std::vector<double> values{found.overall_min[r]};
-  for (std::size_t q = 0; q < found.levels.size(); ++q) {
-    values.push_back(found.overall_quantiles[r * found.levels.size() + q]);
+Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
+  const std::size_t bins = found.histogram_counts.size() / found.responses;
+  const std::span counts = std::span(found.histogram_counts).subspan(r * bins, bins);
+  const std::span edges = std::span(found.histogram_edges).subspan(r * (bins + 1), bins + 1);
+  const double all = static_cast<double>(found.overall_count[r]);
+  Outline drawn;
+  double sum = static_cast<double>(counts.front()) / all;
+  for (std::size_t b = 1; b + 1 < bins; ++b) {
+    // Bins that are left over stand at the largest value.
+    if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
+    const double share = static_cast<double>(counts[b]) / all;
+    const double density = share / ((edges[b + 1] - edges[b]) / unit);
+    drawn.x.insert(drawn.x.end(), {edges[b] / unit, edges[b + 1] / unit});
+    drawn.density.insert(drawn.density.end(), {density, density});
+    drawn.below.insert(drawn.below.end(), {sum, sum + share});
+    sum += share;
   }
-  values.push_back(found.overall_max[r]);
-  return values;
+  return drawn;
 }
 
-/// The same of one pose.
-std::vector<double> distribution_at(const MonteCarloResult& found, std::size_t r, std::size_t pose) {
-  const std::size_t cell = r * found.poses + pose;
-  std::vector<double> values{found.min[cell]};
-  for (std::size_t q = 0; q < found.levels.size(); ++q)
-    values.push_back(found.quantiles[cell * found.levels.size() + q]);
-  values.push_back(found.max[cell]);
-  return values;
+/// The verdict on a response; null where it has no limit.
+const LimitVerdict* verdict_on(const StoredResult& result, std::size_t r) {
+  const std::optional<LimitVerdicts>& verdicts = verdicts_of(result);
+  if (!verdicts) return nullptr;
+  const auto found = std::ranges::find(verdicts->limits, r, &LimitVerdict::response);
+  return found == verdicts->limits.end() ? nullptr : &*found;
 }
 
-/// The pose with the largest mean; none where no mean is known.
-std::optional<std::size_t> worst_pose(const MonteCarloResult& found, std::size_t r) {
-  std::optional<std::size_t> worst;
-  for (std::size_t m = 0; m < found.poses; ++m) {
-    const double mean = found.mean[r * found.poses + m];
-    if (!std::isnan(mean) && (!worst || mean > found.mean[r * found.poses + *worst])) worst = m;
-  }
-  return worst;
+/// The limit of a response where it is drawn: on both sides of zero if the response has values there.
+std::vector<Mark> limit_marks(const StoredResult& result, std::size_t r, double unit) {
+  const LimitVerdict* verdict = verdict_on(result, r);
+  if (verdict == nullptr) return {};
+  std::vector<Mark> marks{{"limit", verdict->limit / unit}};
+  if (result.monte_carlo.overall_min[r] < 0.0) marks.push_back({"limit", -verdict->limit / unit});
+  return marks;
 }
 
-Panel distribution_panel(const StoredResult& result, std::size_t r, ArrayPool& pool) {
-  const MonteCarloResult& found = result.monte_carlo;
+std::string distribution_caption(const StoredResult& result, std::size_t r) {
   const NamedUnit& response = result.responses[r];
-  const double unit = display(response).si;
-  Panel panel{response.name, unit_text(response), {}};
-  panel.series.push_back(
-      {"samples of all poses", pool.add(fmt::format("distribution/{}", r), distribution(found, r), unit)});
-  if (const auto worst = worst_pose(found, r)) {
-    panel.series.push_back(
-        {.label = fmt::format("pose {}, the largest mean", *worst),
-         .value = pool.add(fmt::format("distribution_worst/{}", r), distribution_at(found, r, *worst), unit),
-         .style = "dashed"});
+  std::string text = fmt::format(
+      "{}: its distribution over the samples of all poses, and below it the share of the samples below a value. The "
+      "outermost 0.05 % on either side are not drawn.",
+      response.name);
+  if (const LimitVerdict* verdict = verdict_on(result, r)) {
+    text += fmt::format(" {} of the draws are within the limit.",
+                        percent_text(static_cast<double>(verdict->within) / static_cast<double>(verdict->tried)));
   }
-  return panel;
+  return text;
+}
+
+Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
+  const NamedUnit& response = result.responses[r];
+  const std::string unit = unit_text(response);
+  const Outline drawn = outline(result.monte_carlo, r, display(response).si);
+  const auto add = [&](std::string_view what, const std::vector<double>& values, double scale) {
+    return pool.add(fmt::format("{}/{}", what, r), values, scale);
+  };
+  const ArrayName zero = add("histogram_zero", std::vector<double>(drawn.x.size(), 0.0), 1.0);
+  const ArrayName density = add("histogram", drawn.density, 0.01);
+  return {.x = {response.name, unit, add("histogram_x", drawn.x, 1.0)},
+          .panels = {{"share of the samples per unit",
+                      unit.empty() ? "%" : "%/" + unit,
+                      {{"samples of all poses", density, zero, density}}},
+                     {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
+          .marks = limit_marks(result, r, display(response).si)};
 }
 
 Section how_large(const StoredResult& result, std::vector<Table>& tables, Page& page) {
+  const MonteCarloResult& found = result.monte_carlo;
   Section section("how-large", "How large are the deviations");
-  section.paragraph(fmt::format(
-      "All {} vary at once. A curve says below which value a share of the samples lies: at 50 % is the median, "
-      "at 0 and 100 % the smallest and the largest value that was drawn.",
-      counted(result.factors.size(), "error", "errors")));
-  ArrayPool& pool = page.figures.pool;
-  Lines lines{.x = {"share of the samples below", "%", pool.add("axis_levels", all_levels(result.monte_carlo), 0.01)},
-              .panels = {}};
-  for (const std::size_t r : headline_order(result)) lines.panels.push_back(distribution_panel(result, r, pool));
-  add_figure(page, section, "distribution", std::move(lines), "The distribution of each response by its quantiles.");
-  for (const Table& table : take_tables(tables, std::vector<std::string_view>{"overall", "poses"}))
-    section.table(table);
+  section.paragraph(fmt::format("All {} vary at once.", counted(result.factors.size(), "error", "errors")));
+  for (const Table& table : take_tables(tables, std::vector<std::string_view>{"overall"})) section.table(table);
+  for (const std::size_t r : headline_order(result)) {
+    if (found.histogram_counts.empty() || found.overall_count[r] == 0) continue;
+    add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, page.figures.pool),
+               distribution_caption(result, r));
+  }
+  for (const Table& table : take_tables(tables, std::vector<std::string_view>{"poses"})) section.table(table);
   return section;
 }
 
@@ -118,7 +138,7 @@ class PoseArrays {
   ArrayPool& pool_;
 };
 
-std::string quantile_label(double level) { return shortest(100.0 * level) + " % quantile"; }
+std::string quantile_label(double level) { return percent_text(level) + " quantile"; }
 
 /// The mean of each pose in a band from the lowest to the highest quantile.
 Lines bands(const StoredResult& result, const ShownCells& shown, const PoseArrays& arrays, ArrayPool& pool) {
@@ -173,10 +193,11 @@ Section where(const StoredResult& result, Page& page) {
 void add_monte_carlo(const StoredResult& result, Page& page) {
   if (result.monte_carlo.poses == 0 || result.monte_carlo.levels.empty()) return;
   std::vector<Table> tables = result_tables(result, default_ranking(result));
+  add_limits(tables, page);
   page.sections.push_back(how_large(result, tables, page));
   page.sections.push_back(where(result, page));
   add_certainty(result, tables, page);
-  if (!tables.empty()) page.sections[0].folded("More tables", tables);
+  if (!tables.empty()) page.sections.back().folded("More tables", tables);
 }
 
 }  // namespace poesy

@@ -106,6 +106,17 @@ class Example {
       fill(*values, 2);
     }
     fill(result.overall_quantiles, 4);
+    fill(result.rms, 2 * kPoses);
+    fill(result.overall_rms, 2);
+    for (auto* values : {&result.quantiles_ci_low, &result.quantiles_ci_high}) fill(*values, 2 * kPoses * 2);
+    for (auto* values : {&result.overall_quantiles_ci_low, &result.overall_quantiles_ci_high}) fill(*values, 4);
+    result.histogram_edges = {0.0, 1.0, 2.0, 4.0, 4.0, 1.0, 2.0, 3.0, 4.0, 5.0};
+    result.histogram_counts = {100, 200, 82, 0, 300, 0, 60, 6};
+    study.analysis.judge = Judge::share;
+    study.analysis.share = 0.9973;
+    study.analysis.limits = {{0, 0.5}, {1, 0.25}};
+    fill(result.share_magnitude, 2 * kPoses);
+    result.verdicts = verdicts();
     for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) result.count.push_back(97 - cell);
     result.overall_count = {382, 366};
     for (std::size_t m = 0; m < kPoses; ++m) {
@@ -113,6 +124,29 @@ class Example {
     }
     result.failures = {{0, PoseIndex(2), {SampleIndex(0), SolveStatus::singular}}};
     return result;
+  }
+
+  /// Of both responses: the first is kept, the second is not, at the last pose.
+  static LimitVerdicts verdicts() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {.judge = Judge::share,
+            .share = 0.9973,
+            .limits = {{.response = 0,
+                        .limit = 0.5,
+                        .value = 0.375,
+                        .passed = true,
+                        .tried = 400,
+                        .within = 382,
+                        .pose = 2,
+                        .row = {}},
+                       {.response = 1,
+                        .limit = 0.25,
+                        .value = kInfinity,
+                        .passed = false,
+                        .tried = 400,
+                        .within = 96,
+                        .pose = kPoses - 1,
+                        .row = {}}}};
   }
 
   using CouplingMember = std::vector<double> CouplingResult::*;

@@ -251,19 +251,28 @@ TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
   }
 }
 
-TEST_F(HtmlReport, ShowsQuantilesAndWorstPoseOfAMonteCarloResult) {
+/// The inner bins of the example: of the first response 1 to 2 alone, for the next one reaches the largest value.
+TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
   example.write_monte_carlo(path);
   const ReportedResult result = stored();
-  const MonteCarloResult& found = result.stored.monte_carlo;
-  const Json page = data(report(result));
-  const Json& panel = page["figures"]["distribution"]["panels"][0];
-  const std::size_t r = panel["label"] == result.stored.responses[0].name ? 0 : 1;
-  const std::vector<float> shown = array(page, panel["series"][0]["value"]);
-  const double unit = display(result.stored.responses[r]).si;
-  expect_shown(shown[0], found.overall_min[r] / unit);
-  expect_shown(shown[1], found.overall_quantiles[2 * r] / unit);
-  EXPECT_EQ(array(page, page["figures"]["distribution"]["x"]["value"]),
-            (std::vector<float>{0.0F, 5.0F, 99.5F, 100.0F}));
+  const double unit = display(result.stored.responses[0]).si;
+  const std::string html = report(result);
+  const Json page = data(html);
+  const Json& figure = page["figures"]["distribution-0"];
+  EXPECT_EQ(figure["x"]["label"], result.stored.responses[0].name);
+  EXPECT_EQ(array(page, figure["x"]["value"]),
+            (std::vector<float>{static_cast<float>(1.0 / unit), static_cast<float>(2.0 / unit)}));
+  const std::vector<float> density = array(page, figure["panels"][0]["series"][0]["value"]);
+  const std::vector<float> below = array(page, figure["panels"][1]["series"][0]["value"]);
+  expect_shown(density.at(0), 100.0 * 200.0 / 382.0 * unit);
+  expect_shown(below.at(0), 100.0 * 100.0 / 382.0);
+  expect_shown(below.at(1), 100.0 * 300.0 / 382.0);
+  ASSERT_EQ(figure["marks"].size(), 1u);
+  EXPECT_DOUBLE_EQ(figure["marks"][0]["value"].get<double>(), 0.5 / unit);
+  EXPECT_NE(html.find("95.5 % of the draws are within the limit"), std::string::npos);
+  EXPECT_NE(html.find("99.5 % quantile"), std::string::npos);
+  EXPECT_NE(html.find("Are the limits kept"), std::string::npos);
+  EXPECT_LT(html.find("Are the limits kept"), html.find("How large are the deviations"));
 }
 
 TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {

@@ -2,11 +2,14 @@
 
 #include <limits>
 
+#include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 StoredResult example() {
   StoredResult result;
@@ -23,6 +26,10 @@ StoredResult example() {
   found.quantiles = {1e-3, 9e-3, 4e-3, 8e-3, 1e-3, 7e-3, 0.5, 1.0, 0.25, 2.0, 0.75, 1.5};
   found.overall_mean = {2e-3, 0.5};
   found.overall_std = {1.5e-3, 0.125};
+  found.overall_rms = {2.5e-3, 0.5};
+  found.conf_level = 0.95;
+  found.quantiles_ci_low = {1e-3, 6e-3, 3e-3, 7e-3, 1e-3, 5e-3, 0.5, 0.9, 0.25, 1.75, 0.75, 1.25};
+  found.quantiles_ci_high = {2e-3, 12e-3, 5e-3, 9e-3, 2e-3, 6e-3, 0.75, 1.5, 0.5, kInfinity, 1.0, 1.75};
   found.overall_count = {36000, 2};
   found.overall_min = {1e-6, 0.0625};
   found.overall_max = {1.25e-2, 3.0};
@@ -35,17 +42,110 @@ StoredResult example() {
 TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
   EXPECT_EQ(text_of(result_tables(example(), "linear_deformation"), kUnlimitedWidth),
             "2 errors vary together: responses over the samples of all 3 poses\n"
-            "response            unit  mean    std       rms     min   q_0.5  q_0.95   max\n"
-            "linear_deformation  mm     2    1.5    2.49999   0.001   1.75      8.5   12.5\n"
-            "ratio               1      0.5  0.125  0.507752  0.0625  0.4375    1.25   3\n"
+            "response            unit  mean    std  rms     min   q_0.5  q_0.95   max\n"
+            "linear_deformation  mm     2    1.5    2.5  0.001   1.75      8.5   12.5\n"
+            "ratio               1      0.5  0.125  0.5  0.0625  0.4375    1.25   3\n"
             "12 000 samples at each pose; std: standard deviation; rms: root mean square; q_0.95: 95 % of the\n"
-            "samples lie below it (quantiles to 0.2 % of their value)\n"
+            "samples lie below it (quantiles to 0.195 % of their value)\n"
             "\n"
             "Pose by pose: the mean of the poses' means, and the worst poses\n"
-            "                          mean of  largest    at  largest    at\n"
-            "response            unit    means     mean  pose   q_0.95  pose\n"
-            "linear_deformation  mm        2       4        1        9     0\n"
-            "ratio               1         0.5     0.75     2        2     1\n");
+            "                          mean of  largest    at  largest    at              poses\n"
+            "response            unit    means     mean  pose   q_0.95  pose  low   high  like it\n"
+            "linear_deformation  mm        2       4        1        9     0  6       12        1\n"
+            "ratio               1         0.5     0.75     2        2     1  1.75   inf        0\n"
+            "low, high: 95 % interval of the largest q_0.95, from order statistics; inf: too few samples for an\n"
+            "end. poses like it: other poses whose interval reaches above low\n"
+            "linear_deformation: the largest q_0.95 is at pose 0, but its samples do not tell it from pose 1\n");
+}
+
+TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstWithTheirCoordinates) {
+  StoredResult result = example();
+  constexpr std::size_t kPoses = 10;
+  MonteCarloResult& found = result.monte_carlo;
+  found.poses = kPoses;
+  found.levels = {0.95};
+  std::vector<double> coordinates;
+  found.quantiles.clear();
+  for (std::size_t m = 0; m < kPoses; ++m) {
+    coordinates.push_back(-0.19 + 0.001 * static_cast<double>(m));
+    found.quantiles.push_back(1.0 + static_cast<double>(m));
+  }
+  result.pose_coordinates = {{"z", "m"}};
+  result.poses = PoseSet(1, coordinates);
+  found.quantiles_ci_low.assign(kPoses, 1.5);
+  found.quantiles_ci_high.assign(kPoses, 12.0);
+  found.quantiles_ci_high[0] = 1.5;  // up to the lower end, not above it
+  result.headline = {0};
+  found.mean.assign(2 * kPoses, 1.0);
+  const Table table = monte_carlo_tables(result).at(1);
+  EXPECT_EQ(table.rows[0].back().text, "8");
+  EXPECT_EQ(table.notes.at(1),
+            "linear_deformation: the largest q_0.95 is at pose 9 (z -181 mm), but its samples do not tell it from pose "
+            "8 (z -182 mm), pose 7 (z -183 mm), pose 6 (z -184 mm), pose 5 (z -185 mm), pose 4 (z -186 mm) "
+            "and 3 others");
+}
+
+TEST(MonteCarloTable, OfAnOlderResultHasNoIntervals) {
+  StoredResult result = example();
+  result.monte_carlo.quantiles_ci_low.clear();
+  result.monte_carlo.quantiles_ci_high.clear();
+  const Table table = monte_carlo_tables(result).at(1);
+  EXPECT_EQ(table.rows[0].back().text, "-");
+  EXPECT_EQ(table.rows[0][6].text, "0");
+  EXPECT_TRUE(table.notes.empty());
+}
+
+TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
+  StoredResult result = example();
+  EXPECT_FALSE(limits_table(result));
+  result.monte_carlo.verdicts = LimitVerdicts{
+      .judge = Judge::rms,
+      .share = 0.0,
+      .limits = {{.response = 0, .limit = 3e-5, .value = 0.0155, .passed = false, .tried = 1000, .within = 21},
+                 {.response = 1, .limit = 2.0, .value = 0.5, .passed = true, .tried = 1000, .within = 999}}};
+  EXPECT_EQ(text_of(limits_table(result).value(), kUnlimitedWidth),
+            "FAIL: 1 of 2 limits not kept\n"
+            "limit kept  response            unit  judged by  value  limit  within  where\n"
+            "                                                                   %\n"
+            "FAIL        linear_deformation  mm    rms         15.5   0.03     2.1  -\n"
+            "PASS        ratio               1     rms          0.5   2       99.9  -\n"
+            "rms: the root mean square over the draws of all poses; draws that were not solved are left out;\n"
+            "within: the share of all draws that are within the limit\n");
+}
+
+TEST(LimitsTable, NamesTheWorstPlace) {
+  StoredResult result = example();
+  result.monte_carlo.verdicts = LimitVerdicts{
+      .judge = Judge::share,
+      .share = 0.9973,
+      .limits = {
+          {.response = 0, .limit = 1e-3, .value = kInfinity, .passed = false, .tried = 10, .within = 4, .pose = 2}}};
+  const Table share = limits_table(result).value();
+  EXPECT_EQ(share.rows[0][3].text, "99.73 % of draws");
+  EXPECT_EQ(share.rows[0][4].text, "inf");
+  EXPECT_EQ(share.rows[0][7].text, "pose 2");
+  result.monte_carlo.verdicts.reset();
+  result.evaluation.verdicts = LimitVerdicts{
+      .limits = {
+          {.response = 0, .limit = 1e-3, .value = 5e-4, .passed = true, .tried = 2, .within = 2, .pose = 1, .row = 1}}};
+  EXPECT_EQ(limits_table(result)->rows[0][7].text, "sample 1, pose 1");
+  EXPECT_EQ(limits_table(result)->caption, "PASS: the limit is kept");
+  result.cases = {"small", "large"};
+  EXPECT_EQ(limits_table(result)->rows[0][7].text, "large, pose 1");
+}
+
+TEST(PercentText, KeepsWhatIsMissingFromAHundred) {
+  for (const auto& [share, text] : std::vector<std::pair<double, std::string>>{{0.9973, "99.73 %"},
+                                                                               {0.99865, "99.865 %"},
+                                                                               {0.95, "95 %"},
+                                                                               {0.999999, "99.9999 %"},
+                                                                               {0.5, "50 %"},
+                                                                               {0.876543, "87.7 %"},
+                                                                               {0.0125, "1.25 %"},
+                                                                               {1.0, "100 %"},
+                                                                               {0.0, "0 %"}}) {
+    EXPECT_EQ(percent_text(share), text);
+  }
 }
 
 TEST(MonteCarloTable, NamesTheWorstOfThePosesThatAreKnown) {

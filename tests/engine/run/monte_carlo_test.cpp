@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "engine/random/stream.h"
 #include "engine/run/runner.h"
+#include "engine/stats/quantile_interval.h"
 #include "tests/engine/stats/plain_sort.h"
 #include "tests/support/fake_model.h"
 
@@ -110,6 +112,52 @@ TEST(RunMonteCarlo, AgreesWithAllSamplesSorted) {
   }
 }
 
+/// Numbers that follow from all samples of a response at a pose.
+struct Plain {
+  double rms;
+  double low;  ///< order statistics of the ranks for q = 0.9
+  double high;
+  double magnitude;  ///< that of rank ceil(0.99 n)
+};
+
+Plain plain(std::vector<double> samples, double conf_level) {
+  double squares = 0.0;
+  for (const double value : samples) squares += value * value;
+  std::ranges::sort(samples);
+  const RankInterval ranks = quantile_ranks(samples.size(), 0.9, conf_level);
+  return {std::sqrt(squares / static_cast<double>(samples.size())), samples[ranks.low - 1], samples[ranks.high - 1],
+          test::sorted_quantile(samples, 0.99)};
+}
+
+TEST(RunMonteCarlo, HasRootMeanSquaresAndIntervalsOfItsSamples) {
+  Study study = study_of(3, 2 * Plan::kUnitSamples + 77);
+  study.analysis.judge = Judge::share;
+  study.analysis.share = 0.99;
+  study.analysis.limits = {{0, 1e9}, {1, 1e-9}};
+  const test::FakeModel model;
+  const PoseSet poses = select_poses(study.poses, model).poses;
+  const MonteCarloResult found = run(study, model, 2);
+  constexpr double kBucket = 2.0 * QuantileSketch::kRelativeError;
+  double worst = 0.0;
+  for (std::size_t m = 0; m < 3; ++m) {
+    const std::size_t cell = 3 + m;  // of the second response
+    const Plain truth = plain(plain_samples(study, poses[PoseIndex(m)], PoseIndex(m), 1), study.analysis.conf_level);
+    EXPECT_NEAR(found.rms[cell], truth.rms, 1e-12 * truth.rms);
+    EXPECT_LE(found.quantiles_ci_low[cell * 4 + 2], truth.low);
+    EXPECT_NEAR(found.quantiles_ci_low[cell * 4 + 2], truth.low, kBucket * truth.low);
+    EXPECT_GE(found.quantiles_ci_high[cell * 4 + 2], truth.high);
+    EXPECT_NEAR(found.quantiles_ci_high[cell * 4 + 2], truth.high, kBucket * truth.high);
+    EXPECT_NEAR(found.share_magnitude[cell], truth.magnitude, found.quantile_relative_error * truth.magnitude);
+    worst = std::max(worst, found.share_magnitude[cell]);
+  }
+  ASSERT_TRUE(found.verdicts);
+  EXPECT_TRUE(found.verdicts->limits[0].passed);
+  EXPECT_FALSE(found.verdicts->limits[1].passed);
+  EXPECT_EQ(found.verdicts->limits[1].value, worst);
+  EXPECT_EQ(found.verdicts->limits[0].within, found.verdicts->limits[0].tried);
+  EXPECT_EQ(found.verdicts->limits[0].tried, 3 * study.analysis.samples);
+}
+
 double normal_density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
 
 TEST(RunMonteCarlo, FindsTheFoldedNormal) {
@@ -162,6 +210,11 @@ TEST(RunMonteCarlo, HasTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(many.overall_mean, one.overall_mean);
     EXPECT_EQ(many.overall_std, one.overall_std);
     EXPECT_EQ(many.overall_quantiles, one.overall_quantiles);
+    EXPECT_EQ(many.rms, one.rms);
+    EXPECT_EQ(many.quantiles_ci_low, one.quantiles_ci_low);
+    EXPECT_EQ(many.quantiles_ci_high, one.quantiles_ci_high);
+    EXPECT_EQ(many.histogram_edges, one.histogram_edges);
+    EXPECT_EQ(many.histogram_counts, one.histogram_counts);
   }
 }
 
@@ -211,7 +264,8 @@ TEST(RunMonteCarlo, KnowsNothingWhereNoSampleCounts) {
   const MonteCarloResult found = run(study_of(1, 2), FailingModel(), 1);
   EXPECT_EQ(found.count, std::vector<std::uint64_t>(2, 0));
   for (const auto* values : {&found.mean, &found.mean_ci_low, &found.std, &found.min, &found.max, &found.quantiles,
-                             &found.overall_mean, &found.overall_quantiles}) {
+                             &found.overall_mean, &found.overall_quantiles, &found.rms, &found.overall_rms,
+                             &found.quantiles_ci_low, &found.overall_quantiles_ci_high, &found.histogram_edges}) {
     for (const double value : *values) EXPECT_TRUE(std::isnan(value));
   }
 }

@@ -39,6 +39,38 @@ TEST(QuantileSketch, IsExactForZeroAndForTheExtremes) {
   EXPECT_EQ(sketch.max(), 7.7);
 }
 
+TEST(QuantileSketch, TellsItsBucketsFromBelow) {
+  const std::vector<Bucket> buckets = of({-3.3, -3.3, 0.0, 1e-310, 1.5, 7.71, 7.712}).buckets();
+  ASSERT_EQ(buckets.size(), 4u);
+  const std::vector<std::uint64_t> counts{2, 2, 1, 2};
+  std::uint64_t up_to = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(buckets[k].count, counts[k]);
+    EXPECT_EQ(buckets[k].up_to, up_to += counts[k]);
+    EXPECT_LE(buckets[k].upper - buckets[k].lower, std::abs(buckets[k].upper) * 2.0 * QuantileSketch::kRelativeError);
+  }
+  EXPECT_EQ(buckets[0].lower, -3.3);
+  EXPECT_GE(buckets[0].upper, -3.3);
+  EXPECT_EQ(buckets[1].lower, 0.0);
+  EXPECT_EQ(buckets[1].upper, 0.0);
+  EXPECT_LE(buckets[2].lower, 1.5);
+  EXPECT_GT(buckets[2].upper, 1.5);
+  EXPECT_EQ(buckets[3].upper, 7.712);
+}
+
+TEST(QuantileSketch, FoldsMagnitudesTogether) {
+  const QuantileSketch magnitudes = of({-8.0, -2.0, -0.5, 0.0, 1.0, 4.0}).magnitudes();
+  EXPECT_EQ(magnitudes.count(), 6u);
+  EXPECT_EQ(magnitudes.max(), 8.0);
+  for (std::uint64_t k = 2; k <= 6; ++k) {
+    const double truth = std::ldexp(1.0, static_cast<int>(k) - 3);  // 0.5, 1, 2, 4, 8
+    EXPECT_NEAR(magnitudes.order_statistic(k), truth, truth * QuantileSketch::kRelativeError);
+  }
+  EXPECT_EQ(of({-8.0, -2.0}).magnitudes().min(), 2.0);
+  EXPECT_EQ(of({3.0, 5.0}).magnitudes().min(), 3.0);
+  EXPECT_EQ(QuantileSketch().magnitudes().count(), 0u);
+}
+
 TEST(BucketedValues, KnowsItsExtremesAndSigns) {
   const BucketedValues none(std::span<const double>{});
   EXPECT_TRUE(none.buckets.empty());

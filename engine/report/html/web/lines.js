@@ -17,6 +17,7 @@ function lines(figure, data) {
   const names = [...new Set(data.panels.flatMap(({ series }) => series.map(({ label }) => label)))];
   const x = values(data.x.value);
   const joined = data.x.label !== UNORDERED;
+  const xMarks = data.marks ?? [];
   const ticked = new Set(names.slice(0, data.most ?? names.length));
   let panel = 0;
 
@@ -116,7 +117,7 @@ function lines(figure, data) {
         }),
       ].flat(),
     );
-    const xDomain = extent(x);
+    const xDomain = extent([...x, ...xMarks.map(({ value }) => value)]);
     const svg = draw(sentence(one, shown, unit), {
       width,
       height,
@@ -142,7 +143,7 @@ function lines(figure, data) {
         label: null,
         ticks: Math.floor(height / 50),
       },
-      marks: [...marks, below ? [] : endLabels(shown, axis.factor)],
+      marks: [...marks, markedValues(xMarks, xDomain), below ? [] : endLabels(shown, axis.factor)],
     });
     const legend = below ? [seriesLegend(shown, joined)] : [];
     return element("div", { class: "panel" }, title(labelled(one.label, axis.unit)), svg, ...legend);
@@ -181,6 +182,18 @@ function line(points, scaled, colour, style) {
     }),
     points.length <= 40 ? Plot.dot(points, { x: "x", y: scaled("y"), fill: colour, r: 2.2 }) : [],
   ].flat();
+}
+
+/// A rule at each value, named on the side where there is more room.
+function markedValues(xMarks, [from, to]) {
+  const onTheRight = ({ value }) => value > (from + to) / 2;
+  const name = (some, side, dx) =>
+    Plot.text(some, { x: "value", text: "label", frameAnchor: "top", textAnchor: side, dx, dy: 2, fontWeight: 600 });
+  return [
+    Plot.ruleX(xMarks, { x: "value", stroke: "currentColor", strokeWidth: 1.5, strokeDasharray: "3 3" }),
+    name(xMarks.filter(onTheRight), "end", -5),
+    name(xMarks.filter((mark) => !onTheRight(mark)), "start", 5),
+  ];
 }
 
 function dots(points, scaled, colour, style) {

@@ -1,0 +1,136 @@
+#include "engine/run/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace poesy {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Two responses at two poses, 4 draws at each, one of which was not solved.
+MonteCarloResult draws() {
+  MonteCarloResult found;
+  found.responses = 2;
+  found.poses = 2;
+  found.overall_rms = {2.0, 0.5};
+  found.share_magnitude = {3.0, 4.0, 1.0, 0.75};
+  found.solves.resize(2);
+  found.solves[0].by_status = {4, 0, 0, 0, 0};
+  found.solves[1].by_status = {3, 0, 1, 0, 0};
+  return found;
+}
+
+/// The magnitudes of the first response's samples; the second has both signs.
+std::vector<QuantileSketch> overall() {
+  std::vector<QuantileSketch> sketches(2);
+  sketches[0].add(std::vector{1.0, 1.0, 2.0, 3.0, 1.0, 1.0, 2.0});
+  sketches[1].add(std::vector{-0.75, 0.25, 0.5, -0.25, 0.125, -0.125, 0.5});
+  return sketches;
+}
+
+Analysis limited(Judge judge, double first, double second) {
+  Analysis analysis;
+  analysis.judge = judge;
+  analysis.share = 0.5;
+  analysis.limits = {{0, first}, {1, second}};
+  return analysis;
+}
+
+TEST(JudgeDraws, ByRootMeanSquareUpToTheLimitItself) {
+  const LimitVerdicts verdicts = judge_draws(limited(Judge::rms, 2.0, 0.49), draws(), overall());
+  ASSERT_EQ(verdicts.limits.size(), 2u);
+  EXPECT_TRUE(verdicts.limits[0].passed);
+  EXPECT_EQ(verdicts.limits[0].value, 2.0);
+  EXPECT_EQ(verdicts.limits[0].limit, 2.0);
+  EXPECT_FALSE(verdicts.limits[0].pose);
+  EXPECT_FALSE(verdicts.limits[1].passed);
+  EXPECT_FALSE(verdicts.passed());
+  EXPECT_TRUE(judge_draws(limited(Judge::rms, 2.0, 0.5), draws(), overall()).passed());
+}
+
+TEST(JudgeDraws, ByTheWorstPoseOfAShare) {
+  const LimitVerdicts verdicts = judge_draws(limited(Judge::share, 3.5, 1.0), draws(), overall());
+  EXPECT_FALSE(verdicts.limits[0].passed);
+  EXPECT_EQ(verdicts.limits[0].value, 4.0);
+  EXPECT_EQ(verdicts.limits[0].pose, 1u);
+  EXPECT_TRUE(verdicts.limits[1].passed);
+  EXPECT_EQ(verdicts.limits[1].pose, 0u);
+}
+
+/// Of all draws, by magnitude; the one that was not solved is not within.
+TEST(JudgeDraws, CountsTheDrawsWithinTheLimit) {
+  const LimitVerdicts verdicts = judge_draws(limited(Judge::rms, 2.5, 0.375), draws(), overall());
+  EXPECT_EQ(verdicts.limits[0].tried, 8u);
+  EXPECT_EQ(verdicts.limits[0].within, 6u);
+  EXPECT_EQ(verdicts.limits[1].within, 4u);
+}
+
+TEST(JudgeDraws, RefusesWhatIsNotKnown) {
+  MonteCarloResult found = draws();
+  found.overall_rms[0] = kNaN;
+  EXPECT_FALSE(judge_draws(limited(Judge::rms, 1e9, 1.0), found, overall()).limits[0].passed);
+  found.share_magnitude[1] = kInfinity;
+  EXPECT_FALSE(judge_draws(limited(Judge::share, 1e9, 1.0), found, overall()).limits[0].passed);
+}
+
+/// Three poses, two rows; row 1 is the larger one, with both signs.
+EvaluationResult evaluation() {
+  EvaluationResult result;
+  result.poses = 3;
+  result.samples = 2;
+  result.responses = 1;
+  result.response = {1.0, 10.0, 2.0, -90.0, 6.0, 20.0};  // pose by pose
+  result.status.assign(6, SolveStatus::converged);
+  return result;
+}
+
+LimitVerdict judged(double limit, const EvaluationResult& found, NotConverged policy = NotConverged::exclude) {
+  const std::vector<ResponseLimit> limits{{0, limit}};
+  return judge_rows(limits, found, Pairing::every_pose_with_every_row, policy).limits.at(0);
+}
+
+TEST(JudgeRows, ByTheLargestMagnitudeOfEachRow) {
+  const LimitVerdict kept = judged(90.0, evaluation());
+  EXPECT_TRUE(kept.passed);
+  EXPECT_EQ(kept.value, 90.0);
+  EXPECT_EQ(kept.row, 1u);
+  EXPECT_EQ(kept.pose, 1u);
+  const LimitVerdict missed = judged(50.0, evaluation());
+  EXPECT_FALSE(missed.passed);
+  EXPECT_EQ(missed.tried, 2u);
+  EXPECT_EQ(missed.within, 1u);
+  EXPECT_EQ(judged(5.0, evaluation()).within, 0u);
+}
+
+/// A row that was not solved at a pose is not within any limit, though its other values are.
+TEST(JudgeRows, RefusesARowThatWasNotSolvedEverywhere) {
+  EvaluationResult some = evaluation();
+  some.status[4] = SolveStatus::iteration_cap;  // row 0 at the last pose
+  const LimitVerdict exclude = judged(100.0, some);
+  EXPECT_FALSE(exclude.passed);
+  EXPECT_EQ(exclude.within, 1u);
+  EXPECT_TRUE(judged(100.0, some, NotConverged::include).passed);
+  some.status.assign(6, SolveStatus::singular);
+  EXPECT_TRUE(std::isnan(judged(100.0, some, NotConverged::include).value));
+  EXPECT_FALSE(judged(100.0, some, NotConverged::include).row);
+}
+
+TEST(JudgeRows, TakesEachRowAtItsOwnPoseRowByRow) {
+  EvaluationResult paired = evaluation();
+  paired.poses = 6;
+  paired.samples = 1;
+  const std::vector<ResponseLimit> limits{{0, 10.0}};
+  const LimitVerdict verdict = judge_rows(limits, paired, Pairing::row_by_row, NotConverged::exclude).limits.at(0);
+  EXPECT_EQ(verdict.tried, 6u);
+  EXPECT_EQ(verdict.within, 4u);
+  EXPECT_EQ(verdict.row, 3u);
+  EXPECT_EQ(verdict.pose, 3u);
+  EXPECT_FALSE(verdict.passed);
+}
+
+}  // namespace
+}  // namespace poesy

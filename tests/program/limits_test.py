@@ -1,0 +1,145 @@
+"""Limits that a study states: PASS or FAIL, exit code 6, in every way in which a study is run and its result is shown."""
+
+import csv
+import json
+
+import h5py
+from poesy_program import STUDY, ProgramTest, main
+
+MONTE_CARLO = STUDY.replace('"sensitivity"', '"monte-carlo"')
+RESPONSE = "linear_deformation"
+
+
+def limited(limit, judge=""):
+    """The study with a limit in mm."""
+    before, after = MONTE_CARLO.split("[analysis]\n")
+    return f'{before}[analysis]\n{judge}limits.{RESPONSE} = "{limit:.17g} mm"\n{after}'
+
+
+CASES = """
+[mechanism]
+model = "2upr-rpu"
+[poses]
+count = 5
+[analysis]
+kind = "evaluate"
+limits.linear_deformation = "%s mm"
+[[analysis.cases]]
+name = "small"
+errors = { delta_1_1_y = "0.1 mm" }
+[[analysis.cases]]
+name = "large"
+errors = { delta_1_1_y = "0.2 mm" }
+"""
+
+
+class Limits(ProgramTest):
+    def run_with(self, limit, judge="", *, code):
+        self.write("study.toml", limited(limit, judge))
+        done = self.poesy("run", "study.toml", "-o", "study.h5", "--quiet")
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def value(self, name="study"):
+        """What was judged, in mm."""
+        with h5py.File(self.folder / f"{name}.h5") as file:
+            return file["limits/value"][0] * 1e3
+
+    def table(self, name="study"):
+        tables = json.loads(self.succeeds("show", f"{name}.h5", "--json"))["tables"]
+        return next(table for table in tables if table["name"] == "limits")
+
+    def check_both_sides(self, judge):
+        """A limit at the value that is found is kept, and one just below is not."""
+        self.run_with(1e6, judge, code=0)
+        found = self.value()
+        done = self.run_with(found * (1 + 1e-9), judge, code=0)
+        self.assertIn(b"PASS", done.stdout)
+        done = self.run_with(found * (1 - 1e-9), judge, code=6)
+        self.assertIn(b"FAIL", done.stdout)
+        for words in ("study.toml", RESPONSE, "above its limit"):
+            self.assertIn(words, done.stderr.decode())
+        return found
+
+    def test_root_mean_square(self):
+        found = self.check_both_sides("")
+        with h5py.File(self.folder / "study.h5") as file:
+            row = list(file["responses/name"].asstr()).index(RESPONSE)
+            self.assertAlmostEqual(file["monte_carlo/overall_rms"][row] * 1e3, found, delta=1e-12 * found)
+            self.assertEqual(file["limits"].attrs["judge"], "rms")
+
+    def test_share(self):
+        found = self.check_both_sides('judge = "share"\nshare = 0.9\n')
+        with h5py.File(self.folder / "study.h5") as file:
+            row = list(file["responses/name"].asstr()).index(RESPONSE)
+            self.assertEqual(file["monte_carlo/share_magnitude"][row].max() * 1e3, found)
+            self.assertEqual(file["limits"].attrs["share"], 0.9)
+            self.assertEqual(file["limits/pose"][0], file["monte_carlo/share_magnitude"][row].argmax())
+
+    def test_show_and_export_say_the_same(self):
+        done = self.run_with(1e-3, code=6)
+        self.succeeds("export", "study.h5", "-d", "tables")
+        with open(self.folder / "tables/limits.csv", newline="", encoding="utf-8") as file:
+            exported, = csv.DictReader(file)
+        row, = self.table()["rows"]
+        self.assertEqual((row["verdict"], row["response"], row["unit"]), ("FAIL", RESPONSE, "mm"))
+        self.assertEqual((exported["response"], exported["passed"], exported["unit"]), (RESPONSE, "0", "m"))
+        for found in (row["value"], float(exported["value"]) * 1e3):
+            self.assertAlmostEqual(found, self.value(), delta=1e-12 * found)
+        self.assertAlmostEqual(row["limit"], 1e-3, delta=1e-15)
+        line = next(line for line in done.stdout.decode().splitlines() if line.startswith("FAIL  "))
+        self.assertIn(line, self.succeeds("show", "study.h5"))  # which ends with 0
+
+    def test_too_many_failures_go_first(self):
+        study = limited(1e-3).replace("[run]", "max_iterations = 1\nmax_not_converged = 0\n[run]")
+        self.write("study.toml", study)
+        done = self.poesy("run", "study.toml", "-o", "study.h5", "--quiet")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn(b"FAIL", done.stdout)
+
+    def test_shards_are_judged_when_they_are_merged(self):
+        self.run_with(1e-3, code=6)
+        for shard in ("1/2", "2/2"):
+            done = self.poesy("run", "study.toml", "--shard", shard, "-o", f"shard{shard[0]}.h5", "--quiet")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertNotIn(b"FAIL", done.stdout)
+        done = self.poesy("merge", "shard1.h5", "shard2.h5", "-o", "all.h5")
+        self.assertEqual(done.returncode, 6, done.stderr)
+        self.assertIn(b"FAIL", done.stdout)
+        self.assertEqual(self.value("all"), self.value())
+
+    def test_a_run_may_go_on_under_another_limit(self):
+        self.write("study.toml", limited(1e-3))
+        done = self.poesy("run", "study.toml", "-o", "study.h5", "--quiet", "--max-wall", "0.000001 s")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.write("study.toml", limited(1e6))
+        done = self.poesy("run", "study.toml", "-o", "study.h5", "--quiet", "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(b"PASS", done.stdout)
+
+    def test_cases_are_judged_one_by_one(self):
+        self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e6")
+        self.succeeds("run", "cases.toml", "-o", "cases.h5", "--quiet")
+        with h5py.File(self.folder / "cases.h5") as file:
+            small, large = file["evaluate/linear_deformation"][:].max(axis=1) * 1e3
+        self.assertLess(small, large)
+        self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % f"{0.5 * (small + large):.17g}")
+        done = self.poesy("run", "cases.toml", "-o", "cases.h5", "--quiet")
+        self.assertEqual(done.returncode, 6, done.stderr)
+        row, = self.table("cases")["rows"]
+        self.assertEqual((row["verdict"], row["within"]), ("FAIL", 50.0))
+        self.assertTrue(row["place"].startswith("large, pose "))
+
+    def test_rows_are_judged_one_by_one(self):
+        self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e-3")
+        self.write("errors.csv", "delta_1_1_y\n0\n0.0001\n0.0002\n")
+        self.write("poses.csv", "z,beta,gamma\n-0.22,0.1,0.2\n-0.21,-0.1,0.1\n")
+        done = self.poesy("evaluate", "cases.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "rows.h5", "--quiet")
+        self.assertEqual(done.returncode, 6, done.stderr)
+        row, = self.table("rows")["rows"]
+        self.assertAlmostEqual(row["within"], 100.0 / 3.0)
+        self.assertTrue(row["place"].startswith("sample 2, pose "))
+
+
+if __name__ == "__main__":
+    main()
