@@ -24,22 +24,22 @@ std::string head(const ModelDescription& model, Analysis::Kind kind) {
          "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.\n"
          "# A key behind a '#' shows a default or an alternative. All keys: poesy template --reference\n" +
          explained("", "format", "format = \"poesy-study\"") + explained("", "version", "version = 1") +
-         explained("", "title", "title = " + quoted(title(kind) + " of " + model.name));
+         explained("", "title", "title = " + in_quotes(title(kind) + " of " + model.name));
 }
 
 std::string fidelity_keys(const ModelDescription& model, Analysis::Kind kind) {
   if (model.fidelities.empty()) return {};
   std::string text = comment(fmt::format("fidelity: {}", fmt::join(model.fidelities, ", "))) +
-                     explained("mechanism", "fidelity", "fidelity = " + quoted(model.fidelities.front()));
+                     explained("mechanism", "fidelity", "fidelity = " + in_quotes(model.fidelities.front()));
   if (model.fidelities.size() == 2 && kind == Analysis::Kind::sensitivity) {
-    text += fmt::format("# fidelity = {}\n", quoted(kBothFidelities));
+    text += fmt::format("# fidelity = {}\n", in_quotes(kBothFidelities));
   }
   return text;
 }
 
 std::string mechanism_section(const ModelDescription& model, Analysis::Kind kind) {
-  std::string text =
-      "\n[mechanism]\n" + explained("mechanism", "model", "model = " + quoted(model.name)) + fidelity_keys(model, kind);
+  std::string text = "\n[mechanism]\n" + explained("mechanism", "model", "model = " + in_quotes(model.name)) +
+                     fidelity_keys(model, kind);
   if (model.geometry.empty()) return text;
   text += "\n" + explained("mechanism", "geometry", "# [mechanism.geometry]");
   for (const GeometryParameter& parameter : model.geometry) {
@@ -94,7 +94,7 @@ std::string curve_example(const NamedCurve& curve, const ModelDescription& model
     origin += (c > 0 ? ", " : "") + readable_value(curve.origin[c], dimension);
   }
   return fmt::format("# trajectory = {{ curve = {}, origin = [{}], points = 201, time = [{}, {}] }}  # {}\n",
-                     quoted(curve.name), origin, readable_value(curve.start, Dimension::time),
+                     in_quotes(curve.name), origin, readable_value(curve.start, Dimension::time),
                      readable_value(curve.end, Dimension::time), curve.description);
 }
 
@@ -167,7 +167,7 @@ std::string reference_key(const ModelDescription& model) {
   if (model.factors.empty()) return {};
   const Factor& factor = model.factors.front();
   return explanation_lines("analysis", "reference") + keys_lines("analysis.reference") +
-         fmt::format("# reference = {{ factor = {}, tolerance = {} }}\n", quoted(factor.name),
+         fmt::format("# reference = {{ factor = {}, tolerance = {} }}\n", in_quotes(factor.name),
                      factor.dimension == Dimension::length ? "\"1 mm\"" : "\"1 deg\"");
 }
 
@@ -222,7 +222,7 @@ std::string evaluate_keys(const ModelDescription& model) {
                     "\n[[analysis.cases]]\nname = \"one error\"\nerrors = {{ {} = {} }}\n"
                     "# errors = {{ {} = {{ linear = \"0.1 mm\", angular = \"0.1 deg\" }} }}\n",
                     factor.name, factor.dimension == Dimension::length ? "\"0.1 mm\"" : "\"0.1 deg\"",
-                    quoted(model.factor_sets.empty() ? factor.name : model.factor_sets.back().name));
+                    in_quotes(model.factor_sets.empty() ? factor.name : model.factor_sets.back().name));
 }
 
 /// Whether an error of this dimension is among the literature's sources.
@@ -244,14 +244,15 @@ std::string coupling_keys(const ModelDescription& model) {
                      explanation_lines("analysis", "sources") + keys_lines("analysis.sources") + "# Factor sets:\n" +
                      sets_comment(model);
   for (const CouplingSource& source : model.sources) {
-    text += fmt::format("[[analysis.sources]]\nname = {}\nfactors = {}\n\n", quoted(source.name), quoted(source.set));
+    text +=
+        fmt::format("[[analysis.sources]]\nname = {}\nfactors = {}\n\n", in_quotes(source.name), in_quotes(source.set));
   }
   text.pop_back();
   return text;
 }
 
 std::string analysis_section(const ModelDescription& model, Analysis::Kind kind) {
-  const std::string text = "\n[analysis]\n" + explained("analysis", "kind", "kind = " + quoted(name(kind)));
+  const std::string text = "\n[analysis]\n" + explained("analysis", "kind", "kind = " + in_quotes(name(kind)));
   switch (kind) {
     case Analysis::Kind::sensitivity:
       return text + sensitivity_keys(model);

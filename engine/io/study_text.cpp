@@ -17,7 +17,7 @@ bool same(const Distribution& a, const Distribution& b) {
 std::string distribution_text(const Distribution& distribution, Dimension dimension) {
   using Shape = Distribution::Shape;
   const Shape shape = distribution.shape();
-  std::string text = fmt::format("{{ distribution = {}", quoted(name(shape)));
+  std::string text = fmt::format("{{ distribution = {}", in_quotes(name(shape)));
   if (shape == Shape::normal || shape == Shape::truncated_normal) {
     text += ", sigma = " + exact_value(distribution.sigma(), dimension);
   }
@@ -45,20 +45,20 @@ Distribution usual_distribution(const Study& study, Dimension dimension) {
 }
 
 std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model) {
-  if (const std::string set = set_name(factors, model); !set.empty()) return quoted(set);
+  if (const std::string set = set_name(factors, model); !set.empty()) return in_quotes(set);
   std::string text = "[";
-  for (const FactorIndex factor : factors) text += "\n  " + quoted(model.factors[factor.value].name) + ",";
+  for (const FactorIndex factor : factors) text += "\n  " + in_quotes(model.factors[factor.value].name) + ",";
   return text + "\n]";
 }
 
 std::string mechanism_text(const Study& study) {
   const ModelDescription& model = study.model();
-  std::string text = fmt::format("[mechanism]\nmodel = {}\n", quoted(model.name));
+  std::string text = fmt::format("[mechanism]\nmodel = {}\n", in_quotes(model.name));
   if (!model.fidelities.empty()) {
     const MechanismChoice& choice = study.mechanism;
     text +=
         fmt::format("fidelity = {}\n",
-                    quoted(choice.compared ? kBothFidelities : std::string_view(model.fidelities[choice.fidelity])));
+                    in_quotes(choice.compared ? kBothFidelities : std::string_view(model.fidelities[choice.fidelity])));
   }
   if (model.geometry.empty()) return text;
   text += "\n[mechanism.geometry]\n";
@@ -95,9 +95,9 @@ std::string trajectory_text(const Trajectory& trajectory, const ModelDescription
       text +=
           (c > 0 ? ", " : "") + exact_value(trajectory.origin[c], model.charts[curve.chart].coordinates[c].dimension);
     }
-    text = fmt::format("curve = {}, origin = [{}]", quoted(curve.name), text);
+    text = fmt::format("curve = {}, origin = [{}]", in_quotes(curve.name), text);
   } else {
-    text = "file = " + quoted(trajectory.file);
+    text = "file = " + in_quotes(trajectory.file);
   }
   if (trajectory.points > 0) text += fmt::format(", points = {}", trajectory.points);
   if (trajectory.time) {
@@ -109,8 +109,8 @@ std::string trajectory_text(const Trajectory& trajectory, const ModelDescription
 
 std::string poses_text(const Study& study) {
   const PoseSelection& poses = study.poses;
-  std::string text = fmt::format("[poses]\nselect = {}\n", quoted(name(poses.select)));
-  if (poses.select == PoseSelection::Select::file) return text + "file = " + quoted(poses.file) + "\n";
+  std::string text = fmt::format("[poses]\nselect = {}\n", in_quotes(name(poses.select)));
+  if (poses.select == PoseSelection::Select::file) return text + "file = " + in_quotes(poses.file) + "\n";
   if (poses.select == PoseSelection::Select::trajectory) {
     if (poses.trajectory) text += "trajectory = " + trajectory_text(*poses.trajectory, study.model()) + "\n";
     return text + "max_condition = " + shortest(poses.max_condition) + "\n";
@@ -148,18 +148,18 @@ std::string background_text(const Background& background, const ModelDescription
 
 std::string reference_text(const ToleranceReference& reference, const ModelDescription& model) {
   const Factor& factor = model.factors[reference.factor.value];
-  return fmt::format("reference = {{ factor = {}, tolerance = {} }}\n", quoted(factor.name),
+  return fmt::format("reference = {{ factor = {}, tolerance = {} }}\n", in_quotes(factor.name),
                      exact_value(reference.tolerance, factor.dimension));
 }
 
 std::string group_text(const ErrorSize& group) {
-  return fmt::format("\n[[analysis.groups]]\nname = {}\nlinear = {}\nangular = {}\n", quoted(group.name),
+  return fmt::format("\n[[analysis.groups]]\nname = {}\nlinear = {}\nangular = {}\n", in_quotes(group.name),
                      exact_value(group.linear, Dimension::length), exact_value(group.angular, Dimension::angle));
 }
 
 /// Every error by name.
 std::string case_text(const ErrorCase& one, const ModelDescription& model) {
-  std::string text = fmt::format("\n[[analysis.cases]]\nname = {}\n\n[analysis.cases.errors]\n", quoted(one.name));
+  std::string text = fmt::format("\n[[analysis.cases]]\nname = {}\n\n[analysis.cases.errors]\n", in_quotes(one.name));
   for (std::size_t f = 0; f < one.errors.size(); ++f) {
     text += model.factors[f].name + " = " + exact_value(one.errors[f], model.factors[f].dimension) + "\n";
   }
@@ -181,13 +181,13 @@ std::string choice_text(ErrorPattern::Choice choice, const std::string& some) {
 std::string coupling_text(const CouplingStudy& coupling, const ModelDescription& model) {
   const ErrorPattern& pattern = coupling.pattern;
   std::string axes;
-  for (const std::string& axis : pattern.axes) axes += (axes.empty() ? "" : ", ") + quoted(axis);
+  for (const std::string& axis : pattern.axes) axes += (axes.empty() ? "" : ", ") + in_quotes(axis);
   std::string text = sizes_text("linear", coupling.linear, Dimension::length) +
                      sizes_text("angular", coupling.angular, Dimension::angle);
   text += fmt::format("limbs = {}\ncomponents = {}\n", choice_text(pattern.limbs, std::to_string(pattern.limb)),
                       choice_text(pattern.components, "[" + axes + "]"));
   for (const ErrorSource& source : coupling.sources) {
-    text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", quoted(source.name),
+    text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", in_quotes(source.name),
                         factors_text(source.factors, model));
   }
   return text;
@@ -219,7 +219,7 @@ std::string samples_text(const Analysis& analysis) {
 std::string analysis_text(const Study& study) {
   using Kind = Analysis::Kind;
   const Analysis& analysis = study.analysis;
-  std::string text = fmt::format("[analysis]\nkind = {}\n", quoted(name(analysis.kind)));
+  std::string text = fmt::format("[analysis]\nkind = {}\n", in_quotes(name(analysis.kind)));
   if (analysis.kind == Kind::coupling) return text + coupling_text(analysis.coupling, study.model());
   if (analysis.kind != Kind::evaluate) text += "factors = " + factors_text(analysis.factors, study.model()) + "\n";
   if (analysis.kind == Kind::sensitivity || analysis.kind == Kind::monte_carlo) {
@@ -242,7 +242,7 @@ std::string analysis_text(const Study& study) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char character : text) {
     const auto code = static_cast<unsigned char>(character);
@@ -257,7 +257,7 @@ std::string quoted(std::string_view text) {
 }
 
 std::string exact_value(double si, Dimension dimension) {
-  return dimension == Dimension::number ? shortest(si) : quoted(to_text({si, dimension}));
+  return dimension == Dimension::number ? shortest(si) : in_quotes(to_text({si, dimension}));
 }
 
 std::string readable_value(double si, Dimension dimension) {
@@ -265,7 +265,7 @@ std::string readable_value(double si, Dimension dimension) {
   if (dimension == Dimension::number) return exact;
   const std::string text = readable_text({si, dimension});
   const bool as_exact = parse_quantity(text).si == si;
-  return as_exact && text.size() + 2 <= exact.size() + 1 ? quoted(text) : exact;
+  return as_exact && text.size() + 2 <= exact.size() + 1 ? in_quotes(text) : exact;
 }
 
 std::string range_text(const Range& range, Dimension dimension, std::string (*value)(double si, Dimension dimension)) {
@@ -298,10 +298,10 @@ std::string resolved_text(const Study& study) {
   const SolverOptions& solver = study.solver;
   const std::string solver_text = fmt::format(
       "[solver]\nmethod = {}\ntolerance = {}\nmax_iterations = {}\nnot_converged = {}\nmax_not_converged = {}\n",
-      quoted(name(solver.method)), shortest(solver.tolerance), solver.max_iterations, quoted(name(study.not_converged)),
-      shortest(study.max_not_converged));
+      in_quotes(name(solver.method)), shortest(solver.tolerance), solver.max_iterations,
+      in_quotes(name(study.not_converged)), shortest(study.max_not_converged));
   return fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}\n\n{}\n{}\n{}\n{}\n{}\n[run]\nseed = {}\n",
-                     quoted(study.title), mechanism_text(study), poses_text(study), errors_text(study),
+                     in_quotes(study.title), mechanism_text(study), poses_text(study), errors_text(study),
                      analysis_text(study), solver_text, study.seed);
 }
 

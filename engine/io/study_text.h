@@ -14,7 +14,7 @@ namespace poesy {
 inline constexpr std::string_view kBothFidelities = "both";
 
 /// A TOML string: in quotes, with what needs it escaped.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// A value of this dimension as a study file has it, exact when read back: "0.001 m" in quotes, or a bare number.
 std::string exact_value(double si, Dimension dimension);
