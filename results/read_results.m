@@ -1,20 +1,27 @@
 function result = read_results(source, response, figure_file)
-% READ_RESULTS  The indices of a poesy sensitivity study, with names, units and intervals; draws them ranked.
+% READ_RESULTS  What a poesy study found, of any kind; the indices of a sensitivity study with names and intervals, ranked.
 %
 %   result = read_results('study.h5')     MATLAB reads the result file itself
 %   result = read_results('tables')       Octave reads what `poesy export study.h5 -d tables` wrote; so can MATLAB
-%   read_results(source)                  draws what each error does to the first response that is a length (poesy show
-%                                         looks among those that the mechanism puts first; name it to be sure)
+%   read_results(source)                  draws what each error of a sensitivity study does to the first response that is
+%                                         a length (poesy show looks among those that the mechanism puts first; name it
+%                                         to be sure)
 %   read_results(source, 'angular_deformation')                          to another response
 %   result = read_results(source, 'linear_deformation', 'ranked.svg')    writes the figure to a file
 %
-% result, for P errors and R responses:
+% result.kind is 'sensitivity', 'monte-carlo', 'evaluate', 'identification' or 'coupling'. Of a sensitivity study with P
+% errors and R responses result also has
 %   factors, factor_units            {P x 1}  names and SI units of the errors
 %   responses, response_units        {R x 1}
 %   sigma                            [P x 1]  standard deviation of each error, SI
 %   index, index_low, index_high     [P x R]  global index and its interval, SI: response unit per factor unit
 %   effect, effect_low, effect_high  [P x R]  index x sigma, in effect_units {R x 1}: mm, deg
 %   rank                             [P x R]  rank(k, r) is the error that has the k-th largest effect on response r
+% Of any other kind it has, read from tables, result.tables.NAME for each NAME.csv:
+%   columns, units                   {C x 1}  names of the columns, and their units ('1' for none)
+%   rows                             {N x 1}  the first column as text: names of cases, numbers of poses, ...
+%   values                           [N x C]  all cells as numbers, NaN where a cell is text
+% and read from a file result.groups.GROUP.DATASET, as h5read gives them: axes in reversed order.
   if exist(source, 'dir') == 7
     result = from_tables(source);
   elseif exist(source, 'file') ~= 2
@@ -24,6 +31,13 @@ function result = read_results(source, response, figure_file)
           'read_results the folder tables'], source, source);
   else
     result = from_file(source);
+  end
+  if ~strcmp(result.kind, 'sensitivity')
+    if nargin > 1 || nargout == 0
+      error('read_results:kind', '%s: of kind %s, which has no indices to rank or draw; take result = read_results(''%s'')', ...
+            source, result.kind, source);
+    end
+    return
   end
   if nargin < 2 || isempty(response)
     response = default_response(result);
@@ -58,8 +72,9 @@ function result = from_file(file)
   end
   kind = char(h5readatt(file, '/', 'kind'));
   if ~strcmp(kind, 'sensitivity')
-    error('read_results:kind', '%s: of kind %s, which has no indices; give a result of a sensitivity study', ...
-          file, kind);
+    result.kind = kind;
+    result.groups = groups_of(file);
+    return
   end
   % h5read gives the axes in reversed order: what the file has as [R x P] arrives as [P x R]. Names arrive as a string
   % array or, in older versions, as a cell array; cellstr takes both.
@@ -70,15 +85,60 @@ function result = from_file(file)
                      h5read(file, '/sensitivity/global_ci_high'));
 end
 
-function result = from_tables(folder)
-  for name = {'global.csv', 'factors.csv'}
-    if exist(fullfile(folder, name{1}), 'file') ~= 2
-      error('read_results:tables', ['%s: has no %s; give the folder that "poesy export RESULT.h5 -d FOLDER" made ' ...
-            'of a sensitivity result'], folder, name{1});
+% Every dataset of every group.
+function groups = groups_of(file)
+  info = h5info(file);
+  for group = info.Groups'
+    for dataset = group.Datasets'
+      path = [group.Name '/' dataset.Name];
+      values = h5read(file, path);
+      if ~isnumeric(values)
+        values = cellstr(values);
+      end
+      groups.(group.Name(2:end)).(dataset.Name) = values;
     end
+  end
+end
+
+% The kind of the result that a folder's tables belong to: by a table that no other kind has.
+function kind = kind_of(folder)
+  marks = {'global.csv', 'sensitivity'; 'overall.csv', 'monte-carlo'; 'evaluate.csv', 'evaluate'; ...
+           'identification.csv', 'identification'; 'coupling.csv', 'coupling'};
+  there = cellfun(@(name) exist(fullfile(folder, name), 'file') == 2, marks(:, 1));
+  if sum(there) ~= 1
+    error('read_results:tables', ['%s: has the tables of %d kinds of results; give the folder that ' ...
+          '"poesy export RESULT.h5 -d FOLDER" made of one result'], folder, sum(there));
+  end
+  kind = marks{there, 2};
+end
+
+function tables = all_tables(folder)
+  files = dir(fullfile(folder, '*.csv'));
+  for file = {files.name}
+    [rows, columns, numbers] = read_table(fullfile(folder, file{1}));
+    name = regexprep(file{1}, '\.csv$', '');
+    [units, names] = units_of(columns);
+    tables.(name) = struct('columns', {names}, 'units', {units}, 'rows', {rows}, 'values', numbers);
+  end
+end
+
+% "mean [m]" is in m; a title without brackets has the unit 1.
+function [units, names] = units_of(titles)
+  names = regexprep(titles, ' \[.*\]$', '');
+  units = regexprep(titles, '^.*\[(.*)\]$', '$1');
+  units(strcmp(names, titles)) = {'1'};
+end
+
+function result = from_tables(folder)
+  kind = kind_of(folder);
+  if ~strcmp(kind, 'sensitivity')
+    result.kind = kind;
+    result.tables = all_tables(folder);
+    return
   end
   % factors.csv: sigma in SI and as people read it, 1000 times (mm) or 180 / pi times (deg) as much.
   [factors, ~, sigma] = read_table(fullfile(folder, 'factors.csv'));
+  sigma = sigma(:, 2:end);
   scale = sigma(:, 2) ./ sigma(:, 1);
   factor_units = repmat({'1'}, numel(factors), 1);
   factor_units(abs(scale / 1000 - 1) < 1e-6) = {'m'};
@@ -86,6 +146,8 @@ function result = from_tables(folder)
   % global.csv: for each response index, lower and upper end in SI, then the same three in mm or deg. The header says
   % "linear_deformation [m per m or rad]".
   [~, columns, numbers] = read_table(fullfile(folder, 'global.csv'));
+  columns = columns(2:end);
+  numbers = numbers(:, 2:end);
   first = columns(1:6:end);
   responses = regexprep(first, ' \[.*', '');
   response_units = regexprep(first, '^.*\[(\S+) per .*$', '$1');
@@ -93,17 +155,18 @@ function result = from_tables(folder)
                      numbers(:, 2:6:end), numbers(:, 3:6:end));
 end
 
-% A table of poesy: the first line names the columns, the first column the rows; the rest are numbers.
+% A table of poesy: the first line names the columns, the first column the rows. numbers has NaN where a cell is text.
 function [rows, columns, numbers] = read_table(file)
   lines = strsplit(strtrim(fileread(file)), char(10));
   cells = cellfun(@(line) strsplit(line, ','), lines, 'UniformOutput', false);
   cells = vertcat(cells{:});
   rows = cells(2:end, 1);
-  columns = cells(1, 2:end)';
-  numbers = str2double(cells(2:end, 2:end));
+  columns = cells(1, :)';
+  numbers = str2double(cells(2:end, :));
 end
 
 function result = assembled(factors, factor_units, sigma, responses, response_units, index, low, high)
+  result.kind = 'sensitivity';
   result.factors = factors(:);
   result.factor_units = factor_units(:);
   result.responses = responses(:);

@@ -11,7 +11,8 @@ In a program of your own:
     result = read_result("study.h5")
     result.groups["sensitivity"]["global"].sel(response="linear_deformation", factor="delta_1_1_y")
 
-Debian's packages: python3-h5py python3-h5netcdf python3-xarray python3-matplotlib.
+Packages of pip and conda-forge: h5py h5netcdf xarray matplotlib. Debian's: python3-h5py python3-h5netcdf python3-xarray
+python3-matplotlib.
 """
 
 from __future__ import annotations
@@ -30,8 +31,10 @@ try:
     from matplotlib.figure import Figure
 except ImportError as missing:
     sys.exit(
-        f"read_results.py: {missing}; needs h5py, h5netcdf, xarray and matplotlib: apt-get install python3-h5py "
-        "python3-h5netcdf python3-xarray python3-matplotlib, and run it by /usr/bin/python3"
+        f"read_results.py: {missing}; needs h5py, h5netcdf, xarray and matplotlib for this Python ({sys.executable}): "
+        "pip install h5py h5netcdf xarray matplotlib, or conda install -c conda-forge with the same names; for Debian's "
+        "own Python: apt-get install python3-h5py python3-h5netcdf python3-xarray python3-matplotlib, and run it by "
+        "/usr/bin/python3"
     )
 
 NEWEST_MAJOR = 1

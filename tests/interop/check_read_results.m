@@ -43,6 +43,54 @@ function check_figure(source)
   assert(numel(strfind(drawn, '<path')) > 5, 'the figure is empty');
 end
 
+% What tells the kinds apart: kind, an axis of its own, and the table or the group with its numbers.
+function list = kinds()
+  list = {'monte_carlo', 'monte-carlo'; 'evaluate', 'evaluate'; 'paired', 'evaluate'; 'cases', 'evaluate'; ...
+          'identification', 'identification'; 'coupling', 'coupling'};
+end
+
+% Every table of every kind: names, units and numbers are those of its text.
+function check_tables(examples)
+  for k = kinds()'
+    folder = fullfile(examples, k{1});
+    result = read_results(folder);
+    assert(result.kind, k{2});
+    files = dir(fullfile(folder, '*.csv'));
+    assert(numel(fieldnames(result.tables)), numel(files));
+    for file = {files.name}
+      check_table(result.tables.(strrep(file{1}, '.csv', '')), fullfile(folder, file{1}));
+    end
+  end
+end
+
+function check_table(table, file)
+  lines = strsplit(strtrim(fileread(file)), "\n");
+  titles = strsplit(lines{1}, ',');
+  last = strsplit(lines{end}, ',');
+  assert(size(table.values), [numel(lines) - 1, numel(titles)]);
+  assert(table.rows{end}, last{1});
+  assert(table.values(end, :), str2double(last));
+  for c = 1:numel(titles)
+    title = table.columns{c};
+    if ~strcmp(table.units{c}, '1')
+      title = [title ' [' table.units{c} ']'];
+    end
+    assert(title, titles{c});
+  end
+end
+
+% The groups of a file hold the numbers of its tables. Of one kind: each dataset takes a process of Python.
+function check_groups(examples)
+  from_file = read_results([fullfile(examples, 'monte_carlo') '.h5']);
+  from_tables = read_results(fullfile(examples, 'monte_carlo'));
+  assert(from_file.kind, 'monte-carlo');
+  assert(from_file.groups.responses.name, {'angular_deformation'; 'linear_deformation'});
+  poses = from_tables.tables.poses;
+  assert(from_file.groups.poses.z(:), poses.values(:, strcmp(poses.columns, 'z')));
+  table = from_tables.tables.monte_carlo_linear_deformation;
+  assert(isequaln(from_file.groups.monte_carlo.mean(:, 2), table.values(:, strcmp(table.columns, 'mean'))));
+end
+
 warning('off', 'all');  % Octave's about its own fonts and gnuplot
 arguments = argv();
 sources = arguments{1};
@@ -56,8 +104,9 @@ from_tables = read_results(tables);
 check_values(from_tables);
 check_figure(tables);
 fails(@() read_results(fullfile(examples, 'absent')), 'no such file or folder');
-fails(@() read_results(examples), 'has no global.csv');
-fails(@() read_results(fullfile(examples, 'monte_carlo')), 'has no global.csv');
+fails(@() read_results(examples), 'has the tables of 0 kinds of results');
+fails(@() read_results(fullfile(examples, 'monte_carlo'), 'linear_deformation'), 'of kind monte-carlo, which has no indices');
+check_tables(examples);
 fails(@() read_results(tables, 'absent_response'), 'it has angular_deformation, linear_deformation');
 fails(@() read_results(file), 'poesy export');
 
@@ -65,7 +114,8 @@ addpath(fullfile(sources, 'tests', 'interop', 'matlab'));
 from_file = read_results(file);
 check_values(from_file);
 assert(isequaln(from_file, from_tables), 'tables and file give different results');
-fails(@() read_results([fullfile(examples, 'monte_carlo') '.h5']), 'of kind monte-carlo, which has no indices');
+fails(@() read_results([fullfile(examples, 'monte_carlo') '.h5'], 'linear_deformation'), 'of kind monte-carlo, which has no indices');
+check_groups(examples);
 fails(@() read_results(fullfile(tables, 'global.csv')), 'not a result of poesy');
 fails(@() read_results(fullfile(examples, 'newer.h5')), 'has version 2.0, this reads 1.x');
 fails(@() read_results(fullfile(examples, 'stranger.h5')), 'filetype: something-else');

@@ -7,6 +7,7 @@ import contextlib
 import csv
 import io
 import math
+import os
 import re
 import subprocess
 import sys
@@ -124,6 +125,15 @@ class Examples(unittest.TestCase):
         done = subprocess.run([*command, EXAMPLES / "absent.h5"], capture_output=True, text=True, timeout=120, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertTrue(done.stderr.startswith("read_results.py: "), done.stderr)
+
+    def test_missing_package_is_named_for_each_way_to_install(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "h5netcdf.py").write_text("raise ImportError(\"No module named 'h5netcdf'\")\n")
+            done = subprocess.run([sys.executable, "-B", str(SCRIPT), "r.h5"], capture_output=True, text=True, timeout=120,
+                                  check=False, env={**os.environ, "PYTHONPATH": folder})
+        self.assertEqual(done.returncode, 1)
+        for words in ("No module named 'h5netcdf'", "pip install h5py h5netcdf", "conda install", "python3-h5netcdf"):
+            self.assertIn(words, done.stderr)
 
 
 class Studies(unittest.TestCase):

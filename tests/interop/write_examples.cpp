@@ -18,7 +18,10 @@ int main(int argc, char** argv) try {
   example.write_evaluation(folder + "/paired.h5", Pairing::row_by_row);
   example.write_monte_carlo(folder + "/monte_carlo.h5");
   example.write_coupling(folder + "/coupling.h5");
-  for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/coupling"}) {
+  poesy::test::Example().write_cases(folder + "/cases.h5");
+  poesy::test::Example().write_identification(folder + "/identification.h5");
+  for (const char* name :
+       {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/coupling", "/cases", "/identification"}) {
     poesy::export_tables(folder + name + ".h5", folder + name);
   }
   return 0;

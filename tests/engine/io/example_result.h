@@ -2,9 +2,11 @@
 
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/io/result_file.h"
+#include "engine/run/cases.h"
 #include "tests/support/fake_model.h"
 
 namespace poesy::test {
@@ -186,6 +188,44 @@ class Example {
     return result;
   }
 
+  /// Two errors in two groups; sets the study to match.
+  IdentificationResult identification() {
+    study.analysis.kind = Analysis::Kind::identification;
+    study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+    IdentificationResult result;
+    result.factors = 2;
+    result.groups = 2;
+    result.poses = kPoses;
+    result.rounding = 1.5e-14;
+    result.required_poses = 3;
+    result.single_below = {0, 4, 1, 4};
+    result.single_max = {1e-3, 0.0, 2e-3, std::numeric_limits<double>::infinity()};
+    result.not_solved = {0, 0, 1, 0};
+    result.coupled_below = {0, 2, 0, 3};
+    result.coupled_reduced = {0, 4, 0, 1};
+    result.single_by_group = {1, 0, 1, 0};
+    result.coupled_by_group = {1, 1, 1, 0};
+    result.single = {1, 0};
+    result.coupled = {1, 1};
+    result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
+    result.solves.by_status = {5, 4, 3, 2, 1};
+    return result;
+  }
+
+  /// Two cases, all details kept; sets the study to match.
+  CaseResult cases() {
+    study.analysis.kind = Analysis::Kind::evaluate;
+    study.analysis.cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
+    EvaluationResult all = evaluation(Pairing::every_pose_with_every_row);
+    const std::size_t cells = 2 * kPoses;
+    all.samples = 2;
+    all.response.resize(2 * cells);
+    all.detail.resize(8 * cells);
+    all.status.resize(cells);
+    all.iterations.resize(cells);
+    return case_result(std::move(all), NotConverged::include);
+  }
+
   EvaluationResult evaluation(Pairing pairing) const {
     const std::size_t samples = pairing == Pairing::row_by_row ? 1 : kSamples;
     const std::size_t rows = kPoses * samples;
@@ -219,6 +259,14 @@ class Example {
   void write_coupling(const std::string& path) {
     const CouplingResult result = coupling();
     poesy::write_coupling(path, study, poses, result, facts);
+  }
+  void write_cases(const std::string& path) {
+    const CaseResult result = cases();
+    poesy::write_cases(path, study, poses, result, facts);
+  }
+  void write_identification(const std::string& path) {
+    const IdentificationResult result = identification();
+    poesy::write_identification(path, study, poses, result, facts);
   }
   void write_evaluation(const std::string& path, Pairing pairing) const {
     poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);

@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <sstream>
 
 #include "engine/io/h5.h"
 #include "engine/io/result_file.h"
-#include "engine/run/cases.h"
 #include "tests/engine/io/example_result.h"
 #include "tests/support/temp_folder.h"
 
@@ -15,22 +13,8 @@ namespace {
 /// Two cases at the example's four poses, all details kept.
 class CasesFile : public testing::Test {
  protected:
-  CasesFile() : example_(), result_(case_result(evaluation(), NotConverged::include)) {
-    example_.study.analysis.kind = Analysis::Kind::evaluate;
-    example_.study.analysis.cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
-    path_ = folder_.file("cases.h5");
+  CasesFile() : result_(example_.cases()), path_(folder_.file("cases.h5")) {
     write_cases(path_, example_.study, example_.poses, result_, example_.facts);
-  }
-
-  EvaluationResult evaluation() const {
-    EvaluationResult all = example_.evaluation(Pairing::every_pose_with_every_row);
-    const std::size_t cells = 2 * test::Example::kPoses;
-    all.samples = 2;
-    all.response.resize(2 * cells);
-    all.detail.resize(8 * cells);
-    all.status.resize(cells);
-    all.iterations.resize(cells);
-    return all;
   }
 
   test::TempFolder folder_;
@@ -103,33 +87,9 @@ TEST_F(CasesFile, IsExportedWithItsNames) {
             "linear_deformation_max [m]");
 }
 
-IdentificationResult identification() {
-  IdentificationResult result;
-  result.factors = 2;
-  result.groups = 2;
-  result.poses = test::Example::kPoses;
-  result.rounding = 1.5e-14;
-  result.required_poses = 3;
-  result.single_below = {0, 4, 1, 4};
-  result.single_max = {1e-3, 0.0, 2e-3, std::numeric_limits<double>::infinity()};
-  result.not_solved = {0, 0, 1, 0};
-  result.coupled_below = {0, 2, 0, 3};
-  result.coupled_reduced = {0, 4, 0, 1};
-  result.single_by_group = {1, 0, 1, 0};
-  result.coupled_by_group = {1, 1, 1, 0};
-  result.single = {1, 0};
-  result.coupled = {1, 1};
-  result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
-  result.solves.by_status = {5, 4, 3, 2, 1};
-  return result;
-}
-
 class IdentificationFile : public testing::Test {
  protected:
-  IdentificationFile() : path_(folder_.file("identification.h5")) {
-    example_.study.analysis.kind = Analysis::Kind::identification;
-    example_.study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
-  }
+  IdentificationFile() : path_(folder_.file("identification.h5")) {}
 
   StoredResult stored(const IdentificationResult& result) {
     write_identification(path_, example_.study, example_.poses, result, example_.facts);
@@ -142,7 +102,7 @@ class IdentificationFile : public testing::Test {
 };
 
 TEST_F(IdentificationFile, IsReadBackAsItWas) {
-  const IdentificationResult written = identification();
+  const IdentificationResult written = example_.identification();
   const StoredResult read = stored(written);
   const IdentificationResult& found = read.identification;
   EXPECT_EQ(read.kind, "identification");
@@ -168,13 +128,13 @@ TEST_F(IdentificationFile, IsReadBackAsItWas) {
 }
 
 TEST_F(IdentificationFile, MayHaveNoCouplings) {
-  IdentificationResult none = identification();
+  IdentificationResult none = example_.identification();
   none.couplings.clear();
   EXPECT_TRUE(stored(none).identification.couplings.empty());
 }
 
 TEST_F(IdentificationFile, IsExportedGroupByGroup) {
-  stored(identification());
+  stored(example_.identification());
   const std::string tables = folder_.file("tables");
   export_tables(path_, tables);
   EXPECT_EQ(test::read_bytes(tables + "/identification.csv"),
