@@ -97,6 +97,7 @@ int evaluate(const EvaluateOptions& options) {
   StoredResult shown = with_verdicts(study, poses, result->verdicts);
   shown.cases.clear();  // the study's own are not what was evaluated
   shown.pairing = pairing;
+  shown.labels = errors.labels;
   for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
   if (!options.result.empty()) {
     write_evaluation(options.result, study, poses, errors, pairing, *result,
@@ -125,10 +126,15 @@ void add_evaluate(CLI::App& program, Action& action) {
   command->add_option("study", options->study, "study file; its [mechanism] and [solver] are used")
       ->required()
       ->type_name("STUDY.toml");
-  command->add_option("--poses", options->poses, "poses, SI; the first line names the pose coordinates")
+  command
+      ->add_option("--poses", options->poses,
+                   "poses; the first line names the pose coordinates, with units (\"z [mm]\") or SI")
       ->required()
       ->type_name("P.csv");
-  command->add_option("--errors", options->errors, "errors, SI; the first line names the factors, a row is a sample")
+  command
+      ->add_option("--errors", options->errors,
+                   "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
+                   "names the rows")
       ->required()
       ->type_name("E.csv");
   command->add_flag("--paired", options->paired, "row by row, instead of every pose with every row");

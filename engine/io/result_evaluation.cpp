@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <map>
 #include <utility>
 
 #include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
+#include "engine/io/row_label.h"
 #include "engine/run/cases.h"
 
 namespace poesy {
@@ -11,6 +13,7 @@ namespace {
 /// Rows and columns of the datasets of solves: a table's solves are kept by pose, those of cases by case.
 const Axes kTableAxes{"pose", "sample"};
 const Axes kCaseAxes{"case", "pose"};
+constexpr const char* kLabels = "/evaluate/label";
 
 template <class T>
 void transpose(std::vector<T>& values, std::size_t rows, std::size_t columns, std::size_t width) {
@@ -148,6 +151,24 @@ void add_error_values(ResultBuilder& result, const std::string& rows, const std:
              {"SI: factor unit, see /factors/unit", "The errors that were given; all others are zero"});
 }
 
+/// Every row of errors was tried, so that a verdict names one of them.
+void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
+  const bool fits = std::ranges::all_of(limits, [rows](const LimitVerdict& one) { return one.tried == rows; });
+  if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");
+}
+
+/// The names of the rows of errors, where they have some.
+RowLabels read_labels(const h5::File& file, std::size_t rows) {
+  RowLabels labels;
+  if (!file.exists(kLabels)) return labels;
+  labels.column = file.attribute<std::string>(kLabels, "column").at(0);
+  labels.names = read_exactly<std::string>(file, kLabels, rows);
+  const bool wrong =
+      std::ranges::any_of(labels.names, [](const std::string& name) { return label_problem(name).has_value(); });
+  if (wrong || label_problem(labels.column)) throw h5::Error(std::string(kLabels) + " holds what is no label");
+  return labels;
+}
+
 void read_case_sums(const h5::File& file, StoredResult& result) {
   const std::size_t cells = result.responses.size() * result.cases.size();
   result.case_result.mean = read_exactly<double>(file, "/evaluate/mean", cells);
@@ -165,8 +186,12 @@ void add_evaluation(ResultBuilder& result, const ModelDescription& model, const 
 
 void add_errors(ResultBuilder& result, const ErrorTable& errors, Pairing pairing) {
   const bool row_by_row = pairing == Pairing::row_by_row;
-  add_error_values(result, row_by_row ? "pose" : "sample", errors.values,
+  const std::string rows = row_by_row ? "pose" : "sample";
+  add_error_values(result, rows, errors.values,
                    row_by_row ? result_format::kRowByRow : result_format::kEveryPoseWithEveryRow);
+  if (errors.labels.names.empty()) return;
+  result.add(kLabels, {rows}, errors.labels.names, {"1", "What the table of errors calls its rows"});
+  result.file().set_attribute(kLabels, "column", errors.labels.column);
 }
 
 void add_cases(ResultBuilder& result, const Study& study, const CaseResult& found) {
@@ -196,9 +221,11 @@ void read_evaluation(const h5::File& file, StoredResult& result) {
   }
   const bool row_by_row = file.attribute<std::string>("/errors", "pairing").at(0) == result_format::kRowByRow;
   result.pairing = row_by_row ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
-  result.evaluation.verdicts = read_limits(file, result);
   const std::size_t rows = row_by_row ? result.evaluation.poses : result.evaluation.samples;
+  result.evaluation.verdicts = read_limits(file, result);
+  if (result.evaluation.verdicts) check_rows(result.evaluation.verdicts->limits, rows);
   result.errors = read_exactly<double>(file, "/errors/values", rows * result.factors.size());
+  result.labels = read_labels(file, rows);
 }
 
 }  // namespace poesy

@@ -98,6 +98,7 @@ struct StoredResult {
   std::vector<std::string> joints;           ///< [joints] names
   Pairing pairing = Pairing::every_pose_with_every_row;  ///< of poses with rows of errors, in an evaluation
   std::vector<double> errors;                            ///< [S x P], or [M x P] row by row; SI
+  RowLabels labels;                                      ///< of the rows of errors; empty where they have no names
   std::vector<std::string> cases;                        ///< names of the evaluation's samples, where they are cases
   CaseResult case_result;               ///< its sums over the poses; its `evaluation` is empty, see above
   IdentificationResult identification;  ///< of an identification result
@@ -167,6 +168,11 @@ Verification verify_result(const std::string& path);
 ///     joint_displacements.csv   pose | joints
 ///     errors.csv                sample (or pose, row by row, or case) | factors
 ///     cases.csv                 case | poses that count, mean and max of each response; where samples are cases
+///     parts.csv                 part | poses that were solved, and of each response the mean over them, the value of
+///     the
+///                               largest magnitude and its pose; where the rows of errors have labels, as the next:
+///
+/// evaluate.csv and errors.csv begin with the column of labels then, called "part" or "name" as in the table of errors.
 ///
 /// Tables of an identification: poses.csv, groups.csv (group | sizes), and with a column for each group
 ///

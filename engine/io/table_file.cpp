@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
-#include <iterator>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -11,93 +11,20 @@
 
 #include "engine/base/error.h"
 #include "engine/base/units.h"
+#include "engine/io/csv_lines.h"
 #include "engine/io/error_bound.h"
-#include "engine/io/text_file.h"
+#include "engine/io/row_label.h"
+#include "engine/io/table_columns.h"
 #include "engine/io/wording.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 31;
-
-/// One comma-separated part of a line, without the spaces around it.
-struct Cell {
-  std::string_view text;
-  Place place;
-};
-
-/// The lines of a CSV file: no quotes, no blank lines but at the end.
-class Lines {
- public:
-  Lines(const std::string& path, std::string_view what) : path_(path), text_(read_text(path, what, kMostBytes)) {
-    rest_ = text_;
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
-    rest_.remove_suffix(rest_.size() - (rest_.find_last_not_of(" \t\r\n") + 1));
-    if (rest_.empty()) throw InputError({path_, 1, 1}, "the file is empty", "write the column names in the first line");
-  }
-
-  Lines(const Lines&) = delete;
-  Lines& operator=(const Lines&) = delete;
-
-  bool done() const { return rest_.empty(); }
-  Place next_place() const { return {path_, line_ + 1, 1}; }
-
-  std::vector<Cell> next() {
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    std::string_view line = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    ++line_;
-    return split(line);
-  }
-
- private:
-  std::vector<Cell> split(std::string_view line) const {
-    std::vector<Cell> cells;
-    for (std::size_t begin = 0; begin <= line.size();) {
-      const std::size_t end = std::min(line.find(',', begin), line.size());
-      cells.push_back(cell(line, begin, end));
-      begin = end + 1;
-    }
-    return cells;
-  }
-
-  Cell cell(std::string_view line, std::size_t begin, std::size_t end) const {
-    const std::string_view text = line.substr(begin, end - begin);
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {{}, {path_, line_, begin + 1}};
-    const std::size_t last = text.find_last_not_of(" \t");
-    return {text.substr(first, last - first + 1), {path_, line_, begin + first + 1}};
-  }
-
-  std::string path_;
-  std::string text_;
-  std::string_view rest_;
-  std::size_t line_ = 0;
-};
-
-/// The names of the columns, all different and all known. They refer to the names in the model.
-std::vector<std::string_view> read_header(Lines& lines, std::span<const std::string_view> known,
-                                          std::string_view what) {
-  std::vector<std::string_view> columns;
-  for (const Cell& cell : lines.next()) {
-    const auto found = std::find(known.begin(), known.end(), cell.text);
-    if (found == known.end()) {
-      throw InputError(cell.place, "column '" + printable(cell.text) + "' is no " + std::string(what) + " of the model",
-                       suggestion(cell.text, known));
-    }
-    if (std::find(columns.begin(), columns.end(), *found) != columns.end()) {
-      throw InputError(cell.place, "column '" + std::string(*found) + "' stands here a second time", "remove it");
-    }
-    columns.push_back(*found);
-  }
-  return columns;
-}
-
 /// Whether a table of poses has a column of times.
 enum class Timed { no, yes };
 
 constexpr std::string_view kTime = "t";
+constexpr std::string_view kExportedTime = "time";
 
 std::vector<std::string_view> header(const std::vector<PoseCoordinate>& coordinates, Timed timed) {
   std::vector<std::string_view> columns;
@@ -149,52 +76,98 @@ std::size_t header_of(std::span<const std::string_view> columns,
                    "name every pose coordinate of the model in the first line" + possible);
 }
 
-double number(const Cell& cell, std::string_view column) {
-  if (const auto value = parse_number(cell.text)) return *value;
+/// What stands below a header.
+struct Rows {
+  std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
+  std::vector<std::string> labels;  ///< of each row; empty without a column of labels
+  std::map<std::string_view, std::size_t, std::less<>> line_of;  ///< each label's; refers to the lines
+};
+
+double number(const CsvCell& cell, const TableColumn& column) {
+  if (const auto value = parse_number(cell.text)) return *value * column.si;
   throw InputError(
-      cell.place, "'" + printable(cell.text) + "' in column '" + std::string(column) + "' " + number_problem(cell.text),
-      "write a plain number in SI units");
+      cell.place,
+      "'" + printable(cell.text) + "' in column '" + printable(column.title) + "' " + number_problem(cell.text),
+      "write a plain number, in SI units unless the first line names another: '" + column.with_unit() + "'");
 }
 
-/// Throws for a number that does not belong into its column.
-using CheckCell = std::function<void(const Place& place, std::size_t column, double value)>;
+/// Appends a row's label.
+void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
+  const std::string what = std::string(column.name) + " '" + printable(cell.text) + "'";
+  if (const auto problem = label_problem(cell.text)) {
+    throw InputError(cell.place, what + " " + *problem, std::string(kLabelRule));
+  }
+  const auto [first, is_new] = rows.line_of.try_emplace(cell.text, cell.place.line);
+  if (!is_new) {
+    throw InputError(cell.place, what + " stands here a second time, after line " + std::to_string(first->second),
+                     "give each row a name of its own");
+  }
+  rows.labels.emplace_back(cell.text);
+}
 
-/// Appends one line of numbers, in the order of the file's columns.
-void read_row(Lines& lines, std::span<const std::string_view> columns, const CheckCell& check,
-              std::vector<double>& values) {
+/// Throws for a number (SI) that does not belong into its column, the n-th of the columns of numbers.
+using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
+
+/// Appends one line.
+void read_row(CsvLines& lines, std::span<const TableColumn> columns, const CheckCell& check, Rows& rows) {
   const Place line = lines.next_place();
-  const std::vector<Cell> cells = lines.next();
+  const std::vector<CsvCell> cells = lines.next();
   if (cells.size() != columns.size()) {
     throw InputError(
         cells.size() > columns.size() ? cells[columns.size()].place : line,
         "this line should have " + std::to_string(columns.size()) + " cells, but has " + std::to_string(cells.size()),
-        "write one number a column, with commas between them");
+        "write one number a column, with commas between them and decimal points (0.5, not 0,5)");
   }
+  std::size_t n = 0;
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    values.push_back(number(cells[k], columns[k]));
-    if (check) check(cells[k].place, k, values.back());
+    if (columns[k].role == TableColumn::Role::label) read_label(cells[k], columns[k], rows);
+    if (columns[k].role != TableColumn::Role::number) continue;
+    rows.values.push_back(number(cells[k], columns[k]));
+    if (check) check(cells[k].place, n, columns[k], rows.values.back());
+    ++n;
   }
 }
 
-/// All lines of numbers, row-major, in the order of the file's columns.
-std::vector<double> read_rows(Lines& lines, std::span<const std::string_view> columns, const CheckCell& check) {
+/// All lines below the header.
+Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const CheckCell& check) {
   if (lines.done()) {
     throw InputError(lines.next_place(), "there is no data below the column names",
                      "write at least one line of numbers");
   }
-  std::vector<double> values;
-  while (!lines.done()) read_row(lines, columns, check, values);
-  return values;
+  Rows rows;
+  while (!lines.done()) read_row(lines, columns, check, rows);
+  return rows;
 }
 
-/// The names of all possible columns, each once.
-std::vector<std::string_view> all_names(const std::vector<std::vector<std::string_view>>& headers) {
+/// The names of the columns of numbers.
+std::vector<std::string_view> names_of_numbers(std::span<const TableColumn> columns) {
   std::vector<std::string_view> list;
-  for (const auto& header : headers) {
-    std::copy_if(header.begin(), header.end(), std::back_inserter(list),
-                 [&](std::string_view name) { return !contains(list, name); });
+  for (const TableColumn& column : columns) {
+    if (column.role == TableColumn::Role::number) list.push_back(column.name);
   }
   return list;
+}
+
+/// The columns of a table of poses or a trajectory. `poesy export` calls the time "time", and has numbers of the poses
+/// and their condition numbers besides.
+KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
+  KnownColumns known{.numbers = {}, .facts = {"pose", "condition"}, .what = "pose coordinate"};
+  const auto add = [&](std::string_view name, Dimension dimension, std::string_view stands) {
+    if (std::ranges::find(known.numbers, name, &KnownColumn::name) != known.numbers.end()) return;
+    known.numbers.push_back({name, dimension, stands});
+  };
+  if (timed == Timed::yes) add(kTime, Dimension::time, kTime);
+  for (const PoseCoordinate& own : model.pose_coordinates) add(own.name, own.dimension, own.name);
+  for (const PoseChart& chart : model.charts) {
+    for (const PoseCoordinate& other : chart.coordinates) add(other.name, other.dimension, other.name);
+  }
+  if (timed == Timed::yes) {
+    known.what = "time or pose coordinate";
+    add(kExportedTime, Dimension::time, kTime);
+  } else {
+    known.facts.insert(known.facts.end(), {kTime, kExportedTime});
+  }
+  return known;
 }
 
 /// Takes the times, the column before all others, apart from the coordinates. Throws unless they ascend.
@@ -219,13 +192,14 @@ std::vector<double> take_times(std::vector<double>& values, std::size_t width, c
   return time;
 }
 
-TimedPoints read_points(Lines& lines, const std::string& path, const ModelDescription& model, Timed timed) {
+TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDescription& model, Timed timed) {
+  const KnownColumns known = pose_columns(model, timed);
+  const std::vector<TableColumn> all = read_header(lines, known);
+  const std::vector<std::string_view> columns = names_of_numbers(all);
   const auto headers = possible_headers(model, timed);
-  const std::vector<std::string_view> columns =
-      read_header(lines, all_names(headers), timed == Timed::yes ? "time or pose coordinate" : "pose coordinate");
   const std::size_t kind = header_of(columns, headers, path);
   const std::vector<std::string_view>& wanted = headers[kind];
-  const std::vector<double> written = read_rows(lines, columns, {});
+  const std::vector<double> written = read_rows(lines, all, {}).values;
   std::vector<double> values(written.size());
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto target = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), columns[k]) - wanted.begin());
@@ -241,12 +215,12 @@ TimedPoints read_points(Lines& lines, const std::string& path, const ModelDescri
 }  // namespace
 
 PoseTable read_poses(const std::string& path, const ModelDescription& model) {
-  Lines lines(path, "table of poses");
+  CsvLines lines(path, "table of poses");
   return read_points(lines, path, model, Timed::no).table;
 }
 
 TimedPoints read_trajectory(const std::string& path, const ModelDescription& model) {
-  Lines lines(path, "trajectory");
+  CsvLines lines(path, "trajectory");
   TimedPoints points = read_points(lines, path, model, Timed::yes);
   if (points.time.size() < 2) {
     throw InputError(lines.next_place(), "the trajectory has only one row", "write at least two rows, or use a pose");
@@ -256,17 +230,28 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 
 ErrorTable read_errors(const std::string& path, const Model& model) {
   const ModelDescription& description = model.description();
-  Lines lines(path, "table of errors");
-  const std::vector<std::string_view> columns = read_header(lines, names(description.factors), "factor");
+  CsvLines lines(path, "table of errors");
+  KnownColumns known{.numbers = {}, .facts = {"sample", "pose", "case"}, .labels = {"part", "name"}, .what = "factor"};
+  for (const Factor& factor : description.factors)
+    known.numbers.push_back({factor.name, factor.dimension, factor.name});
+  const std::vector<TableColumn> columns = read_header(lines, known);
   ErrorTable table;
-  for (const std::string_view column : columns) table.factors.push_back(*description.find_factor(column));
-  const auto check = [&](const Place& place, std::size_t column, double value) {
-    if (const auto problem = beyond_bound(model, table.factors[column], value, "an error")) {
-      throw InputError(place, "this cell " + *problem, "write a smaller one, in SI units (m, rad)");
+  for (const std::string_view name : names_of_numbers(columns)) table.factors.push_back(*description.find_factor(name));
+  if (table.factors.empty()) {
+    throw InputError({path, 1, 1}, "the table has no column of errors", "name at least one factor of the model");
+  }
+  const auto check = [&](const Place& place, std::size_t n, const TableColumn& column, double value) {
+    if (const auto problem = beyond_bound(model, table.factors[n], value, "an error")) {
+      throw InputError(place, "this cell " + *problem,
+                       "write a smaller one, in SI units (m, rad) unless the first line names another: '" +
+                           column.with_unit() + "'");
     }
   };
-  table.values = read_rows(lines, columns, check);
-  table.rows = table.values.size() / columns.size();
+  Rows rows = read_rows(lines, columns, check);
+  const auto label = std::ranges::find(columns, TableColumn::Role::label, &TableColumn::role);
+  if (label != columns.end()) table.labels = {std::string(label->name), std::move(rows.labels)};
+  table.values = std::move(rows.values);
+  table.rows = table.values.size() / table.factors.size();
   return table;
 }
 

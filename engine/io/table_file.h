@@ -10,19 +10,22 @@
 namespace poesy {
 
 /// Reads poses from CSV: the first line names all of the model's pose coordinates, or all coordinates of one of its
-/// charts, in any order; then one pose a line, SI. Throws InputError with line and column for a missing, extra or
-/// repeated column, columns that mix coordinates, a cell that is not a finite number, a line with too few or many
-/// cells, or no data; FileError when the file cannot be read. The points come back in the model's order of
-/// coordinates. Does not ask whether the model has and reaches such poses.
+/// charts, in any order; then one pose a line. A name may have the unit of its numbers in brackets ("z [mm]"), else
+/// they are SI. What else `poesy export` writes into poses.csv is passed over: columns "pose", "time" (or "t") and
+/// "condition". Throws InputError with line and column for a missing, unknown or repeated column, a unit that does not
+/// fit, columns that mix coordinates, a cell that is not a finite number, a line with too few or many cells, or no
+/// data; FileError when the file cannot be read. The points come back in the model's order of coordinates, SI. Does not
+/// ask whether the model has and reaches such poses.
 PoseTable read_poses(const std::string& path, const ModelDescription& model);
 
-/// Reads a trajectory from CSV: as read_poses, with a column "t" (s) besides. Also throws InputError for times that do
-/// not ascend strictly, and for a single row.
+/// Reads a trajectory from CSV: as read_poses, with a column "t" or "time" (s, or the unit that it names). Also throws
+/// InputError for times that do not ascend strictly, and for a single row.
 TimedPoints read_trajectory(const std::string& path, const ModelDescription& model);
 
-/// Reads errors from CSV: the first line names factors of the model, any subset in any order; then one sample
-/// a line, SI. Errors as read_poses; an unknown factor is an InputError too, and so is an error that makes no sense
-/// (Model::error_bound).
+/// Reads errors from CSV: the first line names factors of the model, any subset in any order, with units as in
+/// read_poses; then one sample a line. A column "part" or "name" labels the rows (label_problem(), all different);
+/// columns "sample", "pose" and "case", which `poesy export` writes into errors.csv, are passed over. Errors as
+/// read_poses; an unknown factor is an InputError too, and so is an error that makes no sense (Model::error_bound).
 ErrorTable read_errors(const std::string& path, const Model& model);
 
 }  // namespace poesy

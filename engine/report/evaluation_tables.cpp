@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/io/row_outcomes.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
+#include "engine/report/tolerance_table.h"
 
 namespace poesy {
 namespace {
@@ -36,6 +41,42 @@ Summary summary(const EvaluationResult& found, std::size_t r) {
   return count == 0 ? Summary() : Summary{sum / static_cast<double>(count), smallest, largest};
 }
 
+/// "; 38 of 40 pass" where the study limits the response.
+std::string passes(const StoredResult& result, std::size_t r) {
+  if (!result.evaluation.verdicts) return {};
+  const std::vector<LimitVerdict>& limits = result.evaluation.verdicts->limits;
+  const auto verdict = std::ranges::find(limits, r, &LimitVerdict::response);
+  return verdict == limits.end() ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
+}
+
+/// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty where rows have no labels or none
+/// was solved.
+std::string worst_note(const StoredResult& result, std::size_t r) {
+  if (result.labels.names.empty()) return {};
+  const std::vector<RowOutcome> outcomes = row_outcomes(result, r);
+  const std::size_t worst = worst_row(outcomes);
+  if (worst == outcomes.size()) return {};
+  const NamedUnit& response = result.responses[r];
+  return fmt::format("{} {} is worst in {}: {} at {}{}", result.labels.column, result.labels.names[worst],
+                     response.name, response_text(response, outcomes[worst].extreme),
+                     place_text(result, outcomes[worst].pose), passes(result, r));
+}
+
+/// One line of parts_table. outcomes: for each response of the headline.
+std::vector<Cell> part_row(const StoredResult& result, const std::vector<std::vector<RowOutcome>>& outcomes,
+                           std::size_t row) {
+  std::vector<Cell> cells{text_cell(result.labels.names[row])};
+  cells.push_back(count_cell(outcomes.empty() ? 0 : outcomes.front()[row].solved));
+  for (std::size_t h = 0; h < outcomes.size(); ++h) {
+    const RowOutcome& outcome = outcomes[h][row];
+    const double unit = display(result.responses[result.headline[h]]).si;
+    cells.push_back(number_cell(outcome.mean / unit, kDigits));
+    cells.push_back(number_cell(outcome.extreme / unit, kDigits));
+    cells.push_back(outcome.solved == 0 ? text_cell("") : count_cell(outcome.pose));
+  }
+  return cells;
+}
+
 }  // namespace
 
 Table evaluation_table(const StoredResult& result) {
@@ -52,6 +93,31 @@ Table evaluation_table(const StoredResult& result) {
     table.rows.push_back({text_cell(result.responses[r].name), text_cell(unit.name),
                           number_cell(found.mean / unit.si, kDigits), number_cell(found.smallest / unit.si, kDigits),
                           number_cell(found.largest / unit.si, kDigits)});
+    if (std::string note = worst_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
+  }
+  return table;
+}
+
+std::optional<Table> parts_table(const StoredResult& result) {
+  const RowLabels& labels = result.labels;
+  if (labels.names.empty()) return std::nullopt;
+  Table table{.name = "parts",
+              .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
+              .columns = {text_column("label", labels.column), number_column("poses", "poses")},
+              .rows = {},
+              .notes = {"poses: those that were solved"}};
+  std::vector<std::vector<RowOutcome>> outcomes;
+  for (const std::size_t r : result.headline) {
+    const NamedUnit& response = result.responses[r];
+    const std::string_view unit = display(response).name;
+    const int dispensable = 3 * static_cast<int>(outcomes.size());  // the last response's columns go first
+    table.columns.push_back(number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2));
+    table.columns.push_back(number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable));
+    table.columns.push_back(number_column(response.name + "_extreme_pose", "at pose", "", dispensable + 1));
+    outcomes.push_back(row_outcomes(result, r));
+  }
+  for (std::size_t row = 0; row < labels.names.size(); ++row) {
+    table.rows.push_back(part_row(result, outcomes, row));
   }
   return table;
 }

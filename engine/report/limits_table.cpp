@@ -34,7 +34,9 @@ std::string rule(const LimitVerdicts& verdicts) {
 /// Where the value was found; empty where it is of all poses.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   std::string text;
-  if (verdict.row && result.pairing != Pairing::row_by_row) {
+  if (verdict.row && !result.labels.names.empty()) {
+    text = fmt::format("{} {}, ", result.labels.column, result.labels.names[*verdict.row]);
+  } else if (verdict.row && result.pairing != Pairing::row_by_row) {
     text = result.cases.empty() ? fmt::format("sample {}, ", *verdict.row) : result.cases[*verdict.row] + ", ";
   }
   return verdict.pose ? text + place_text(result, *verdict.pose) : std::string();

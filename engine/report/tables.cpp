@@ -94,6 +94,7 @@ std::vector<Table> result_tables(const StoredResult& result, std::string_view ra
   std::vector<Table> tables;
   add(tables, limits_table(result));
   tables.push_back(result.cases.empty() ? evaluation_table(result) : cases_table(result));
+  add(tables, parts_table(result));
   return tables;
 }
 

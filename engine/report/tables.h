@@ -42,8 +42,13 @@ std::optional<Table> fidelity_table(const StoredResult& result, const RankedErro
 /// for a fixed number of samples.
 std::optional<Table> convergence_table(const StoredResult& result);
 
-/// Per response of an `evaluate` result, the mean and the extremes over all solved samples.
+/// Per response of an `evaluate` result, the mean and the extremes over all solved samples. Where the rows of errors
+/// have labels, notes name the worst.
 Table evaluation_table(const StoredResult& result);
+
+/// Per labelled row of errors of an `evaluate` result, mean and extreme of each response over the poses; none where
+/// rows have no labels.
+std::optional<Table> parts_table(const StoredResult& result);
 
 /// Per case of an `evaluate` study, mean and maximum of each response over the poses that count.
 Table cases_table(const StoredResult& result);

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/io/row_label.h"
 #include "engine/io/table_file.h"
 #include "models/registry.h"
 #include "tests/fuzz/target.h"
@@ -31,6 +33,10 @@ void check(const ErrorTable& table) {
   fuzz::expect(table.rows > 0 && !table.factors.empty(), "a table has a row and a column");
   fuzz::expect(table.values.size() == table.rows * table.factors.size(), "every row is complete");
   fuzz::expect(std::ranges::all_of(table.values, [](double x) { return std::isfinite(x); }), "errors are finite");
+  const std::vector<std::string>& labels = table.labels.names;
+  fuzz::expect(labels.empty() || labels.size() == table.rows, "every row has a label, or none has");
+  fuzz::expect(std::ranges::none_of(labels, [](const std::string& label) { return label_problem(label).has_value(); }),
+               "labels follow their rule");
 }
 
 }  // namespace

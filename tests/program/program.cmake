@@ -10,6 +10,7 @@ function(program_test name label)
 endfunction()
 
 program_test(bad_input unit)
+program_test(csv unit)
 program_test(oracle regression)
 program_test(determinism determinism)
 program_test(adaptive determinism)

@@ -119,7 +119,13 @@ TEST(ErrorBound, OfATable) {
   const BoundedModel model;
   const std::string path = folder.write("errors.csv", "delta_2,delta_1\n0.01,0\n0,-0.06\n");
   test::expect_input_error([&] { read_errors(path, model); }, {path, 3, 3},
-                           {"gives delta_1 an error of -60 mm, no less than the arm (60 mm)"});
+                           {"gives delta_1 an error of -60 mm, no less than the arm (60 mm)", "'delta_1 [mm]'"});
+  // 75 typed for 75 um, and for micrometres that the header names.
+  const std::string bare = folder.write("bare.csv", "delta_1\n75\n");
+  test::expect_input_error([&] { read_errors(bare, model); }, {bare, 2, 1}, {"75000 mm", "'delta_1 [mm]'"});
+  EXPECT_EQ(read_errors(folder.write("um.csv", "delta_1 [um]\n75\n"), model).rows, 1u);
+  const std::string large = folder.write("mm.csv", "delta_1 [mm]\n75\n");
+  test::expect_input_error([&] { read_errors(large, model); }, {large, 2, 1}, {"75 mm", "no less than the arm"});
   EXPECT_EQ(read_errors(folder.write("fine.csv", "delta_1\n-0.0599\n"), model).rows, 1u);
 }
 

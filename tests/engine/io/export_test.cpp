@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/io/result_file.h"
+#include "engine/io/table_file.h"
 #include "tests/engine/io/example_result.h"
 #include "tests/support/temp_folder.h"
 
@@ -154,6 +155,50 @@ TEST_F(Export, EvaluationHasARowForEachSolve) {
   const auto errors = read_table(folder_ / "errors.csv");
   EXPECT_EQ(errors[0], (Cells{"sample", "delta_2 [m]", "epsilon_1 [rad]"}));
   EXPECT_EQ(errors[2], (Cells{"1", "0.001953125", "0.0029296875"}));
+}
+
+TEST_F(Export, LabelsOfRowsComeBack) {
+  ErrorTable errors = example_.errors(Pairing::every_pose_with_every_row);
+  errors.labels = {"part", {"17", "Gehäuse", "19"}};
+  const EvaluationResult found = example_.evaluation(Pairing::every_pose_with_every_row);
+  write_evaluation(folder_ / "l.h5", example_.study, example_.poses, errors, Pairing::every_pose_with_every_row, found,
+                   example_.facts);
+  const StoredResult stored = read_result(folder_ / "l.h5");
+  EXPECT_EQ(stored.labels.column, "part");
+  EXPECT_EQ(stored.labels.names, errors.labels.names);
+  export_tables(stored, folder_.path());
+  const auto solves = read_table(folder_ / "evaluate.csv");
+  EXPECT_EQ(Cells(solves[0].begin(), solves[0].begin() + 4),
+            (Cells{"part", "pose", "sample", "angular_deformation [rad]"}));
+  EXPECT_EQ(Cells(solves[8].begin(), solves[8].begin() + 4), (Cells{"Gehäuse", "2", "1", "0.875"}));
+  EXPECT_EQ(read_table(folder_ / "errors.csv")[2], (Cells{"Gehäuse", "1", "0.001953125", "0.0029296875"}));
+  // The response of solve k is k / 8, and k = 3 m + s is solved where k mod 5 < 2: of row 1 at pose 0 (k = 1) and 3
+  // (10).
+  const auto parts = read_table(folder_ / "parts.csv");
+  ASSERT_EQ(parts.size(), 4U);
+  EXPECT_EQ(Cells(parts[0].begin(), parts[0].begin() + 5),
+            (Cells{"part", "poses", "angular_deformation_mean [rad]", "angular_deformation_extreme [rad]",
+                   "angular_deformation_extreme_pose"}));
+  EXPECT_EQ(Cells(parts[2].begin(), parts[2].begin() + 5), (Cells{"Gehäuse", "2", "0.6875", "1.25", "3"}));
+}
+
+TEST_F(Export, ErrorsOfAnExportAreReadAgain) {
+  export_tables(folder_ / "e.h5", folder_.path());
+  const FakeModel model;
+  const ErrorTable written = example_.errors(Pairing::every_pose_with_every_row);
+  const ErrorTable back = read_errors(folder_ / "errors.csv", model);
+  EXPECT_EQ(back.factors, written.factors);
+  EXPECT_EQ(back.values, written.values);
+}
+
+TEST_F(Export, WholeNumbersHaveAllTheirDigits) {
+  MonteCarloResult found = example_.monte_carlo();
+  found.overall_count.assign(found.overall_count.size(), 100'000);
+  write_monte_carlo(folder_ / "m.h5", example_.study, example_.poses, found, example_.facts);
+  export_tables(folder_ / "m.h5", folder_.path());
+  const auto overall = read_table(folder_ / "overall.csv");
+  const auto count = std::ranges::find(overall[0], "count") - overall[0].begin();
+  EXPECT_EQ(overall[1][static_cast<std::size_t>(count)], "100000");
 }
 
 TEST_F(Export, IntoAFolderThatIsAFileIsAFileError) {
