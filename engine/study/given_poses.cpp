@@ -12,7 +12,7 @@ namespace poesy {
 namespace {
 
 constexpr int kDigits = 6;
-constexpr const char* kSi = " (numbers in the file are SI, metres and radians, unless its first line names units)";
+constexpr const char* kSi = " (numbers in the file are SI: metres and radians, unless its first line names units)";
 constexpr const char* kNoPose = "does not exist: no pose has these coordinates";
 
 /// "z = 0.5 m, beta = 20 rad = 1145.92 deg", as a file has them.

@@ -216,7 +216,7 @@ TEST(FilePoses, NameTheLineOfOneOutOfReach) {
   selection.place = {"poses.csv", 2, 1};
   test::expect_input_error([&] { select_poses(selection, kModel); }, {"poses.csv", 4, 1},
                            {"pose 3 (z = 0.5 m, beta = 20 rad = 1145.92 deg, gamma = 0.1 rad = 5.72958 deg)",
-                            "z must be negative", "remove", "SI, metres and radians"});
+                            "z must be negative", "remove", "SI: metres and radians"});
   selection.from_file.points = PoseSet(3, {-0.2, 0.0, 0.0, -0.25, 0.1, 0.0});
   const SelectedPoses selected = select_poses(selection, kModel);
   EXPECT_EQ(selected.poses.column(0), (std::vector<double>{-0.2, -0.25}));
