@@ -16,10 +16,23 @@ constexpr const char* kExamples = "Examples:";
 constexpr const char* kIndent = "  ";
 constexpr const char* kDeeper = "      ";
 
+/// Names of the responses of all mechanisms, each once.
+std::vector<std::string> known_responses() {
+  std::vector<std::string> names;
+  for (const CatalogEntry& entry : registry()) {
+    for (const Response& response : entry.description.responses) {
+      if (std::ranges::find(names, response.name) == names.end()) names.push_back(response.name);
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> words_for(const std::string& value) {
   std::vector<std::string> words;
   if (value == "MODEL") {
     for (const CatalogEntry& entry : registry()) words.push_back(entry.description.name);
+  } else if (value == "RESPONSE") {
+    words = known_responses();
   } else if (value == "KIND") {
     for (const Analysis::Kind kind : kKinds) words.emplace_back(name(kind));
   } else if (value == "SHELL") {

@@ -99,7 +99,7 @@ void add_show(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("show", "print a result as tables");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
   command->add_option("--response", options->response, "response to rank by, or to show alone where nothing is ranked")
-      ->type_name("NAME");
+      ->type_name("RESPONSE");
   command
       ->add_option("--sort", options->sort,
                    fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +78,18 @@ StoredResult read_sensitivity_result(const std::string& path) {
   return result;
 }
 
+/// Position of the response that the tolerances are for.
+std::size_t chosen_response(const TolerancesOptions& options, const StoredResult& result) {
+  if (!options.response.empty()) return position(result.responses, options.response, "--response", "response");
+  std::vector<std::string> known;
+  for (const NamedUnit& response : result.responses) {
+    const std::string_view unit = display(response).name;
+    known.push_back(unit == "1" ? response.name : fmt::format("{} ({})", response.name, unit));
+  }
+  throw InputError({options.result}, fmt::format("has tolerances for {}", fmt::join(known, ", ")),
+                   "choose one with --response NAME");
+}
+
 std::optional<ReferenceError> reference_of(const TolerancesOptions& options, const StoredResult& result,
                                            std::size_t response) {
   if (!options.reference) return result.tolerance_reference[response];
@@ -133,7 +146,9 @@ LimitTolerances within(const TolerancesOptions& options, const StoredResult& res
                     named.name, response_text(named, std::sqrt(response.background)), response_text(named, limit)),
         "raise the limit, or study smaller errors in [analysis] background");
   }
-  return limit_tolerances(study, response, limit);
+  std::vector<Dimension> dimensions;
+  for (const NamedUnit& factor : result.factors) dimensions.push_back(dimension_of(factor.unit));
+  return limit_tolerances(study, response, one_size_for_each(result.factor_sigma, dimensions), limit);
 }
 
 /// result.h5 gives result_tolerances in the current folder.
@@ -141,30 +156,36 @@ std::string default_folder(const std::string& result) {
   return std::filesystem::path(result).stem().string() + "_tolerances";
 }
 
-/// Writes the table and the studies that confirm it; says what that was.
+/// Writes the table and the studies that test it; says what that was.
 std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
   const std::string folder = options.folder.empty() ? default_folder(options.result) : options.folder;
+  OutputFolder output(folder);
+  claim_tolerance_files(output, result, found, registry());
+  output.open();
   std::string commands;
   if (found.limit) {
     const Confirmation written = write_confirmation(folder, result, found, registry());
     for (const std::string& study : written.paths) {
       const std::string outcome = std::filesystem::path(study).replace_extension(".h5").string();
-      commands += "confirm with: " + shell_command({"poesy", "run", study, "-o", outcome}) + "\n";
+      commands += "test with: " + shell_command({"poesy", "run", study, "-o", outcome}) + "\n";
     }
     for (const std::string& error : written.cut) {
       commands += "  these studies cut the tolerance of " + error + ", a quarter of the part that it is an error of\n";
     }
   }
-  return write_tolerances(folder, result, found) + "\n" + commands;
+  const std::string table = write_tolerances(folder, result, found);
+  output.close();
+  return table + "\n" + commands;
 }
 
 /// How a Monte Carlo study settles whether the limit holds.
 std::string explanation(const StoredResult& result, const ResponseTolerances& found) {
   const NamedUnit& response = result.responses[found.response];
-  return prose_of(fmt::format("the limit holds if their root mean square of {} over all poses, rms of 'poesy show', is "
-                              "below {}",
-                              response.name, response_text(response, found.limit->limit)),
-                  output_width());
+  return prose_of(
+      fmt::format("each run says PASS if the root mean square of {} over all poses is at most {}, else FAIL "
+                  "with exit code 6",
+                  response.name, response_text(response, found.limit->limit)),
+      output_width());
 }
 
 /// Errors of the mechanism that the study neither varies nor has in its background; none where this program has no such
@@ -191,7 +212,7 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result) {
 
 int set_tolerances(const TolerancesOptions& options) {
   const StoredResult result = read_sensitivity_result(options.result);
-  const std::size_t response = position(result.responses, options.response, "--response", "response");
+  const std::size_t response = chosen_response(options, result);
   const NamedUnit& named = result.responses[response];
   const ResponseStudy study = response_study(result.sensitivity, result.factor_sigma, response);
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
@@ -212,9 +233,10 @@ void add_tolerances(CLI::App& program, Action& action) {
   auto options = std::make_shared<TolerancesOptions>();
   CLI::App* command = program.add_subcommand("tolerances", "tolerances from the indices of a sensitivity result");
   command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
-  command->add_option("--response", options->response, "response that the tolerances are for")
-      ->required()
-      ->type_name("NAME");
+  command
+      ->add_option("--response", options->response,
+                   "response that the tolerances are for; without it, a message names those of the result")
+      ->type_name("RESPONSE");
   command
       ->add_option("--limit", options->limit,
                    "tolerances that keep the root mean square of the response below this, e.g. \"0.05 mm\"")
@@ -225,7 +247,7 @@ void add_tolerances(CLI::App& program, Action& action) {
       ->type_name("FACTOR[=TOLERANCE]");
   command
       ->add_option("-d,--directory", options->folder,
-                   "folder for tolerances.csv and the studies that confirm it; default: RESULT_tolerances, here")
+                   "folder for tolerances.csv and the studies that test them; default: RESULT_tolerances, here")
       ->type_name("DIR");
   command->footer(
       footer("", {{"tolerances of equal effect", "poesy tolerances result.h5 --response linear_deformation"},

@@ -27,7 +27,7 @@ void add_columns(const StoredResult& result, const ResponseTolerances& tolerance
   const std::string si = units_of(result.factors, kSi);
   const std::string index_unit = result.responses[tolerances.response].unit + " per " + si;
   for (const char* name : {"index", "index_ci_low", "index_ci_high"}) columns.push_back(name_of(name, index_unit, ""));
-  columns.emplace_back("variance_share");
+  columns.emplace_back("mean_square_share");
   for (const auto& [name, values] : lists(tolerances)) columns.push_back(name_of(name, si, ""));
   const std::string display_units = units_of(result.factors, kDisplay);
   for (const auto& [name, values] : lists(tolerances)) columns.push_back(name_of(name, display_units, "_display"));
@@ -38,8 +38,8 @@ void append_row(const StoredResult& result, const ResponseTolerances& tolerances
                 std::vector<double>& row) {
   const SensitivityResult& found = result.sensitivity;
   const std::size_t at = tolerances.response * found.factors + p;
-  row.insert(row.end(),
-             {found.global[at], found.global_ci_low[at], found.global_ci_high[at], tolerances.all.variance_share[p]});
+  row.insert(row.end(), {found.global[at], found.global_ci_low[at], found.global_ci_high[at],
+                         tolerances.all.mean_square_share[p]});
   for (const double scale : {1.0, display(result.factors[p]).si}) {
     for (const auto& [name, values] : lists(tolerances)) row.push_back((*values)[p] / scale);
   }
@@ -78,7 +78,7 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
   make_folder(folder);
   TableFolder tables(folder);
   const NamedUnit& response = result.responses[tolerances.response];
-  Columns columns{"factor", "kind", "limb", "unit", "display_unit", "index_unit"};
+  Columns columns{"factor", "kind", "limb", "unit", "display_unit", "index_unit", "studied_as"};
   const auto name_of = [](const std::string& name, const std::string&, const char* suffix) { return name + suffix; };
   add_columns(result, tolerances, name_of, columns);
   tables.write("tolerances", columns, [&](CsvTable& table) {
@@ -86,9 +86,11 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
       const NamedUnit& factor = result.factors[p];
       std::vector<double> row;
       append_row(result, tolerances, p, row);
-      table.row(fmt::format("{},{},{},{},{},{}/{}", factor.name, error_kind(dimension_of(factor.unit)),
-                            result.factor_limb[p], factor.unit, kDisplay(factor.unit), response.unit, factor.unit),
-                row);
+      const std::string shape = result.factor_distribution.empty() ? "unknown" : result.factor_distribution[p];
+      table.row(
+          fmt::format("{},{},{},{},{},{}/{},{}", factor.name, error_kind(dimension_of(factor.unit)),
+                      result.factor_limb[p], factor.unit, kDisplay(factor.unit), response.unit, factor.unit, shape),
+          row);
     }
   });
   return tables.files().front();

@@ -86,10 +86,12 @@ struct StoredResult {
   std::vector<double> factor_sigma;         ///< [P] standard deviations, SI
   std::vector<NamedUnit> responses;         ///< [R]
   std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows: all, unless the model chose
-  std::vector<std::size_t> signed_headline;  ///< that a summary of coupled sources shows
-  SensitivityResult sensitivity;             ///< `background` is empty in files of older versions
-  std::vector<std::uint64_t> factor_limb;    ///< [P] of a sensitivity result; empty in files of older versions
+  std::vector<std::size_t> signed_headline;      ///< that a summary of coupled sources shows
+  SensitivityResult sensitivity;                 ///< `background` is empty in files of older versions
+  std::vector<std::uint64_t> factor_limb;        ///< [P] of a sensitivity result; empty in files of older versions
+  std::vector<std::string> factor_distribution;  ///< [P] "normal", ...; likewise
   std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
+  std::vector<double> mean_square_bound;                           ///< [R] Response::mean_square_bound; likewise
   std::string separation_measure;                                  ///< what length sensitivity.separation speaks of
   std::vector<std::string> published_class;  ///< [P] the literature's class of each error, where that is separated
   std::vector<std::string> fidelities;       ///< the two that sensitivity.fidelity compares
@@ -142,8 +144,10 @@ Verification verify_result(const std::string& path);
 ///     factors.csv          factor | standard deviation
 ///     failures.csv         factor | pose, sample, status (position in kStatusNames) of the listed failures
 ///     poses.csv            pose | time (s) on a trajectory, coordinates, condition number
-///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, variance
-///                               share, equal-effect tolerance in SI and in the units people read ("inf": no effect)
+///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, share of
+///     the
+///                               mean square, equal-effect tolerance in SI and in the units people read ("inf": no
+///                               effect)
 ///
 ///     separation.csv            factor | drive_share, removable (see /separation), and for each published class 1 if
 ///                               the error belongs to it; where the model separates its errors, as the next four:

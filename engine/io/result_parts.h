@@ -48,6 +48,9 @@ inline std::size_t axis_length(const h5::File& file, const std::string& name) {
   return h5::size(file.shape("/" + name));
 }
 
+/// Names become names of files and cells of tables. Throws h5::Error for one that cannot. path: of the dataset.
+void check_names(const std::vector<std::string>& names, const std::string& path);
+
 /// The poses with all that was found when they were chosen: /poses.
 void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected);
 /// The coordinates' names and units.
@@ -59,7 +62,8 @@ RunFacts read_facts(const h5::File& file);
 /// The hash that the file carries; empty where it has none.
 std::string stored_hash(const h5::File& file);
 
-/// The standard deviations of the errors that the study varies, as /factors/sigma.
+/// The standard deviations of the errors that the study varies, as /factors/sigma, and what their distributions are
+/// called, as /factors/distribution.
 void add_sigma(ResultBuilder& result, const Study& study);
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
@@ -73,12 +77,12 @@ std::vector<Failure> read_failures(const h5::File& file, const StoredResult& res
 
 /// /sensitivity: indices and what is behind them.
 void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found);
-/// Fills in `sensitivity` and `factor_sigma`.
+/// Fills in `sensitivity`, `factor_sigma` and `factor_distribution`.
 void read_sensitivity(const h5::File& file, StoredResult& result);
 
 /// What a program that sets tolerances needs of a sensitivity result, without the rest: /tolerances.
 void add_tolerances(ResultBuilder& result, const Study& study, const SensitivityResult& found);
-/// Fills in `factor_limb` and `tolerance_reference`.
+/// Fills in `factor_limb`, `tolerance_reference` and `mean_square_bound`.
 void read_tolerances(const h5::File& file, StoredResult& result);
 
 /// What calibration can remove of each error's effect: /separation.

@@ -10,14 +10,6 @@
 namespace poesy {
 namespace {
 
-/// Names become names of files and cells of tables. Throws Error for one that cannot.
-void check_names(const std::vector<std::string>& names, const std::string& path) {
-  for (const std::string& name : names) {
-    const bool fits = std::ranges::none_of(name, [](char c) { return c == '/' || c == ',' || (c >= 0 && c < ' '); });
-    if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is no name");
-  }
-}
-
 std::vector<NamedUnit> read_named(const h5::File& file, const std::string& group, const std::string& axis) {
   const std::size_t count = axis_length(file, axis);
   const auto names = read_exactly<std::string>(file, group + "/name", count);
@@ -85,6 +77,13 @@ StoredResult read_all(const h5::File& file) {
 }
 
 }  // namespace
+
+void check_names(const std::vector<std::string>& names, const std::string& path) {
+  for (const std::string& name : names) {
+    const bool fits = std::ranges::none_of(name, [](char c) { return c == '/' || c == ',' || (c >= 0 && c < ' '); });
+    if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is no name");
+  }
+}
 
 RunFacts read_facts(const h5::File& file) {
   const bool timed = file.exists("/run/checkpoint_seconds");  // not in files of older versions

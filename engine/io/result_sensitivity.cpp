@@ -89,6 +89,10 @@ void add_sensitivity(ResultBuilder& result, const Study& study, const Sensitivit
 
 void read_sensitivity(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_exactly<double>(file, "/factors/sigma", result.factors.size());
+  if (file.exists("/factors/distribution")) {
+    result.factor_distribution = read_exactly<std::string>(file, "/factors/distribution", result.factors.size());
+    check_names(result.factor_distribution, "/factors/distribution");
+  }
   result.sensitivity = read_indices(file);
   result.sensitivity.history = read_history(file);
   result.sensitivity.failures = read_failures(file, result);

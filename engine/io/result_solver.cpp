@@ -17,6 +17,11 @@ std::vector<T> each(const std::vector<SolveCounts>& solves, const Get& get) {
 void add_sigma(ResultBuilder& result, const Study& study) {
   result.add("/factors/sigma", {"factor"}, standard_deviations(study),
              {"SI: factor unit, see /factors/unit", "Standard deviation of the error, as set in the study"});
+  std::vector<std::string> shapes;
+  for (const FactorIndex factor : study.analysis.factors) {
+    shapes.emplace_back(name(study.errors.by_factor[factor.value].shape()));
+  }
+  result.add("/factors/distribution", {"factor"}, shapes, {"1", "Distribution of the error, as set in the study"});
 }
 
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves) {

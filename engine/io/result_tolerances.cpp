@@ -13,11 +13,12 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Tolerances of all responses, side by side.
 struct Columns {
   std::vector<double> equal_effect;         ///< [R x P]
-  std::vector<double> variance_share;       ///< [R x P]
+  std::vector<double> mean_square_share;    ///< [R x P]
   std::vector<double> rms_effect;           ///< [R x P]
   std::vector<double> background_rms;       ///< [R]
   std::vector<std::string> reference;       ///< [R] names; empty where there is none
   std::vector<double> reference_tolerance;  ///< [R] NaN where there is none
+  std::vector<double> mean_square_bound;    ///< [R] Response::mean_square_bound
 };
 
 /// The study's reference, or the error of smallest effect at one unit of those in which people read it.
@@ -39,13 +40,15 @@ Columns columns_of(const Study& study, const SensitivityResult& found) {
     const ResponseStudy response = response_study(found, sigma, r);
     const Tolerances all = tolerances(response, reference_for(study, response));
     columns.equal_effect.insert(columns.equal_effect.end(), all.equal_effect.begin(), all.equal_effect.end());
-    columns.variance_share.insert(columns.variance_share.end(), all.variance_share.begin(), all.variance_share.end());
+    columns.mean_square_share.insert(columns.mean_square_share.end(), all.mean_square_share.begin(),
+                                     all.mean_square_share.end());
     for (const double effect : all.mean_square.effects) columns.rms_effect.push_back(std::sqrt(effect));
     columns.background_rms.push_back(std::sqrt(all.mean_square.background));
     const auto& reference = all.reference;
     columns.reference.push_back(reference ? study.model().factors[study.analysis.factors[reference->factor].value].name
                                           : "");
     columns.reference_tolerance.push_back(reference ? reference->tolerance : kNaN);
+    columns.mean_square_bound.push_back(study.model().responses[r].mean_square_bound);
   }
   return columns;
 }
@@ -83,8 +86,10 @@ void add_columns(ResultBuilder& result, const Columns& columns) {
       {factor_unit,
        "Tolerance that gives every error the reference's effect: index(reference) / index x "
        "reference_tolerance (Du et al. 2022, Section 6.3, Table 10); infinity: no effect on its own; NaN: unknown"});
-  result.add("/tolerances/variance_share", axes, columns.variance_share,
-             {"1", "(index x sigma)^2 over its sum, with sigma as set in the study"});
+  result.add("/tolerances/mean_square_share", axes, columns.mean_square_share,
+             {"1",
+              "Share of what all errors add to the response's mean square over samples and poses, with sigma as set "
+              "in the study: (rms_effect x sigma)^2 over its sum; NaN: unknown"});
   result.add("/tolerances/rms_effect", axes, columns.rms_effect,
              {"SI: response unit / factor unit",
               "Growth of the response's mean square over samples and poses per tolerance^2, square root of it: mean "
@@ -96,6 +101,10 @@ void add_columns(ResultBuilder& result, const Columns& columns) {
              {"1", "The error from which equal_effect is counted; empty when no error has an effect"});
   result.add("/tolerances/reference_tolerance", {"response"}, columns.reference_tolerance,
              {"SI: unit of reference_factor", "Tolerance of reference_factor"});
+  result.add("/tolerances/mean_square_bound", {"response"}, columns.mean_square_bound,
+             {"1",
+              "To first order, the mean square of all errors together is at most this times the sum of those of each "
+              "error alone; 1: they add exactly"});
 }
 
 }  // namespace
@@ -123,6 +132,8 @@ void read_tolerances(const h5::File& file, StoredResult& result) {
     result.tolerance_reference.push_back(names[r].empty() ? std::nullopt
                                                           : std::optional(ReferenceError{factor, tolerances[r]}));
   }
+  if (!file.exists("/tolerances/mean_square_bound")) return;
+  result.mean_square_bound = read_exactly<double>(file, "/tolerances/mean_square_bound", responses);
 }
 
 }  // namespace poesy

@@ -14,6 +14,8 @@ namespace poesy {
 namespace {
 
 constexpr const char* kPoses = "confirm_poses";
+constexpr const char* kEqualEffect = "confirm_equal_effect";
+constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
 /// Four standard deviations of a normal error reach as far as its part is large.
 constexpr double kShareOfPart = 0.25;
 
@@ -68,6 +70,15 @@ std::string write_study(const std::string& folder, const std::string& name, cons
 
 }  // namespace
 
+void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
+                           const Catalog& catalog) {
+  folder.claim("tolerances.csv");
+  if (!tolerances.limit) return;
+  for (const char* study : {kEqualEffect, kEqualTolerance}) folder.claim(std::string(study) + ".toml");
+  const bool with_poses = monte_carlo_study(result, catalog).poses.select == PoseSelection::Select::file;
+  if (with_poses) folder.claim(std::string(kPoses) + ".csv");
+}
+
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog) {
   POESY_EXPECTS(tolerances.limit.has_value());
@@ -75,6 +86,8 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
   make_folder(folder);
   TableFolder tables(folder);
   if (study.poses.select == PoseSelection::Select::file) write_poses(tables, result);
+  study.analysis.limits = {{tolerances.response, tolerances.limit->limit}};
+  study.analysis.judge = Judge::rms;
   const ErrorModel as_studied = study.errors;
   const NamedUnit& response = result.responses[tolerances.response];
   const std::string limit = response.unit == "1"
@@ -83,13 +96,13 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   Confirmation written;
   const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
-    study.title = "Confirms " + words + " that keep the root mean square of " + response.name + " below " + limit;
+    study.title = "Tests " + words + " against a limit of " + limit + " on the root mean square of " + response.name;
     study.errors = as_studied;
     set_tolerances(study, *model, values, written.cut);
     written.paths.push_back(write_study(folder, name, study));
   };
-  add("confirm_equal_effect", "tolerances of equal effect", tolerances.limit->equal_effect);
-  add("confirm_equal_tolerance", "equal tolerances", tolerances.limit->equal_tolerance);
+  add(kEqualEffect, "tolerances of equal effect", tolerances.limit->equal_effect);
+  add(kEqualTolerance, "equal tolerances", tolerances.limit->equal_tolerance);
   return written;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/output_folder.h"
 #include "engine/io/result_file.h"
 #include "engine/model/catalog.h"
 #include "engine/stats/tolerance.h"
@@ -22,16 +23,23 @@ bool has_tolerances(const StoredResult& result);
 
 /// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
 ///
-///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit | index, index_ci_low,
-///     index_ci_high, variance_share, equal_effect, and with a limit limit_equal_effect and limit_equal_tolerance, in
-///     `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
+///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the
+///     study) | index, index_ci_low, index_ci_high, mean_square_share, equal_effect, and with a limit
+///     limit_equal_effect and limit_equal_tolerance, in `unit`; then the tolerances once more in `display_unit`:
+///     equal_effect_display ...
 ///
-/// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error;
-/// "inf" says that the error has no effect on its own. Returns the path. Throws FileError.
+/// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error,
+/// whatever the error was studied as; "inf" says that the error has no effect on its own. Returns the path. Throws
+/// FileError.
 std::string write_tolerances(const std::string& folder, const StoredResult& result,
                              const ResponseTolerances& tolerances);
 
-/// The studies that confirm tolerances.
+/// Claims what write_tolerances, and with a limit write_confirmation, are going to write into the folder. Throws
+/// InputError where they would replace what is not poesy's.
+void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
+                           const Catalog& catalog);
+
+/// The studies that test tolerances.
 struct Confirmation {
   std::vector<std::string> paths;  ///< the studies that were written
   std::vector<std::string> cut;    ///< "delta_1_0_y to 15 mm", each once
@@ -39,8 +47,9 @@ struct Confirmation {
 
 /// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
 /// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. Poses that
-/// came from a file are written beside them as confirm_poses.csv. A tolerance of a quarter of the part that it is an
-/// error of (Model::error_bound), or more, makes no sense: the studies take that quarter. Precondition:
+/// came from a file are written beside them as confirm_poses.csv. Each study states its limit ([analysis.limits],
+/// judged by the root mean square), so that running it says PASS or FAIL. A tolerance of a quarter of the part that it
+/// is an error of (Model::error_bound), or more, makes no sense: the studies take that quarter. Precondition:
 /// tolerances.limit. Throws FileError; InputError when the stored study cannot be read with this catalog.
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog);

@@ -39,6 +39,10 @@ struct Response {
   std::string name;         ///< as result files have it
   Dimension dimension;      ///< length (m), angle (rad) or number
   std::string description;  ///< for people
+  /// To first order, the mean square that independent errors of mean zero give together is at most this times the sum
+  /// of the mean squares that each gives alone. 1 where the response is linear in the errors or the norm of something
+  /// linear, because there the mean squares add; more where it is a mean or the largest of several norms.
+  double mean_square_bound = 1.0;
 };
 
 /// A vector behind the responses, given only where a caller asks for it.

@@ -1,6 +1,7 @@
 #include "engine/report/tolerance_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,42 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
       fmt::format("limit: predicted root mean square of {} over samples and poses = {}; the background alone gives {}",
                   response.name, response_text(response, tolerances.limit->limit),
                   response_text(response, std::sqrt(tolerances.all.mean_square.background))));
-  notes.emplace_back("an error without effect on its own has its equal tolerance, for it may act together with others");
+  notes.emplace_back(
+      "equal tolerance: one number for all lengths and one for all angles, in the proportion of the median "
+      "sigma that the study sets to lengths and to angles");
+  notes.emplace_back(
+      "an error without effect on its own has its equal tolerance, because it may act together with others");
+}
+
+/// How much the limit may be exceeded although the study was made at small errors.
+void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
+  if (!tolerances.limit || result.mean_square_bound.empty()) return;
+  const double bound = std::sqrt(result.mean_square_bound[tolerances.response]);
+  if (bound == 1.0) return;
+  const NamedUnit& response = result.responses[tolerances.response];
+  notes.push_back(
+      fmt::format("the root mean square may come out up to {:.3g} times as large, {}, even where every effect is "
+                  "linear: {} is made of several norms, and their mean squares do not add exactly. To be safe, give "
+                  "--limit \"{}\"",
+                  bound, response_text(response, tolerances.limit->limit * bound), response.name,
+                  response_text(response, tolerances.limit->limit / bound)));
+}
+
+/// That a tolerance speaks of a normal error, where the study's errors are something else.
+void add_distribution_note(std::vector<std::string>& notes, const StoredResult& result) {
+  std::vector<std::string> shapes;
+  std::size_t count = 0;
+  for (const std::string& shape : result.factor_distribution) {
+    if (shape == "normal") continue;
+    ++count;
+    if (std::ranges::find(shapes, shape) == shapes.end()) shapes.push_back(shape);
+  }
+  if (count == 0) return;
+  notes.push_back(
+      fmt::format("{} of {} not normal in the study ({}): the tolerance is still the standard deviation of a normal "
+                  "error, the same as of an error of another distribution where effects are linear",
+                  count, counted(result.factors.size(), "error is", count == 1 ? "errors is" : "errors are"),
+                  fmt::join(shapes, ", ")));
 }
 
 /// Errors with a tolerance larger than the size at which they were studied: of a limit, by either way to share it.
@@ -70,10 +106,13 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   std::vector<std::string> list;
   add_reference_notes(list, result, tolerances);
   add_limit_notes(list, result, tolerances);
+  add_bound_note(list, result, tolerances);
+  add_distribution_note(list, result);
   add_extrapolation_note(list, result, tolerances);
   list.push_back(
       fmt::format("index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
-                  "share: of the response's variance, at the size the study sets",
+                  "share: of what the errors add to the mean square of the response over samples and poses, the "
+                  "quantity that a limit limits, at the size the study sets",
                   100.0 * result.sensitivity.conf_level));
   return list;
 }
@@ -90,7 +129,7 @@ std::vector<Column> columns(const StoredResult& result, const ResponseTolerances
   list.push_back(number_column("index", "index", index_unit));
   list.push_back(number_column("index_low", "low", index_unit, 2));
   list.push_back(number_column("index_high", "high", index_unit, 2));
-  list.push_back(percent_column("variance_share", "share", 1));
+  list.push_back(percent_column("mean_square_share", "share", 1));
   return list;
 }
 
@@ -110,7 +149,7 @@ std::vector<Cell> row(const StoredResult& result, const ResponseTolerances& tole
   for (const double value : {found.global[at], found.global_ci_low[at], found.global_ci_high[at]}) {
     cells.push_back(index_cell(value, scale));
   }
-  cells.push_back(percent_cell(tolerances.all.variance_share[p]));
+  cells.push_back(percent_cell(tolerances.all.mean_square_share[p]));
   return cells;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "engine/base/contract.h"
 
@@ -32,6 +34,17 @@ std::vector<double> inverse(std::span<const double> index) {
   return values;
 }
 
+/// The median of the values of one dimension, of which there is one at least.
+double median_of(std::span<const double> values, std::span<const Dimension> dimensions, Dimension dimension) {
+  std::vector<double> chosen;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    if (dimensions[p] == dimension) chosen.push_back(values[p]);
+  }
+  std::ranges::sort(chosen);
+  const std::size_t last = chosen.size() - 1;
+  return std::midpoint(chosen[last / 2], chosen[last - last / 2]);
+}
+
 }  // namespace
 
 bool has_effect(double index) { return index >= kIndexRounding; }
@@ -52,18 +65,6 @@ std::vector<double> equal_effect_tolerances(std::span<const double> index, const
   for (double& tolerance : tolerances) tolerance *= mu * reference.tolerance;
   tolerances[reference.factor] = reference.tolerance;  // not a rounding beside it
   return tolerances;
-}
-
-std::vector<double> variance_shares(std::span<const double> index, std::span<const double> sigma) {
-  std::vector<double> shares;
-  double sum = 0.0;
-  for (std::size_t p = 0; p < index.size(); ++p) {
-    const bool is_zero = index[p] < kIndexRounding;
-    shares.push_back(is_zero ? 0.0 : square(index[p] * sigma[p]));
-    sum += shares.back();
-  }
-  for (double& share : shares) share /= sum;
-  return shares;
 }
 
 double MeanSquare::growth(std::span<const double> tolerances) const {
@@ -89,6 +90,13 @@ MeanSquare mean_square(const ResponseStudy& study) {
   return response;
 }
 
+std::vector<double> mean_square_shares(const MeanSquare& response, std::span<const double> sigma) {
+  const double sum = response.growth(sigma);
+  std::vector<double> shares;
+  for (std::size_t p = 0; p < sigma.size(); ++p) shares.push_back(response.effects[p] * square(sigma[p]) / sum);
+  return shares;
+}
+
 std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit) {
   POESY_EXPECTS(!(square(limit) <= response.background));
   const double multiple = std::sqrt((square(limit) - response.background) / response.growth(proportions));
@@ -98,14 +106,23 @@ std::vector<double> tolerances_within(const MeanSquare& response, std::span<cons
 }
 
 Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceError>& reference) {
+  MeanSquare response = mean_square(study);
+  std::vector<double> shares = mean_square_shares(response, study.sigma);
   return {reference,
           reference ? equal_effect_tolerances(study.index, *reference) : std::vector<double>(study.index.size(), kNaN),
-          variance_shares(study.index, study.sigma), mean_square(study)};
+          std::move(shares), std::move(response)};
 }
 
-LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response, double limit) {
+std::vector<double> one_size_for_each(std::span<const double> sigma, std::span<const Dimension> dimension) {
+  std::vector<double> sizes;
+  for (std::size_t p = 0; p < sigma.size(); ++p) sizes.push_back(median_of(sigma, dimension, dimension[p]));
+  return sizes;
+}
+
+LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response,
+                                 std::span<const double> one_size, double limit) {
   LimitTolerances found{limit, tolerances_within(response, inverse(study.index), limit),
-                        tolerances_within(response, study.sigma, limit)};
+                        tolerances_within(response, one_size, limit)};
   for (std::size_t p = 0; p < found.equal_effect.size(); ++p) {
     if (std::isinf(found.equal_effect[p])) found.equal_effect[p] = found.equal_tolerance[p];
   }

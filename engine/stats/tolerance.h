@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/units.h"
+
 /// Tolerances from the indices of a sensitivity study. A tolerance here is the standard deviation of a normal error, in
 /// SI; infinity says that the error has no effect on its own, NaN that its effect is not known.
 namespace poesy {
@@ -38,12 +40,9 @@ std::optional<std::size_t> smallest_effect(std::span<const double> index, std::s
 /// 10), [P]. NaN throughout when the reference has no effect.
 std::vector<double> equal_effect_tolerances(std::span<const double> index, const ReferenceError& reference);
 
-/// (mu_p sigma_p)^2 over its sum, [P]; NaN throughout when an index is not known or no error has an effect.
-std::vector<double> variance_shares(std::span<const double> index, std::span<const double> sigma);
-
 /// The mean square of a response over the poses, for independent errors of mean zero and standard deviations t_p:
-/// background + sum of effects_p t_p^2. Exact for a response that is the norm of something linear in the errors. Its
-/// root is never below the mean of the response (Jensen).
+/// background + sum of effects_p t_p^2. Exact for a response that is linear in the errors or the norm of something
+/// linear; for others see Response::mean_square_bound. Its root is never below the mean of the response (Jensen).
 struct MeanSquare {
   double background = 0.0;      ///< mean square over the poses of the response to the background alone
   std::vector<double> effects;  ///< [P] growth of the mean square per t_p^2; 0 for errors without effect
@@ -58,6 +57,10 @@ struct MeanSquare {
 /// or 0 if that is negative, over sigma_p^2. NaN where a pose has no background, or fewer than two samples of an error.
 MeanSquare mean_square(const ResponseStudy& study);
 
+/// effects_p sigma_p^2 over its sum, [P]: the error's share of what all errors of these standard deviations add to the
+/// mean square. NaN throughout where an effect is not known or no error has one.
+std::vector<double> mean_square_shares(const MeanSquare& response, std::span<const double> sigma);
+
 /// The multiple of `proportions` [P] whose predicted mean square is limit^2; proportions that are infinite stay so. NaN
 /// where the prediction is not known. Precondition: limit^2 > background.
 std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit);
@@ -66,9 +69,13 @@ std::vector<double> tolerances_within(const MeanSquare& response, std::span<cons
 struct Tolerances {
   std::optional<ReferenceError> reference;  ///< from which equal_effect is counted
   std::vector<double> equal_effect;         ///< [P] from the reference; NaN without one
-  std::vector<double> variance_share;       ///< [P]
+  std::vector<double> mean_square_share;    ///< [P] at the sizes that the study sets
   MeanSquare mean_square;                   ///< for any tolerances
 };
+
+/// sigma [P] with every length replaced by the median of the lengths, and every angle by that of the angles: the
+/// proportions of equal tolerances.
+std::vector<double> one_size_for_each(std::span<const double> sigma, std::span<const Dimension> dimension);
 
 /// From this reference; without one equal_effect is NaN.
 Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceError>& reference);
@@ -79,10 +86,11 @@ struct LimitTolerances {
   /// [P] every error has the same effect: t_p = k / mu_p. One without effect on its own may act together with others,
   /// so it has its equal tolerance.
   std::vector<double> equal_effect;
-  std::vector<double> equal_tolerance;  ///< [P] the same multiple of every error in the study: t_p = k sigma_p
+  std::vector<double> equal_tolerance;  ///< [P] one number for all lengths, one for all angles
 };
 
-/// Precondition: limit^2 > tolerances.mean_square.background.
-LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response, double limit);
+/// one_size: [P] the proportions of equal_tolerance. Precondition: limit^2 > response.background.
+LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response,
+                                 std::span<const double> one_size, double limit);
 
 }  // namespace poesy

@@ -62,18 +62,25 @@ class DeformationEvaluator final : public Evaluator {
 }  // namespace
 
 std::vector<Response> deformation_responses() {
+  // The sum Q of the three n^2 adds over independent errors. In a triangle 2 Q <= (sum of n)^2 <= 3 Q, so the square of
+  // the mean lies between 2 Q / 9 and 3 Q / 9; and Q / 3 <= (largest n)^2 <= 2 Q / 3.
+  constexpr double kMeanOfSides = 3.0 / 2.0;
+  constexpr double kLargestSide = 2.0;
   return {
       {"angular_deformation", Dimension::angle,
        "mean mismatch of angle between pairs of limbs, whose errors keep them from holding one rigid platform (Du et "
        "al. "
-       "2022, Eq. 49)"},
+       "2022, Eq. 49)",
+       kMeanOfSides},
       {"linear_deformation", Dimension::length,
        "mean mismatch of position, at the base's origin, between pairs of limbs, whose errors keep them from holding "
        "one "
-       "rigid platform (Du et al. 2022, Eq. 50)"},
+       "rigid platform (Du et al. 2022, Eq. 50)",
+       kMeanOfSides},
       {"deformation_max", Dimension::number,
        "largest mismatch of a pair of limbs: the norm of angle and position together, rad and m mixed (Du et al. 2022, "
-       "Eq. 45)"}};
+       "Eq. 45)",
+       kLargestSide}};
 }
 
 DeformationMeasure deformation_measure(const ParallelChain& chain) { return {kResponses - 1, rounding_level(chain)}; }

@@ -26,7 +26,9 @@ struct DeformationModel {
 };
 
 /// The responses of every deformation model, in the order in which they are evaluated:
-/// angular_deformation (Du et al. 2022, Eq. 49), linear_deformation (Eq. 50), deformation_max (Eq. 45).
+/// angular_deformation (Du et al. 2022, Eq. 49), linear_deformation (Eq. 50), deformation_max (Eq. 45). For three
+/// limbs, whose pairs go round: to first order delta_mu_21 + delta_mu_32 + delta_mu_13 = 0, so their norms n are the
+/// sides of a triangle.
 std::vector<Response> deformation_responses();
 
 /// deformation_max, and the rounding of its solves (see rounding_level()).

@@ -44,13 +44,14 @@ def check_tolerances(found):
     degree = np.pi / 180
     np.testing.assert_allclose(found["reference_tolerance"], [0.001, degree], rtol=1e-15)
     np.testing.assert_allclose(found["equal_effect"], [[5.01 / 5000, 0.001], [degree, np.nan]], rtol=1e-15)
-    effects = np.array([5000 * 0.5 / np.sqrt(3), 5.01]) ** 2
-    np.testing.assert_allclose(found["variance_share"], [effects / effects.sum(), [np.nan, np.nan]], rtol=1e-14)
     background = np.arange(8).reshape(2, 4) / 16
     np.testing.assert_allclose(found["background_rms"], np.sqrt((background**2).mean(axis=1)), rtol=1e-15)
     square = (numbered(3, 4) ** 2 + numbered(4, 4) ** 2 * 96 / 97).mean(axis=2) - (background**2).mean(axis=1)[:, None]
     sigma = np.array([0.5 / np.sqrt(3), 0.001])
     np.testing.assert_allclose(found["rms_effect"], np.sqrt(square) / sigma, rtol=1e-12)
+    shares = square / square.sum(axis=1)[:, None]
+    np.testing.assert_allclose(found["mean_square_share"], shares, rtol=1e-12)
+    expect(found["mean_square_bound"], [1, 1])
 
 
 def check_sensitivity(path):
@@ -105,6 +106,7 @@ def check_sensitivity(path):
         expect(file["factors/name"].asstr()[:], FACTORS)
         expect(file["factors/unit"].asstr()[:], ["rad", "m"])
         np.testing.assert_allclose(file["factors/sigma"][:], [0.5 / np.sqrt(3), 0.001], rtol=1e-15)
+        expect(file["factors/distribution"].asstr()[:], ["uniform", "normal"])
         expect(file["responses/name"].asstr()[:], RESPONSES)
         expect(file["responses/unit"].asstr()[:], ["rad", "m"])
         expect(file["poses/z"][:], -0.25 + np.arange(4) / 64)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <set>
 
@@ -253,6 +254,55 @@ TEST_P(EveryMechanism, HasTemplatesThatReadBack) {
     EXPECT_EQ(study.analysis.kind, kind);
     const std::string text = resolved_text(study);
     EXPECT_EQ(resolved_text(study_of_text(text, "resolved", registry(), StudyUse::run)), text);
+  }
+}
+
+/// Mean square of every response over all signs of some errors of this size, [R]: what independent errors of mean zero
+/// give, without sampling. The size is where effects are linear.
+std::vector<double> mean_squares_over_signs(Evaluator& evaluator, const ModelDescription& model,
+                                            std::span<const double> pose, std::span<const FactorIndex> errors) {
+  constexpr double kSize = 1e-6;
+  const std::size_t count = std::size_t{1} << errors.size();
+  std::vector<double> values;
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    for (std::size_t sample = 0; sample < count; ++sample) values.push_back((sample >> p) % 2 == 0 ? kSize : -kSize);
+  }
+  const Outcomes found = solve(evaluator, model, pose, errors, values, count);
+  std::vector<double> squares(model.responses.size(), 0.0);
+  for (std::size_t k = 0; k < found.responses.size(); ++k) {
+    squares[k / count] += found.responses[k] * found.responses[k] / static_cast<double>(count);
+  }
+  return squares;
+}
+
+// Errors whose effect is of second order would make a sum of nothing, so each response must move by a tenth of the
+// errors at least.
+TEST_P(EveryMechanism, HasMeanSquaresThatAddAsItSays) {
+  constexpr double kNoticeable = 1e-14;
+  constexpr std::size_t kTogether = 6;
+  const ModelDescription& model = description();
+  const auto evaluator = model_->evaluator({});
+  std::mt19937_64 random(20260102);
+  std::vector<FactorIndex> all;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) all.emplace_back(f);
+  std::vector<double> largest(model.responses.size(), 0.0);
+  for (const std::vector<double>& pose : poses()) {
+    std::vector<FactorIndex> some;
+    std::ranges::sample(all, std::back_inserter(some), kTogether, random);
+    const std::vector<double> together = mean_squares_over_signs(*evaluator, model, pose, some);
+    std::vector<double> sum(model.responses.size(), 0.0);
+    for (const FactorIndex& one : some) {
+      const std::vector<double> alone = mean_squares_over_signs(*evaluator, model, pose, {&one, 1});
+      for (std::size_t r = 0; r < sum.size(); ++r) sum[r] += alone[r];
+    }
+    for (std::size_t r = 0; r < sum.size(); ++r) {
+      if (sum[r] > kNoticeable) largest[r] = std::max(largest[r], together[r] / sum[r]);
+    }
+  }
+  for (std::size_t r = 0; r < largest.size(); ++r) {
+    const Response& response = model.responses[r];
+    EXPECT_LT(largest[r], response.mean_square_bound * (1.0 + 1e-3)) << response.name;
+    EXPECT_GT(largest[r], response.mean_square_bound == 1.0 ? 1.0 - 1e-3 : 1.01) << response.name;
   }
 }
 

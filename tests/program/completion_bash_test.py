@@ -63,6 +63,9 @@ class Bash(ProgramTest):
         self.assertEqual(self.offers("models", "2"), {"2upr-rpu"})
         self.assertEqual(self.offers("template", "3-prs", "mo"), {"monte-carlo"})
         self.assertEqual(self.offers("completion", ""), {"bash", "zsh"})
+        self.assertLessEqual({"linear_deformation", "angular_deformation", "theta_x", "tip_position"},
+                             self.offers("tolerances", "r.h5", "--response", ""))
+        self.assertEqual(self.offers("show", "r.h5", "--response", "linear"), {"linear_deformation"})
 
     def test_values_that_nobody_can_guess(self):
         self.assertEqual(self.offers("run", "--threads", ""), set())

@@ -51,6 +51,7 @@ class Zsh(ProgramTest):
                               ("poesy run o", "poesy run one.toml"), ("poesy show r", "poesy show result.h5"),
                               ("poesy run one.toml -o ", "result.h5"), ("poesy models xy", "poesy models xy-3-prs"),
                               ("poesy template 3-prs mon", "poesy template 3-prs monte-carlo"),
+                              ("poesy show result.h5 --response lin", "--response linear_deformation"),
                               ("poesy t", "tolerances")):
             with self.subTest(typed=typed):
                 self.assertIn(wanted, self.screen_after(typed, wanted))

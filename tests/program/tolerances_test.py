@@ -38,7 +38,7 @@ class Tolerances(ProgramTest):
     def test_equal_effect_from_the_study_reference(self):
         printed = self.succeeds("tolerances", self.result(), "--response", RESPONSE, "-d", "out")
         self.assertIn("epsilon_1_1_z = 1 deg", printed)
-        self.assertNotIn("confirm", printed)
+        self.assertNotIn("test with", printed)
         table = self.table("out")
         self.assertEqual({name: (row["kind"], row["limb"], row["unit"]) for name, row in table.items()},
                          {"delta_1_1_y": ("linear", "1", "m"), "epsilon_1_4_z": ("angular", "1", "rad"),
@@ -48,11 +48,97 @@ class Tolerances(ProgramTest):
         self.assertAlmostEqual(float(table["delta_1_1_y"]["equal_effect_display"]) / (math.pi / 180), 1.0, delta=0.15)
         products = [float(row["index"]) * float(row["equal_effect"]) for row in table.values()]
         self.assertAlmostEqual(max(products) / min(products), 1.0, places=12)
-        self.assertAlmostEqual(sum(float(row["variance_share"]) for row in table.values()), 1.0, places=12)
+        self.assertAlmostEqual(sum(float(row["mean_square_share"]) for row in table.values()), 1.0, places=12)
+        self.assertNotIn("variance", printed)
         with h5py.File(self.folder / "r.h5") as file:
             group = file["tolerances"]
             at = list(file["response"].asstr()).index(RESPONSE)
             self.assertEqual([float(row["equal_effect"]) for row in table.values()], list(group["equal_effect"][at]))
+            self.assert_shares(file, table, at)
+
+    def assert_shares(self, file, table, response):
+        """That shares are of the mean square over samples and poses, from the samples' own moments."""
+        found = file["sensitivity"]
+        count = found["count"][response]
+        square = found["mean"][response] ** 2 + found["std"][response] ** 2 * (count - 1) / count
+        added = square.mean(axis=1) - (found["background"][response] ** 2).mean()
+        for row, share in zip(table.values(), added / added.sum()):
+            self.assertAlmostEqual(float(row["mean_square_share"]), share, places=9)
+
+    def test_equal_tolerance_is_one_number_for_lengths_and_one_for_angles(self):
+        # Errors of their own size and shape: a part of the lengths and of the angles.
+        study = FACTORS.replace('["delta_1_1_y"', '["delta_1_1_y", "delta_1_4_z", "delta_3_4_z"').replace(
+            "[analysis]", '[errors.override]\ndelta_1_4_z = { distribution = "uniform", half_width = "0.02 mm" }\n'
+            'epsilon_1_4_z = { distribution = "triangular", half_width = "0.01 deg" }\n[analysis]')
+        printed = " ".join(self.succeeds("tolerances", self.result(study), "--response", RESPONSE, "--limit", "0.05 mm",
+                                         "-d", "out").split())
+        self.assertIn("2 of 5 errors are not normal in the study (uniform, triangular): the tolerance is still the standard "
+                      "deviation of a normal error", printed)
+        table = self.table("out")
+        self.assertEqual([row["studied_as"] for row in table.values()],
+                         ["normal", "uniform", "normal", "triangular", "normal"])
+        equal = {kind: {row["limit_equal_tolerance"] for row in table.values() if row["kind"] == kind}
+                 for kind in ("linear", "angular")}
+        self.assertEqual({kind: len(values) for kind, values in equal.items()}, {"linear": 1, "angular": 1})
+
+    def test_mean_of_norms_says_by_how_much_it_may_be_short(self):
+        # Published set and response: a mean of three norms, whose mean squares do not add even where all is linear.
+        study = STUDY.replace("count = 6", "count = 20").replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '"deforming"')
+        study = study.replace("samples = 1500", "samples = 1000").replace('"1 mm" }\nang', '"0.05 mm" }\nang').replace("0.2 deg", "0.05 deg")
+        result = self.result(study.replace('method = "gauss-newton"', ""))
+        angular = ("tolerances", result, "--response", "angular_deformation", "--limit")
+        printed = " ".join(self.succeeds(*angular, "0.02 deg", "-d", "out").split())
+        self.assertIn("may come out up to 1.22 times as large, 0.02449 deg", printed)
+        ratios = self.rms_of_confirmations("angular_deformation")
+        self.assertGreater(max(ratios), 1.05 * math.radians(0.02))
+        self.assertLess(max(ratios), math.sqrt(1.5) * math.radians(0.02))
+        self.assertIn('--limit "0.01633 deg"', printed)
+        self.succeeds(*angular, "0.01633 deg", "-d", "out")
+        self.assertLess(max(self.rms_of_confirmations("angular_deformation")), math.radians(0.02))
+
+    def rms_of_confirmations(self, response):
+        """What the two Monte Carlo studies of the folder `out` find, SI."""
+        found = []
+        for name in ("confirm_equal_effect", "confirm_equal_tolerance"):
+            self.poesy("run", f"out/{name}.toml", "--quiet")
+            with h5py.File(self.folder / f"{name}.h5") as file:
+                at = list(file["response"].asstr()).index(response)
+                found.append(math.hypot(*(file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))))
+        return found
+
+    def test_study_that_refutes_its_limit_says_so(self):
+        # Errors that act with the square of their size look harmless in a study of small ones.
+        study = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '"deforming"').replace('method = "gauss-newton"', "")
+        study = study.replace('"1 mm" }\nang', '"0.01 mm" }\nang').replace("0.2 deg", "0.01 deg").replace("samples = 1500", "samples = 500")
+        self.succeeds("tolerances", self.result(study), "--response", RESPONSE, "--limit", "0.05 mm", "-d", "out")
+        done = self.poesy("run", "out/confirm_equal_effect.toml", "--quiet")
+        self.assertEqual(done.returncode, 6, done.stderr)
+        with h5py.File(self.folder / "confirm_equal_effect.h5") as file:
+            at = list(file["response"].asstr()).index(RESPONSE)
+            rms = 1e3 * math.hypot(*(file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std")))
+            self.assertEqual(file.attrs["title"], "Tests tolerances of equal effect against a limit of 0.05 mm on the root "
+                                                  "mean square of linear_deformation")
+        self.assertGreater(rms, 0.5)
+        verdict = next(line for line in done.stdout.decode().splitlines() if "FAIL" in line)
+        self.assertIn(f"{rms:.4g}", verdict)
+        self.assertIn("0.05", verdict)
+
+    def test_files_of_the_user_are_not_replaced(self):
+        result = self.result()
+        own = ("tolerances", result, "--response", RESPONSE, "--limit", "0.05 mm", "-d", ".")
+        for name in ("tolerances.csv", "confirm_equal_effect.toml", "confirm_equal_tolerance.toml"):
+            with self.subTest(name):
+                path = self.write(name, "mine\n")
+                self.refuses(*own[1:], words=[name, "would be lost", "-d"])
+                self.assertEqual(path.read_text(), "mine\n")
+                path.unlink()
+                self.assertEqual(list(self.folder.glob("confirm*")) + list(self.folder.glob("*.csv")), [])
+        self.succeeds(*own)
+        self.succeeds(*own)
+
+    def test_responses_are_listed(self):
+        self.refuses(self.result(), words=["r.h5: has tolerances for angular_deformation (deg), linear_deformation (mm), "
+                                           "deformation_max; choose one with --response"])
 
     def test_confirmation_stays_within_the_parts(self):
         # Lengths hardly turn the platform, so their tolerances for an angle outgrow it.
@@ -92,12 +178,13 @@ class Tolerances(ProgramTest):
         ratios = {}
         for name in ("confirm_equal_effect", "confirm_equal_tolerance"):
             self.assertIn(f"poesy run out/{name}.toml", printed)
-            self.succeeds("run", f"out/{name}.toml", "--quiet")
+            done = self.poesy("run", f"out/{name}.toml", "--quiet")
             with h5py.File(self.folder / f"{name}.h5") as file:
                 at = list(file["response"].asstr()).index(RESPONSE)
                 mean, std = (file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))
             self.assertLess(mean, limit_mm * 1e-3)
             ratios[name] = math.hypot(mean, std) / (limit_mm * 1e-3)
+            self.assertEqual(done.returncode, 0 if ratios[name] <= 1.0 else 6, done.stderr)
         return ratios
 
     def test_monte_carlo_confirms_the_limit(self):

@@ -21,9 +21,9 @@ std::vector<double> shown_tolerances(const StoredResult& result, const std::vect
 Bars bars_of(const StoredResult& result, const Tolerances& found, ArrayPool& pool) {
   std::vector<std::string> units;
   for (const NamedUnit& factor : result.factors) units.push_back(unit_text(factor));
-  BarQuantity shares{"share of the variance that the study's sizes cause",
+  BarQuantity shares{"share of the mean square that the study's sizes cause",
                      {{"%"}},
-                     pool.add("variance_share", found.variance_share, 0.01)};
+                     pool.add("mean_square_share", found.mean_square_share, 0.01)};
   BarQuantity sizes{
       "tolerance of equal effect", {units}, pool.add("equal_effect", shown_tolerances(result, found.equal_effect))};
   return {{}, {std::move(shares), std::move(sizes)}, names_of(result.factors)};
@@ -52,7 +52,9 @@ void add_tolerances(const StoredResult& result, Page& page) {
       name, name));
   add_figure(page, section, "tolerances", bars_of(result, found.all, page.figures.pool),
              fmt::format(
-                 "What each error contributes to the variance of {}, and its tolerance of equal effect; {}.", name,
+                 "What each error adds to the mean square of {} over samples and poses, and its tolerance of equal "
+                 "effect; {}.",
+                 name,
                  mixed_units(result.factors) ? "the largest share first, for tolerances in mm and in deg do not compare"
                                              : "the largest first"));
   section.table(tolerance_table(result, found));

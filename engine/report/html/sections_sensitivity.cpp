@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <span>
 
+#include "engine/io/tolerance_files.h"
 #include "engine/report/display.h"
 #include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
@@ -12,6 +14,7 @@
 #include "engine/report/html/sections.h"
 #include "engine/report/ranking.h"
 #include "engine/report/tables.h"
+#include "engine/run/sensitivity.h"
 #include "engine/stats/tolerance.h"
 
 namespace poesy {
@@ -51,32 +54,41 @@ BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& 
           .high = add("_high", found.global_ci_high)};
 }
 
-/// The errors that make most of the variance, and those that together make next to none; empty where not all of their
-/// effects are known, or none has one.
+/// Positions of values, the largest first.
+std::vector<std::size_t> largest_first(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t p) { return values[p]; });
+  return order;
+}
+
+/// The errors that make most of the mean square, and those that together make next to none; empty where not all of
+/// their effects are known, or none has one.
 std::string few_matter_text(const StoredResult& result) {
   constexpr double kMost = 0.8;
   constexpr double kHardly = 0.01;
-  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
-  const std::size_t factors = result.factors.size();
-  const std::vector<double> shares = variance_shares(
-      std::span(result.sensitivity.global).subspan(ranked.response * factors, factors), result.factor_sigma);
+  if (!has_tolerances(result)) return {};
+  const std::size_t response = response_named(result, default_ranking(result));
+  const MeanSquare found = mean_square(response_study(result.sensitivity, result.factor_sigma, response));
+  const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
   if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return {};
+  const std::vector<std::size_t> order = largest_first(shares);
   std::vector<std::string> names;
   double sum = 0.0;
-  while (sum < kMost && names.size() < factors) {
-    const std::size_t p = ranked.rows[names.size()];
+  while (sum < kMost && names.size() < order.size()) {
+    const std::size_t p = order[names.size()];
     names.push_back(result.factors[p].name);
     sum += shares[p];
   }
   std::size_t hardly = 0;
-  for (double tail = 0.0; hardly < factors; ++hardly) {
-    tail += shares[ranked.rows[factors - 1 - hardly]];
+  for (double tail = 0.0; hardly < order.size(); ++hardly) {
+    tail += shares[order[order.size() - 1 - hardly]];
     if (tail >= kHardly) break;
   }
-  std::string text =
-      fmt::format("{} of {} {} {:.0f} % of the variance that the study's sizes cause in {}: {}.", names.size(),
-                  counted(factors, "error", "errors"), names.size() == 1 ? "makes" : "make", 100.0 * sum,
-                  result.responses[ranked.response].name, some_names(names));
+  std::string text = fmt::format(
+      "{} of {} {} {:.0f} % of what the study's sizes add to the mean square of {} over samples and poses: {}.",
+      names.size(), counted(order.size(), "error", "errors"), names.size() == 1 ? "makes" : "make", 100.0 * sum,
+      result.responses[response].name, some_names(names));
   if (hardly > 0)
     text += fmt::format(" {} hardly {} (below 1 % together).", hardly, hardly == 1 ? "matters" : "matter");
   return text;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 
@@ -81,14 +84,15 @@ TEST_F(ToleranceFiles, TableReadsWithoutKnowingTheProgram) {
   const StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
   const std::string path = write_tolerances(folder_ / "new/folder", stored, some(true));
   EXPECT_EQ(path, folder_ / "new/folder/tolerances.csv");
-  EXPECT_EQ(read_bytes(path),
-            "factor,kind,limb,unit,display_unit,index_unit,index,index_ci_low,index_ci_high,variance_share,"
-            "equal_effect,limit_equal_effect,limit_equal_tolerance,"
-            "equal_effect_display,limit_equal_effect_display,limit_equal_tolerance_display\n"
-            "epsilon_1,angular,1,rad,deg,rad/rad,0,6000,7000,0,inf,0.25,0.25,inf," +
-                shortest(0.25 / kDegree) + "," + shortest(0.25 / kDegree) +
-                "\n"
-                "delta_1,linear,1,m,mm,rad/m,2,6010,7010,1,0.002,0.004,1e-05,2,4,0.01\n");
+  EXPECT_EQ(
+      read_bytes(path),
+      "factor,kind,limb,unit,display_unit,index_unit,studied_as,index,index_ci_low,index_ci_high,mean_square_share,"
+      "equal_effect,limit_equal_effect,limit_equal_tolerance,"
+      "equal_effect_display,limit_equal_effect_display,limit_equal_tolerance_display\n"
+      "epsilon_1,angular,1,rad,deg,rad/rad,uniform,0,6000,7000,0,inf,0.25,0.25,inf," +
+          shortest(0.25 / kDegree) + "," + shortest(0.25 / kDegree) +
+          "\n"
+          "delta_1,linear,1,m,mm,rad/m,normal,2,6010,7010,1,0.002,0.004,1e-05,2,4,0.01\n");
 }
 
 TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
@@ -140,12 +144,57 @@ TEST_F(ToleranceFiles, ConfirmationTakesATrajectorysPosesAlong) {
   EXPECT_EQ(study.poses.from_file.points.size(), example_.poses.poses.size());
 }
 
+TEST_F(ToleranceFiles, StudiesClaimNothingBeforeTheyAreRun) {
+  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
+  EXPECT_EQ(read_back(paths[0]).title,
+            "Tests tolerances of equal effect against a limit of 0.0572957795131 deg on the root mean square of "
+            "angular_deformation");
+  EXPECT_TRUE(read_back(paths[1]).title.starts_with("Tests equal tolerances against a limit of "));
+}
+
+TEST_F(ToleranceFiles, StudiesCarryTheLimitThatJudgesThem) {
+  for (const std::string& path :
+       write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths) {
+    const Analysis analysis = read_back(path).analysis;
+    ASSERT_EQ(analysis.limits.size(), 1U);
+    EXPECT_EQ(analysis.limits[0].response, 0U);
+    EXPECT_EQ(analysis.limits[0].most, 1e-3);
+    EXPECT_EQ(analysis.judge, Judge::rms);
+  }
+}
+
+TEST_F(ToleranceFiles, ClaimWhatIsWrittenAndNoMore) {
+  example_.study.poses = {};
+  example_.study.poses.select = PoseSelection::Select::file;
+  example_.study.poses.file = "gone/poses.csv";
+  const StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
+  for (const bool limit : {false, true}) {
+    const std::string out = folder_ / (limit ? "with" : "without");
+    OutputFolder output(out);
+    claim_tolerance_files(output, stored, some(limit), catalog_);
+    output.open();
+    if (limit) write_confirmation(out, stored, some(limit), catalog_);
+    write_tolerances(out, stored, some(limit));
+    output.close();
+    const std::string list = read_bytes(output.file(kListOfFiles));
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(out)) {
+      const std::string name = entry.path().filename().string();
+      if (name == kListOfFiles) continue;
+      ++files;
+      EXPECT_NE(list.find("  " + name + "\n"), std::string::npos) << name;
+    }
+    EXPECT_EQ(files, limit ? 4U : 1U);
+    EXPECT_EQ(std::ranges::count(list, '\n'), static_cast<std::ptrdiff_t>(files + 1));
+  }
+}
+
 TEST_F(ToleranceFiles, ExportHasTheSameRows) {
   written({0.0, 2.0, 1.0, 2.0});
   export_tables(path_, folder_.path());
   EXPECT_EQ(read_bytes(folder_ / "tolerances_angular_deformation.csv"),
             "factor,angular,limb,index [rad per rad or m],index_ci_low [rad per rad or m],"
-            "index_ci_high [rad per rad or m],variance_share,equal_effect [rad or m],equal_effect [deg or mm]\n"
+            "index_ci_high [rad per rad or m],mean_square_share,equal_effect [rad or m],equal_effect [deg or mm]\n"
             "epsilon_1,1,1,0,6000,7000,0,inf,inf\n"
             "delta_1,0,1,2,6010,7010,1,0.001,1\n");
 }

@@ -18,7 +18,7 @@ ResponseTolerances example() {
   ResponseTolerances found{.response = 0, .all = {}, .limit = std::nullopt};
   found.all.reference = ReferenceError{0, 1e-3};
   found.all.equal_effect = {1e-3, 0.004, kInfinity, kNaN};
-  found.all.variance_share = {0.25, 0.75, 0.0, kNaN};
+  found.all.mean_square_share = {0.25, 0.75, 0.0, kNaN};
   found.all.mean_square = {.background = 0.0, .effects = {0.25, 0.0, 0.0, 0.0}};
   return found;
 }
@@ -56,6 +56,34 @@ TEST(ToleranceTable, OfALimitHasBothWaysToShareIt) {
   EXPECT_TRUE(std::ranges::any_of(table.notes, [](const std::string& note) {
     return note.starts_with("4 of 4 errors have a tolerance larger than the sigma of the study");
   }));
+}
+
+/// Whether a note has these words.
+bool says(const Table& table, std::string_view words) {
+  return std::ranges::any_of(table.notes,
+                             [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+TEST(ToleranceTable, SaysByHowMuchALimitMayBeExceeded) {
+  StoredResult stored = result();
+  ResponseTolerances found = example();
+  found.limit =
+      LimitTolerances{.limit = 3e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
+  stored.mean_square_bound = {2.25, 1.0};
+  const Table table = tolerance_table(stored, found);
+  EXPECT_TRUE(says(table, "may come out up to 1.5 times as large, 0.45 mm"));
+  EXPECT_TRUE(says(table, "give --limit \"0.2 mm\""));
+  stored.mean_square_bound = {1.0, 2.25};
+  EXPECT_FALSE(says(tolerance_table(stored, found), "times as large"));
+}
+
+TEST(ToleranceTable, SaysWhichErrorsAreNotNormal) {
+  StoredResult stored = result();
+  stored.factor_distribution = {"normal", "uniform", "triangular", "uniform"};
+  EXPECT_TRUE(says(tolerance_table(stored, example()),
+                   "3 of 4 errors are not normal in the study (uniform, triangular): the tolerance is still"));
+  stored.factor_distribution = {"normal", "normal", "normal", "normal"};
+  EXPECT_FALSE(says(tolerance_table(stored, example()), "not normal"));
 }
 
 }  // namespace

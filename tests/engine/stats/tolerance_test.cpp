@@ -75,23 +75,6 @@ TEST(Tolerances, ReferenceOfSmallestEffectSkipsThoseWithoutAny) {
   EXPECT_EQ(smallest_effect(std::vector{0.0, 1e-14, kNaN, kNaN}, sigma), std::nullopt);
 }
 
-TEST(VarianceShares, SumToOneInTheRatioOfSquares) {
-  const auto shares = variance_shares(std::vector{0.3, 0.02, 1e-14}, std::vector{1e-3, 2e-2, 1e-3});
-  EXPECT_DOUBLE_EQ(shares[0], 9.0 / 25.0);
-  EXPECT_DOUBLE_EQ(shares[1], 16.0 / 25.0);
-  EXPECT_EQ(shares[2], 0.0);
-  EXPECT_DOUBLE_EQ(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0);
-}
-
-TEST(VarianceShares, AreUnknownWhereAnIndexIsUnknownOrNoneHasAnEffect) {
-  for (const double share : variance_shares(std::vector{0.3, kNaN}, std::vector{1.0, 1.0})) {
-    EXPECT_TRUE(std::isnan(share));
-  }
-  for (const double share : variance_shares(std::vector{0.0, 0.0}, std::vector{1.0, 1.0})) {
-    EXPECT_TRUE(std::isnan(share));
-  }
-}
-
 TEST(MeanSquareOfResponse, IsExactForALinearOne) {
   const LinearResponse response;
   const MeanSquare found = mean_square(response.study());
@@ -120,11 +103,56 @@ TEST(MeanSquareOfResponse, CountsAnErrorThatOnlyTakesAwayAsNothing) {
   EXPECT_EQ(mean_square(response.study()).effects[0], 0.0);
 }
 
+TEST(MeanSquareShares, AreWhatEachErrorAddsOverWhatAllAdd) {
+  const LinearResponse response;
+  const auto shares = mean_square_shares(mean_square(response.study()), response.sigma);
+  std::vector<double> alone;
+  for (std::size_t p = 0; p < 3; ++p) {
+    std::vector<double> sizes(3, 0.0);
+    sizes[p] = response.sigma[p];
+    alone.push_back(std::pow(response.rms(sizes), 2) - std::pow(response.rms(std::vector(3, 0.0)), 2));
+  }
+  const double sum = std::accumulate(alone.begin(), alone.end(), 0.0);
+  for (std::size_t p = 0; p < 3; ++p) EXPECT_NEAR(shares[p], alone[p] / sum, 1e-10);
+  EXPECT_EQ(shares[2], 0.0);
+}
+
+// The first error has the larger global index, mean over poses plus spread between them, but the second adds more to
+// the mean square.
+TEST(MeanSquareShares, DoNotFollowTheIndex) {
+  const std::vector<double> mean(4, 0.0);
+  const std::vector<double> count(4, 1e6);
+  const std::vector<double> std{1.0, 3.0, 2.3, 2.3};
+  const std::vector<double> index{2.0 + std::sqrt(2.0), 2.3};
+  const std::vector<double> sigma{1.0, 1.0};
+  const std::vector<double> background{0.0, 0.0};
+  const auto shares = mean_square_shares(mean_square({index, sigma, count, mean, std, background}), sigma);
+  EXPECT_GT(index[0], index[1]);
+  EXPECT_NEAR(shares[0], 5.0 / (5.0 + 2.3 * 2.3), 1e-6);
+  EXPECT_LT(shares[0], shares[1]);
+}
+
+TEST(MeanSquareShares, AreUnknownWhereAnEffectIsUnknownOrNoneIsThere) {
+  for (const MeanSquare& response : {MeanSquare{0.0, {0.3, kNaN}}, MeanSquare{0.0, {0.0, 0.0}}}) {
+    for (const double share : mean_square_shares(response, std::vector{1.0, 1.0})) EXPECT_TRUE(std::isnan(share));
+  }
+}
+
+TEST(EqualTolerances, AreInTheProportionOfTheMedians) {
+  constexpr auto kMm = Dimension::length;
+  constexpr auto kDeg = Dimension::angle;
+  const std::vector<double> sigma{1.0, 0.01, 1.0, 0.02, 50.0, 0.04, 0.03};
+  const std::vector<Dimension> dimension{kMm, kDeg, kMm, kDeg, kMm, kDeg, kDeg};
+  const std::vector<double> expected{1.0, 0.025, 1.0, 0.025, 1.0, 0.025, 0.025};
+  EXPECT_EQ(one_size_for_each(sigma, dimension), expected);
+  EXPECT_EQ(one_size_for_each(std::vector{2.0}, std::vector{kDeg}), std::vector{2.0});
+}
+
 TEST(LimitTolerances, ReachTheLimitExactly) {
   const LinearResponse response;
   const MeanSquare prediction = mean_square(response.study());
   for (const double limit : {4e-4, 1e-3, 0.7}) {
-    const LimitTolerances found = limit_tolerances(response.study(), prediction, limit);
+    const LimitTolerances found = limit_tolerances(response.study(), prediction, response.sigma, limit);
     EXPECT_NEAR(response.rms(found.equal_effect), limit, 1e-12 * limit);
     EXPECT_NEAR(response.rms(found.equal_tolerance), limit, 1e-12 * limit);
   }
@@ -132,11 +160,12 @@ TEST(LimitTolerances, ReachTheLimitExactly) {
 
 TEST(LimitTolerances, KeepTheirProportions) {
   const LinearResponse response;
-  const LimitTolerances found = limit_tolerances(response.study(), mean_square(response.study()), 1e-3);
+  const std::vector<double> one_size{3.0, 5.0, 5.0};
+  const LimitTolerances found = limit_tolerances(response.study(), mean_square(response.study()), one_size, 1e-3);
   EXPECT_DOUBLE_EQ(found.equal_effect[0] * response.index[0], found.equal_effect[1] * response.index[1]);
   EXPECT_EQ(found.equal_effect[2], found.equal_tolerance[2]);
   for (std::size_t p = 1; p < 3; ++p) {
-    EXPECT_DOUBLE_EQ(found.equal_tolerance[p] / response.sigma[p], found.equal_tolerance[0] / response.sigma[0]);
+    EXPECT_DOUBLE_EQ(found.equal_tolerance[p] / one_size[p], found.equal_tolerance[0] / one_size[0]);
   }
 }
 
@@ -145,7 +174,7 @@ TEST(LimitTolerances, VanishAsTheLimitNearsTheBackground) {
   response.index[2] = 0.0;
   const MeanSquare prediction = mean_square(response.study());
   const double limit = std::sqrt(prediction.background) * (1.0 + 1e-10);
-  const LimitTolerances found = limit_tolerances(response.study(), prediction, limit);
+  const LimitTolerances found = limit_tolerances(response.study(), prediction, response.sigma, limit);
   EXPECT_GT(found.equal_effect[0], 0.0);
   EXPECT_LT(found.equal_effect[0], 1e-7);
 }
