@@ -14,7 +14,8 @@ function result = read_results(source, response, figure_file)
 %   factors, factor_units            {P x 1}  names and SI units of the errors
 %   responses, response_units        {R x 1}
 %   sigma                            [P x 1]  standard deviation of each error, SI
-%   index, index_low, index_high     [P x R]  global index and its interval, SI: response unit per factor unit
+%   index, index_low, index_high     [P x R]  global index and its interval, SI: response unit per factor unit; the
+%                                             corrected one, or the published one where an older poesy wrote the result
 %   effect, effect_low, effect_high  [P x R]  index x sigma, in effect_units {R x 1}: mm, deg
 %   rank                             [P x R]  rank(k, r) is the error that has the k-th largest effect on response r
 % Of any other kind it has, read from tables, result.tables.NAME for each NAME.csv:
@@ -76,13 +77,18 @@ function result = from_file(file)
     result.groups = groups_of(file);
     return
   end
+  index = '/sensitivity/global_corrected';
+  try
+    h5read(file, index);
+  catch
+    index = '/sensitivity/global';  % an older poesy wrote the file
+  end
   % h5read gives the axes in reversed order: what the file has as [R x P] arrives as [P x R]. Names arrive as a string
   % array or, in older versions, as a cell array; cellstr takes both.
   result = assembled(cellstr(h5read(file, '/factors/name')), cellstr(h5read(file, '/factors/unit')), ...
                      h5read(file, '/factors/sigma'), ...
                      cellstr(h5read(file, '/responses/name')), cellstr(h5read(file, '/responses/unit')), ...
-                     h5read(file, '/sensitivity/global'), h5read(file, '/sensitivity/global_ci_low'), ...
-                     h5read(file, '/sensitivity/global_ci_high'));
+                     h5read(file, index), h5read(file, [index '_ci_low']), h5read(file, [index '_ci_high']));
 end
 
 % Every dataset of every group.
@@ -144,10 +150,15 @@ function result = from_tables(folder)
   factor_units(abs(scale / 1000 - 1) < 1e-6) = {'m'};
   factor_units(abs(scale * pi / 180 - 1) < 1e-6) = {'rad'};
   % global.csv: for each response index, lower and upper end in SI, then the same three in mm or deg. The header says
-  % "linear_deformation [m per m or rad]".
+  % "linear_deformation [m per m or rad]". After the published indices of all responses come the corrected ones, likewise.
   [~, columns, numbers] = read_table(fullfile(folder, 'global.csv'));
   columns = columns(2:end);
   numbers = numbers(:, 2:end);
+  corrected = ~cellfun(@isempty, regexp(columns, '_corrected(_ci_low|_ci_high)? '));
+  if any(corrected)
+    columns = strrep(columns(corrected), '_corrected', '');
+    numbers = numbers(:, corrected);
+  end
   first = columns(1:6:end);
   responses = regexprep(first, ' \[.*', '');
   response_units = regexprep(first, '^.*\[(\S+) per .*$', '$1');

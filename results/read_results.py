@@ -103,7 +103,10 @@ def default_response(result: Result) -> str:
 
 
 def ranked_errors(result: Result, response: str | None = None) -> list[RankedError]:
-    """The errors by their effect, global index x sigma, the largest first; those without an index last."""
+    """The errors by their effect, global index x sigma, the largest first; those without an index last.
+
+    The index is the corrected one, as in `poesy show`; the published one where an older poesy wrote the file.
+    """
     if "sensitivity" not in result.groups:
         kind = f"of kind {result.kind}, which has no indices"
         raise ResultError(f"{result.path}: {kind}; give a result of a sensitivity study")
@@ -115,11 +118,15 @@ def ranked_errors(result: Result, response: str | None = None) -> list[RankedErr
     sigma = dict(zip(result.groups["factors"]["name"].values, result.groups["factors"]["sigma"].values))
 
     def spread(factor: str) -> float:
-        value = float(found["global"].sel(factor=factor)) * sigma[factor]
+        value = float(found[_index_name(result)].sel(factor=factor)) * sigma[factor]
         return -1.0 if math.isnan(value) else value
 
     order = sorted(sigma, key=spread, reverse=True)
     return [_ranked_error(result, response, factor, sigma[factor]) for factor in order]
+
+
+def _index_name(result: Result) -> str:
+    return "global_corrected" if "global_corrected" in result.groups["sensitivity"] else "global"
 
 
 def _ranked_error(result: Result, response: str, factor: str, sigma: float) -> RankedError:
@@ -128,8 +135,9 @@ def _ranked_error(result: Result, response: str, factor: str, sigma: float) -> R
     si = result.units("factor")[factor]
     sigma_unit, to_sigma = DISPLAY.get(si, (si, 1.0))
     at = result.groups["sensitivity"].sel(response=response, factor=factor)
-    index = [float(at[name]) for name in ("global", "global_ci_low", "global_ci_high")]
-    index = [0.0 if abs(value) < ROUNDING else value for value in index]
+    index = [float(at[_index_name(result) + end]) for end in ("", "_ci_low", "_ci_high")]
+    rounding = max(ROUNDING, float(at["rounding"]) / sigma if "rounding" in at else 0.0)
+    index = [0.0 if abs(value) < rounding else value for value in index]
     return RankedError(
         factor,
         sigma * to_sigma,

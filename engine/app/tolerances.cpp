@@ -17,6 +17,7 @@
 #include "engine/io/study_file.h"
 #include "engine/io/tolerance_files.h"
 #include "engine/io/wording.h"
+#include "engine/report/ranking.h"
 #include "engine/report/text_table.h"
 #include "engine/report/tolerance_table.h"
 #include "engine/run/sensitivity.h"
@@ -98,6 +99,19 @@ std::optional<ReferenceError> reference_of(const TolerancesOptions& options, con
   const NamedUnit& named = result.factors[factor];
   if (equals == std::string::npos) return ReferenceError{factor, display(named).si};
   return ReferenceError{factor, positive(options.reference->substr(equals + 1), "--reference", named)};
+}
+
+void check_sizes(const TolerancesOptions& options, const StoredResult& result, std::size_t response) {
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    const double index = result.sensitivity.global[response * result.factors.size() + p];
+    if (!is_too_small_to_tell(index, index_rounding(result, response, p))) continue;
+    throw InputError(
+        {options.result},
+        fmt::format("the error '{}' is so small in this study that its effect on {} cannot be told from the "
+                    "rounding of the solves",
+                    result.factors[p].name, result.responses[response].name),
+        "study larger errors");
+  }
 }
 
 void check_reference(const TolerancesOptions& options, const StoredResult& result, const ResponseStudy& response,
@@ -214,6 +228,7 @@ int set_tolerances(const TolerancesOptions& options) {
   const StoredResult result = read_sensitivity_result(options.result);
   const std::size_t response = chosen_response(options, result);
   const NamedUnit& named = result.responses[response];
+  check_sizes(options, result, response);
   const ResponseStudy study = response_study(result.sensitivity, result.factor_sigma, response);
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
   check_reference(options, result, study, named.name, reference);

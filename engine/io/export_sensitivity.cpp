@@ -3,30 +3,53 @@
 namespace poesy {
 namespace {
 
-std::vector<std::string> global_columns(const StoredResult& result) {
-  std::vector<std::string> columns{"factor"};
+/// An estimator of the global indices with its interval, each [R x P].
+struct Estimator {
+  std::string name;  ///< stands behind the response's
+  const std::vector<double>& value;
+  const std::vector<double>& low;
+  const std::vector<double>& high;
+};
+
+/// The published one, and the corrected one where the file has it.
+std::vector<Estimator> estimators(const SensitivityResult& found) {
+  std::vector<Estimator> list{{"", found.global, found.global_ci_low, found.global_ci_high}};
+  if (!found.global_corrected.empty()) {
+    list.push_back(
+        {"_corrected", found.global_corrected, found.global_corrected_ci_low, found.global_corrected_ci_high});
+  }
+  return list;
+}
+
+void add_columns(const StoredResult& result, const Estimator& of, std::vector<std::string>& columns) {
   for (const NamedUnit& response : result.responses) {
     for (const std::string& unit : {response.unit + " per " + units_of(result.factors, kSi),
                                     kDisplay(response.unit) + " per " + units_of(result.factors, kDisplay)}) {
-      for (const char* what : {"", "_ci_low", "_ci_high"}) columns.push_back(column(response.name + what, unit));
+      for (const char* what : {"", "_ci_low", "_ci_high"}) {
+        columns.push_back(column(response.name + of.name + what, unit));
+      }
     }
   }
-  return columns;
+}
+
+void append_cells(const StoredResult& result, const Estimator& of, std::size_t p, std::vector<double>& row) {
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const std::size_t at = r * result.factors.size() + p;
+    const double to_display = display(result.factors[p]).si / display(result.responses[r]).si;
+    for (const double scale : {1.0, to_display}) {
+      row.insert(row.end(), {of.value[at] * scale, of.low[at] * scale, of.high[at] * scale});
+    }
+  }
 }
 
 void write_global(TableFolder& folder, const StoredResult& result) {
-  const SensitivityResult& found = result.sensitivity;
-  folder.write("global", global_columns(result), [&](CsvTable& table) {
-    for (std::size_t p = 0; p < found.factors; ++p) {
+  const std::vector<Estimator> list = estimators(result.sensitivity);
+  std::vector<std::string> columns{"factor"};
+  for (const Estimator& of : list) add_columns(result, of, columns);
+  folder.write("global", columns, [&](CsvTable& table) {
+    for (std::size_t p = 0; p < result.factors.size(); ++p) {
       std::vector<double> row;
-      for (std::size_t r = 0; r < found.responses; ++r) {
-        const std::size_t at = r * found.factors + p;
-        const double to_display = display(result.factors[p]).si / display(result.responses[r]).si;
-        for (const double scale : {1.0, to_display}) {
-          row.insert(row.end(),
-                     {found.global[at] * scale, found.global_ci_low[at] * scale, found.global_ci_high[at] * scale});
-        }
-      }
+      for (const Estimator& of : list) append_cells(result, of, p, row);
       table.row(result.factors[p].name, row);
     }
   });

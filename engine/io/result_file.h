@@ -138,7 +138,8 @@ Verification verify_result(const std::string& path);
 /// names with their units. Only the first column may hold text (names of factors), nothing is quoted: in Octave
 /// `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Tables of a sensitivity result:
 ///
-///     global.csv           factor | each response's index and interval in SI, then in the units people read
+///     global.csv           factor | each response's index and interval in SI, then in the units people read: as
+///                               published; then all of that as corrected (see /sensitivity)
 ///     local_RESPONSE.csv   factor | one column a pose, SI
 ///     not_converged.csv    factor | one column a pose
 ///     factors.csv          factor | standard deviation

@@ -12,6 +12,17 @@ void add_global_indices(ResultBuilder& result, const SensitivityResult& found) {
       {unit, "Global index: mean over the poses + standard deviation over the poses (Du et al. 2022, Eqs. 53-54)"});
   result.add("/sensitivity/global_ci_low", axes, found.global_ci_low, {unit, "Lower end of the interval of global"});
   result.add("/sensitivity/global_ci_high", axes, found.global_ci_high, {unit, "Upper end of the interval of global"});
+  result.add("/sensitivity/global_corrected", axes, found.global_corrected,
+             {unit,
+              "Global index without the sampling noise that 'global' counts as spread between poses; NaN: the error is "
+              "too small for its effect to be told from rounding"});
+  result.add("/sensitivity/global_corrected_ci_low", axes, found.global_corrected_ci_low,
+             {unit, "Lower end of the interval of global_corrected"});
+  result.add("/sensitivity/global_corrected_ci_high", axes, found.global_corrected_ci_high,
+             {unit, "Upper end of the interval of global_corrected"});
+  result.add("/sensitivity/rounding", {"response"}, found.rounding,
+             {"SI: response unit, see /responses/unit",
+              "Up to this an effect, index x sigma, cannot be told from the rounding of solves"});
 }
 
 void add_local_indices(ResultBuilder& result, const SensitivityResult& found) {
@@ -42,7 +53,8 @@ void add_indices(ResultBuilder& result, const SensitivityResult& found) {
   file.set_attribute("/sensitivity", "conf_level", found.conf_level);
   add_global_indices(result, found);
   add_local_indices(result, found);
-  for (const char* interval : {"global_ci_low", "global_ci_high", "local_ci_low", "local_ci_high"}) {
+  for (const char* interval : {"global_ci_low", "global_ci_high", "global_corrected_ci_low", "global_corrected_ci_high",
+                               "local_ci_low", "local_ci_high"}) {
     file.set_attribute(std::string("/sensitivity/") + interval, "conf_level", found.conf_level);
   }
 }
@@ -66,6 +78,12 @@ SensitivityResult read_indices(const h5::File& file) {
   found.global = read("global", pairs);
   found.global_ci_low = read("global_ci_low", pairs);
   found.global_ci_high = read("global_ci_high", pairs);
+  if (file.exists("/sensitivity/global_corrected")) {
+    found.global_corrected = read("global_corrected", pairs);
+    found.global_corrected_ci_low = read("global_corrected_ci_low", pairs);
+    found.global_corrected_ci_high = read("global_corrected_ci_high", pairs);
+    found.rounding = read("rounding", found.responses);
+  }
   if (file.exists("/sensitivity/background")) found.background = read("background", found.responses * found.poses);
   found.solves = read_solver(file, found.factors * found.poses);
   return found;

@@ -73,7 +73,8 @@ void add_indices(ResultBuilder& result, const SensitivityResult& found) {
     result.add("/tolerances/" + name, {"response", "factor"}, values, {"SI: response unit / factor unit", description});
     if (name != "index") result.file().set_attribute("/tolerances/" + name, "conf_level", found.conf_level);
   };
-  add("index", found.global, "Global sensitivity index, as /sensitivity/global");
+  add("index", found.global,
+      "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it");
   add("index_ci_low", found.global_ci_low, "Lower end of the interval of index");
   add("index_ci_high", found.global_ci_high, "Upper end of the interval of index");
 }

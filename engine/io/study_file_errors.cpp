@@ -24,11 +24,21 @@ Distribution make_distribution(Shape shape, double sigma, double half_width) {
   return Distribution::triangular(half_width);
 }
 
+/// SI. Fourth powers of an error, and of indices down to rounding times it, then are far above the smallest double.
+constexpr double kSmallest = 1e-30;
+
+double read_size(const StudyValue& value, Dimension dimension) {
+  const double size = value.positive_quantity(dimension);
+  if (size >= kSmallest) return size;
+  value.fail("is '" + printable(value.text()) + "', so small that squares of it lose their digits",
+             "it must be at least 1e-30 m or 1e-30 rad");
+}
+
 /// A parameter of a distribution; 0 and not allowed where the shape has none of that name.
 double read_parameter(const StudySection& section, std::string_view key, Shape shape, Dimension dimension) {
   const std::string owner = "the distribution \"" + std::string(name(shape)) + "\"";
   if (holds_for(study_key("errors.linear", key), name(shape)))
-    return section.require(key, owner + " needs it").positive_quantity(dimension);
+    return read_size(section.require(key, owner + " needs it"), dimension);
   section.refuse(key, owner);
   return 0.0;
 }

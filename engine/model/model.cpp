@@ -32,6 +32,8 @@ std::optional<SolveTrace> Model::trace(std::span<const double> /*pose*/, std::sp
 
 Separation Model::separation(std::span<const double> /*pose*/) const { return {}; }
 
+double Model::rounding(std::size_t /*response*/) const { return 0.0; }
+
 ErrorBound Model::error_bound(FactorIndex /*factor*/) const { return {}; }
 
 std::vector<std::string> Model::unusual_geometry() const { return {}; }

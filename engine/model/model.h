@@ -256,6 +256,10 @@ class Model {
   /// Precondition: the model separates its errors and reaches the pose.
   virtual Separation separation(std::span<const double> pose) const;
 
+  /// An error may seem to have an effect on a response, as a standard deviation of its samples, up to this (SI),
+  /// because solves round. 0 unless a model says otherwise: then rounding is a fixed part of the effect itself.
+  virtual double rounding(std::size_t response) const;
+
   /// Infinite unless a model says otherwise.
   virtual ErrorBound error_bound(FactorIndex factor) const;
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/report/display.h"
-#include "engine/stats/tolerance.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/stats/tolerance.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
@@ -91,8 +91,9 @@ Cell count_cell(std::uint64_t count) { return {count_text(count), static_cast<do
 
 Cell percent_cell(double share) { return cell(percent_number(share), 100.0 * share); }
 
-Cell index_cell(double index, double scale) {
-  return cell(std::abs(index) < kIndexRounding ? "0" : number_text(index * scale), index * scale);
+Cell index_cell(double index, double scale, double rounding) {
+  if (is_too_small_to_tell(index, rounding)) return text_cell(kTooSmall);
+  return cell(std::abs(index) < rounding ? "0" : number_text(index * scale), index * scale);
 }
 
 }  // namespace poesy

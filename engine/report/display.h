@@ -48,7 +48,11 @@ Cell number_cell(double value, int digits = 4);
 Cell count_cell(std::uint64_t count);
 /// A share, for a percent_column.
 Cell percent_cell(double share);
-/// An index or an end of its interval, shown as index * scale; what is rounding in SI is shown as 0.
-Cell index_cell(double index, double scale);
+/// An index or an end of its interval, shown as index * scale. Below `rounding` (stats/rounding.h) it is shown as 0, or
+/// as kTooSmall, without a number, where the error is too small to tell.
+Cell index_cell(double index, double scale, double rounding);
+
+/// Stands for an index that cannot be told from rounding.
+inline constexpr std::string_view kTooSmall = "rounding";
 
 }  // namespace poesy

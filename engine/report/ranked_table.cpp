@@ -33,11 +33,12 @@ void add_index_columns(std::vector<Column>& columns, const std::string& name, co
 }
 
 void add_index_cells(std::vector<Cell>& row, const StoredResult& result, std::size_t r, std::size_t p) {
-  const SensitivityResult& found = result.sensitivity;
-  const std::size_t at = r * found.factors + p;
+  const GlobalIndices shown = shown_indices(result);
+  const std::size_t at = r * result.factors.size() + p;
   const double scale = display(result.factors[p]).si / display(result.responses[r]).si;
-  for (const double value : {found.global[at], found.global_ci_low[at], found.global_ci_high[at]}) {
-    row.push_back(index_cell(value, scale));
+  const double rounding = index_rounding(result, r, p);
+  for (const double value : {shown.value[at], shown.low[at], shown.high[at]}) {
+    row.push_back(index_cell(value, scale, rounding));
   }
 }
 
@@ -54,6 +55,10 @@ std::vector<Column> columns(const StoredResult& result, std::size_t ranking, con
     add_index_columns(list, "index_" + name, name, result.responses[r], dispensable++);
   }
   list.push_back(percent_column("not_converged", "not converged", kNotConverged));
+  if (has_corrected_indices(result)) {
+    list.push_back(
+        number_column("index_published", "published", fmt::format("{}/unit", display(response).name), dispensable));
+  }
   return list;
 }
 
@@ -61,15 +66,54 @@ std::vector<Cell> row(const StoredResult& result, const RankedErrors& ranked, st
                       const std::vector<std::size_t>& others) {
   const Unit& unit = display(result.factors[p]);
   const double sigma = result.factor_sigma[p] / unit.si;
-  const double index = result.sensitivity.global[ranked.response * result.sensitivity.factors + p];
+  const double si = display(result.responses[ranked.response]).si;
+  const double rounding = index_rounding(result, ranked.response, p);
+  const std::size_t at = ranked.response * result.factors.size() + p;
   std::vector<Cell> cells{count_cell(ranked.ranks[p]), text_cell(result.factors[p].name),
-                          index_cell(index, result.factor_sigma[p] / display(result.responses[ranked.response]).si)};
+                          index_cell(shown_indices(result).value[at], result.factor_sigma[p] / si, rounding)};
   add_index_cells(cells, result, ranked.response, p);
   cells.push_back(number_cell(sigma));
   cells.push_back(text_cell(unit.name));
   for (const std::size_t r : others) add_index_cells(cells, result, r, p);
   cells.push_back(percent_cell(share_not_converged(result.sensitivity, p)));
+  if (has_corrected_indices(result)) {
+    cells.push_back(index_cell(result.sensitivity.global[at], unit.si / si, rounding));
+  }
   return cells;
+}
+
+std::vector<std::string> notes(const StoredResult& result, const RankedErrors& ranked) {
+  std::vector<std::string> list{fmt::format(
+      "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
+      "between them; low, high: its {:.3g} % interval",
+      result.responses[ranked.response].name, 100.0 * result.sensitivity.conf_level)};
+  if (has_corrected_indices(result)) {
+    list.emplace_back(
+        "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
+        "poses; index is without that noise");
+  } else {
+    list.push_back(
+        fmt::format("index is the published estimator, which counts the noise of sampling as spread between "
+                    "poses, because an older poesy ({}) wrote this result",
+                    result.poesy_version));
+  }
+  list.emplace_back(
+      "effect: index x sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
+      "indices per mm and per deg do not compare");
+  list.emplace_back("not converged: share of the samples whose solve did not settle");
+  return list;
+}
+
+/// Why some cells hold no number; empty where none is so.
+std::string rounding_note(const Table& table) {
+  const auto is_rounding = [](const Cell& cell) { return cell.text == kTooSmall; };
+  const bool any = std::ranges::any_of(
+      table.rows, [&](const std::vector<Cell>& row) { return std::ranges::any_of(row, is_rounding); });
+  if (!any) return {};
+  return fmt::format(
+      "{}: the error is so small that its effect cannot be told from the rounding of the solves; study "
+      "larger errors",
+      kTooSmall);
 }
 
 }  // namespace
@@ -77,19 +121,14 @@ std::vector<Cell> row(const StoredResult& result, const RankedErrors& ranked, st
 Table ranked_table(const StoredResult& result, const RankedErrors& ranked) {
   const NamedUnit& response = result.responses[ranked.response];
   const std::vector<std::size_t> others = other_responses(result, ranked.response);
-  Table table{
-      .name = "ranked",
-      .caption = fmt::format("Effect of each error on {} at the size the study gives it", response.name),
-      .columns = columns(result, ranked.response, others),
-      .rows = {},
-      .notes = {fmt::format("index: scatter of {} per scatter of the error (standard deviations), mean over the "
-                            "poses plus spread between them; low, high: its {:.3g} % interval",
-                            response.name, 100.0 * result.sensitivity.conf_level),
-                "effect: index x sigma, the scatter that an error of the study's sigma causes; the rank goes by "
-                "it, for indices per mm and per deg do not compare",
-                "not converged: share of the samples whose solve did not settle"},
-      .ranked = true};
+  Table table{.name = "ranked",
+              .caption = fmt::format("Effect of each error on {} at the size the study gives it", response.name),
+              .columns = columns(result, ranked.response, others),
+              .rows = {},
+              .notes = notes(result, ranked),
+              .ranked = true};
   for (const std::size_t p : ranked.rows) table.rows.push_back(row(result, ranked, p, others));
+  if (std::string note = rounding_note(table); !note.empty()) table.notes.push_back(std::move(note));
   return table;
 }
 

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "engine/report/display.h"
+#include "engine/run/sensitivity.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
@@ -17,7 +19,7 @@ double key(const StoredResult& result, std::size_t response, std::size_t p, RowO
     case RowOrder::effect:
       return effect(result, response, p);
     case RowOrder::index:
-      return found.global[response * found.factors + p] * display(result.factors[p]).si;
+      return shown_indices(result).value[response * found.factors + p] * display(result.factors[p]).si;
     case RowOrder::not_converged:
       return share_not_converged(found, p);
     case RowOrder::name:
@@ -43,8 +45,30 @@ std::vector<std::size_t> ordered(const StoredResult& result, std::size_t respons
 
 }  // namespace
 
+bool has_corrected_indices(const StoredResult& result) { return !result.sensitivity.global_corrected.empty(); }
+
+GlobalIndices published_indices(const StoredResult& result) {
+  const SensitivityResult& found = result.sensitivity;
+  return {found.global, found.global_ci_low, found.global_ci_high};
+}
+
+GlobalIndices shown_indices(const StoredResult& result) {
+  const SensitivityResult& found = result.sensitivity;
+  if (!has_corrected_indices(result)) return published_indices(result);
+  return {found.global_corrected, found.global_corrected_ci_low, found.global_corrected_ci_high};
+}
+
+double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor) {
+  return index_rounding(result.sensitivity, response, result.factor_sigma[factor]);
+}
+
+bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor) {
+  return has_effect(shown_indices(result).value[response * result.sensitivity.factors + factor],
+                    index_rounding(result, response, factor));
+}
+
 double effect(const StoredResult& result, std::size_t response, std::size_t factor) {
-  return result.sensitivity.global[response * result.sensitivity.factors + factor] * result.factor_sigma[factor];
+  return shown_indices(result).value[response * result.sensitivity.factors + factor] * result.factor_sigma[factor];
 }
 
 double share_not_converged(const SensitivityResult& result, std::size_t factor) {

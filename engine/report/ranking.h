@@ -33,6 +33,28 @@ struct RankedErrors {
 /// Precondition: the result has the response.
 RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order = RowOrder::effect);
 
+/// Global indices with their intervals, [R x P], by one estimator (run/result.h). Refers to the result.
+struct GlobalIndices {
+  const std::vector<double>& value;
+  const std::vector<double>& low;
+  const std::vector<double>& high;
+};
+
+/// Whether the result has corrected indices; those of older versions have none.
+bool has_corrected_indices(const StoredResult& result);
+
+/// The published ones, which every result has.
+GlobalIndices published_indices(const StoredResult& result);
+
+/// The corrected ones where the result has them, else the published ones.
+GlobalIndices shown_indices(const StoredResult& result);
+
+/// Below which a (global or local) index of the response and the error is rounding.
+double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
+
+/// Whether the index shown is more than rounding.
+bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor);
+
 /// index x sigma(error), SI: indices alone do not compare, for some are per m and some per rad.
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
 

@@ -28,8 +28,8 @@ std::string failures_text(const StoredResult& result, const std::string& path, s
 std::string default_ranking(const StoredResult& result);
 
 /// The errors of a sensitivity result in their order, with the effect on the response that ranks (global index x
-/// sigma), its index and interval, those of the headline's other responses, and the share of samples not converged, in
-/// mm and deg.
+/// sigma), its index and interval, those of the headline's other responses, the share of samples not converged, and the
+/// published index where that is not the one shown, in mm and deg.
 Table ranked_table(const StoredResult& result, const RankedErrors& ranked);
 
 /// What calibration can remove of each error's effect; none where the result does not say.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/report/display.h"
+#include "engine/report/ranking.h"
 
 namespace poesy {
 namespace {
@@ -111,8 +112,8 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   add_extrapolation_note(list, result, tolerances);
   list.push_back(
       fmt::format("index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
-                  "share: of what the errors add to the mean square of the response over samples and poses, the "
-                  "quantity that a limit limits, at the size the study sets",
+                  "tolerances are counted from it as published; share: of what the errors add to the mean square of the "
+                  "response over samples and poses, the quantity that a limit limits, at the size the study sets",
                   100.0 * result.sensitivity.conf_level));
   return list;
 }
@@ -146,8 +147,9 @@ std::vector<Cell> row(const StoredResult& result, const ResponseTolerances& tole
   cells.push_back(text_cell(unit.name));
   const std::size_t at = tolerances.response * found.factors + p;
   const double scale = unit.si / display(result.responses[tolerances.response]).si;
+  const double rounding = index_rounding(result, tolerances.response, p);
   for (const double value : {found.global[at], found.global_ci_low[at], found.global_ci_high[at]}) {
-    cells.push_back(index_cell(value, scale));
+    cells.push_back(index_cell(value, scale, rounding));
   }
   cells.push_back(percent_cell(tolerances.all.mean_square_share[p]));
   return cells;

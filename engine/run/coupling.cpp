@@ -6,7 +6,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/run/counts.h"
-#include "engine/stats/tolerance.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {

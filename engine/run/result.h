@@ -90,27 +90,34 @@ struct IndexHistory {
   std::vector<double> global_ci_high;  ///< [R x P x K]
 };
 
-/// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined.
+/// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined. global is the
+/// published estimator; global_corrected is what tables and figures call the index, free of what sampling adds to
+/// global (stats/sensitivity_index.h), and NaN where the error is too small for its effect to be told from rounding
+/// (stats/rounding.h). Files of older versions have neither this nor rounding: they are empty.
 struct SensitivityResult {
   std::size_t responses = 0;  ///< R
   std::size_t factors = 0;    ///< P
   std::size_t poses = 0;      ///< M
   double conf_level = 0.95;   ///< of all intervals
 
-  std::vector<double> local;                   ///< [R x P x M] Du et al. 2022, Eqs. 51-52
-  std::vector<double> local_ci_low;            ///< [R x P x M]
-  std::vector<double> local_ci_high;           ///< [R x P x M]
-  std::vector<double> count;                   ///< [R x P x M] samples behind local, whole numbers
-  std::vector<double> mean;                    ///< [R x P x M]
-  std::vector<double> std;                     ///< [R x P x M]
-  std::vector<double> global;                  ///< [R x P] Eqs. 53-54
-  std::vector<double> global_ci_low;           ///< [R x P]
-  std::vector<double> global_ci_high;          ///< [R x P]
-  std::vector<double> background;              ///< [R x M] all varied errors zero; NaN where that was not solved
-  std::vector<SolveCounts> solves;             ///< [P x M] of the samples; the background's solves are not among them
-  std::vector<Failure> failures;               ///< the first, in the order of factors, poses, samples
-  std::optional<SeparationResult> separation;  ///< where the model separates its errors
-  std::optional<FidelityResult> fidelity;      ///< where the study compares two fidelities
+  std::vector<double> local;                     ///< [R x P x M] Du et al. 2022, Eqs. 51-52
+  std::vector<double> local_ci_low;              ///< [R x P x M]
+  std::vector<double> local_ci_high;             ///< [R x P x M]
+  std::vector<double> count;                     ///< [R x P x M] samples behind local, whole numbers
+  std::vector<double> mean;                      ///< [R x P x M]
+  std::vector<double> std;                       ///< [R x P x M]
+  std::vector<double> global;                    ///< [R x P] Eqs. 53-54
+  std::vector<double> global_ci_low;             ///< [R x P]
+  std::vector<double> global_ci_high;            ///< [R x P]
+  std::vector<double> global_corrected;          ///< [R x P] without sampling noise, see above
+  std::vector<double> global_corrected_ci_low;   ///< [R x P]
+  std::vector<double> global_corrected_ci_high;  ///< [R x P]
+  std::vector<double> rounding;                  ///< [R] standard deviation up to which an effect may be rounding
+  std::vector<double> background;                ///< [R x M] all varied errors zero; NaN where that was not solved
+  std::vector<SolveCounts> solves;               ///< [P x M] of the samples; the background's solves are not among them
+  std::vector<Failure> failures;                 ///< the first, in the order of factors, poses, samples
+  std::optional<SeparationResult> separation;    ///< where the model separates its errors
+  std::optional<FidelityResult> fidelity;        ///< where the study compares two fidelities
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
   /// Where it has a fixed number of samples; not in files of older versions.

@@ -47,7 +47,7 @@ bool Rounds::may_hold(std::size_t slot, std::size_t units) const {
 
 double Rounds::excess(const Row& row, std::size_t cell) const {
   const double quantity = std::abs(row.quantity[cell]);
-  if (quantity < rule_.rounding || row.half_width[cell] == 0.0) return 0.0;
+  if (quantity < rule_.rounding[cell] || row.half_width[cell] == 0.0) return 0.0;
   const double excess = row.half_width[cell] / (adaptive_->relative_error * quantity);
   return std::isnan(excess) ? kInfinity : excess;
 }

@@ -28,7 +28,7 @@ class Rounds {
     std::size_t responses;              ///< R
     std::vector<std::size_t> deciding;  ///< positions among the responses
     double conf_level;                  ///< of the intervals
-    double rounding;                    ///< a quantity whose magnitude is below this counts as reached
+    std::vector<double> rounding;       ///< [R x P] a quantity whose magnitude is below this counts as reached
   };
 
   /// Refers to the plan. Begins with the first round.

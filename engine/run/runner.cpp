@@ -50,6 +50,17 @@ std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   return means;
 }
 
+/// Below which the index of each error is rounding, [R x P].
+std::vector<double> index_roundings(const Plan& plan, const Model& model) {
+  std::vector<double> list;
+  for (const double rounding : response_rounding(model)) {
+    for (const Distribution& error : plan.distributions()) {
+      list.push_back(index_rounding(rounding, error.standard_deviation()));
+    }
+  }
+  return list;
+}
+
 /// Solves after those that were done, as far as that is known.
 std::uint64_t expected_left(const Plan& plan, const Rounds& rounds, const SolveCounts& done,
                             const PendingUnits& pending) {
@@ -66,7 +77,7 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
                                                  const RunOptions& options) {
   const std::size_t responses = model.description().responses.size();
   const std::size_t poses = plan.poses().size();
-  const Rounds::Rule rule{responses, all_positions(responses), conf_level, kIndexRounding};
+  const Rounds::Rule rule{responses, all_positions(responses), conf_level, index_roundings(plan, model)};
   SensitivityCollector collect(plan, responses, conf_level);
   Rounds rounds(plan, rule);
   const auto take_up = [&](std::span<const std::byte> state) {
@@ -108,7 +119,8 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
     stage.next_round();
   }
   if (options.shard) return std::nullopt;
-  auto result = sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model), conf_level);
+  auto result = sensitivity_result(plan, std::move(collect).cells(), background_responses(plan, model),
+                                   response_rounding(model), conf_level);
   result.convergence = rounds.result();
   if (!plan.adaptive()) result.history = collect.history(result);
   return result;
@@ -119,7 +131,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
   const ModelDescription& description = model.description();
   const std::size_t responses = description.responses.size();
   const Rounds::Rule rule{responses, description.headline.empty() ? all_positions(responses) : description.headline,
-                          analysis.conf_level, 0.0};
+                          analysis.conf_level, std::vector<double>(responses, 0.0)};
   Rounds rounds(plan, rule);
   Bytes before;  // the collector's state at the end of the round before this one, or of an earlier run
   Stage stage(options.checkpoints, options.team);

@@ -14,16 +14,23 @@ namespace poesy {
 /// solved.
 std::vector<double> background_responses(const Plan& plan, const Model& model);
 
+/// Model::rounding of each response, [R].
+std::vector<double> response_rounding(const Model& model);
+
 /// The global index of one factor for each response, [R]. at_poses: [M], its cells. sigma: standard deviation of the
 /// error.
 std::vector<Estimate> global_indices(std::span<const UnitStats> at_poses, double sigma, double conf_level);
 
 /// The indices of a study from what its cells hold. cells: [P x M], merged over the units of each (factor, pose).
-/// background: as background_responses gives it.
+/// background, rounding: as background_responses and response_rounding give them.
 SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, std::vector<double> background,
-                                     double conf_level);
+                                     std::vector<double> rounding, double conf_level);
 
-/// One response of a result, for tolerances. sigma: [P] of the errors, as the study sets them. Refers to both.
+/// Below which an index of an error of this standard deviation is rounding (stats/rounding.h).
+double index_rounding(const SensitivityResult& result, std::size_t response, double sigma);
+
+/// One response of a result, for tolerances, by the published index. sigma: [P] of the errors, as the study sets them.
+/// Refers to both.
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response);
 
 }  // namespace poesy

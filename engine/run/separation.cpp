@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/base/contract.h"
-#include "engine/stats/tolerance.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {

@@ -129,7 +129,8 @@ double recovered(double of_mean, double of_spread, double correlation) {
   return std::sqrt(std::max(sum, 0.0));
 }
 
-Interval global_interval(std::span<const LocalIndex> poses, double conf_level) {
+/// Mean + spread without sampling noise, and the interval of both. Precondition: every pose is known.
+Estimate without_noise(std::span<const LocalIndex> poses, double conf_level) {
   const double z = two_sided_quantile(conf_level);
   const PoseStatistics s = statistics_over(poses);
   const double of_mean = z * std::sqrt(s.mean_variance);
@@ -142,7 +143,22 @@ Interval global_interval(std::span<const LocalIndex> poses, double conf_level) {
   const double low = may_be_noise(s, 0.5 * (1.0 - conf_level)) || spread.low == 0.0
                          ? s.mean - of_mean
                          : centre - recovered(of_mean, s.spread() - spread.low, correlation);
-  return {std::max(low, 0.0), centre + up};
+  return {centre, {std::max(low, 0.0), centre + up}};
+}
+
+/// Whether every pose has an index and a standard error, and there is one.
+bool is_known(std::span<const LocalIndex> poses) {
+  return !poses.empty() && std::ranges::all_of(poses, [](const LocalIndex& pose) {
+    return std::isfinite(pose.value) && std::isfinite(pose.standard_error);
+  });
+}
+
+/// Eqs. 53-54.
+double published_index(std::span<const LocalIndex> poses) {
+  if (poses.empty()) return kNaN;
+  Moments over_poses;
+  for (const LocalIndex& pose : poses) over_poses.add(pose.value);
+  return over_poses.mean() + (poses.size() > 1 ? over_poses.standard_deviation() : 0.0);
 }
 
 }  // namespace
@@ -162,18 +178,16 @@ LocalIndex local_index_with_error(const Moments& response, double error_sigma) {
 }
 
 Estimate global_index(std::span<const LocalIndex> poses, double conf_level) {
-  Moments over_poses;
-  bool known = true;
-  for (const LocalIndex& pose : poses) {
-    over_poses.add(pose.value);
-    known = known && std::isfinite(pose.value) && std::isfinite(pose.standard_error);
-  }
-  if (poses.empty()) return {kNaN, kUnknown};
-  const double value = over_poses.mean() + (poses.size() > 1 ? over_poses.standard_deviation() : 0.0);
-  if (!known) return {value, kUnknown};
-  Interval interval = global_interval(poses, conf_level);
+  const double value = published_index(poses);
+  if (!is_known(poses)) return {value, kUnknown};
+  Interval interval = without_noise(poses, conf_level).interval;
   interval.high = std::max(interval.high, value);
   return {value, interval};
+}
+
+Estimate corrected_global_index(std::span<const LocalIndex> poses, double conf_level) {
+  if (!is_known(poses)) return {published_index(poses), kUnknown};
+  return without_noise(poses, conf_level);
 }
 
 }  // namespace poesy

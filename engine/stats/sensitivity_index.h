@@ -35,4 +35,10 @@ LocalIndex local_index_with_error(const Moments& response, double error_sigma);
 /// Indices that are all exactly zero give [0, 0]; a pose without a standard error gives NaN at both ends.
 Estimate global_index(std::span<const LocalIndex> poses, double conf_level);
 
+/// The same without what sampling adds to it: mean + spread of the indices, each without the bias of a sample standard
+/// deviation, the spread without that part of it which is sampling noise. The value stands within its interval, which
+/// is that of global_index but for the extension. Where a pose has no standard error nothing can be taken off: the
+/// value then is that of global_index, NaN at both ends.
+Estimate corrected_global_index(std::span<const LocalIndex> poses, double conf_level);
+
 }  // namespace poesy

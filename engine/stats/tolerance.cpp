@@ -47,8 +47,6 @@ double median_of(std::span<const double> values, std::span<const Dimension> dime
 
 }  // namespace
 
-bool has_effect(double index) { return index >= kIndexRounding; }
-
 std::optional<std::size_t> smallest_effect(std::span<const double> index, std::span<const double> sigma) {
   std::optional<std::size_t> smallest;
   for (std::size_t p = 0; p < index.size(); ++p) {
@@ -85,7 +83,8 @@ MeanSquare mean_square(const ResponseStudy& study) {
     }
     growth = growth / static_cast<double>(poses) - response.background;
     const bool none = growth < 0.0 || study.index[p] < kIndexRounding;
-    response.effects.push_back(none ? 0.0 : growth / square(study.sigma[p]));
+    const double effect = std::isnan(study.index[p]) ? kNaN : growth / square(study.sigma[p]);
+    response.effects.push_back(none ? 0.0 : effect);
   }
   return response;
 }

@@ -6,20 +6,15 @@
 #include <vector>
 
 #include "engine/base/units.h"
+#include "engine/stats/rounding.h"
 
 /// Tolerances from the indices of a sensitivity study. A tolerance here is the standard deviation of a normal error, in
 /// SI; infinity says that the error has no effect on its own, NaN that its effect is not known.
 namespace poesy {
 
-/// Below this, in SI, an index is rounding: solvers work to about 1e-14 rad or m for errors of about 1e-3.
-inline constexpr double kIndexRounding = 1e-10;
-
-/// Whether a global index is more than rounding. NaN is not.
-bool has_effect(double index);
-
 /// One response of a sensitivity study of P errors at M poses, SI. Refers to the study's arrays.
 struct ResponseStudy {
-  std::span<const double> index;       ///< [P] global
+  std::vector<double> index;           ///< [P] global, as far as it can be told from rounding (stats/rounding.h)
   std::span<const double> sigma;       ///< [P] of the errors, as the study sets them
   std::span<const double> count;       ///< [P x M] samples
   std::span<const double> mean;        ///< [P x M] of the response, one error varying
@@ -54,7 +49,8 @@ struct MeanSquare {
 };
 
 /// From the study's own samples: effects_p = mean over the poses of (mean square of the samples - background^2),
-/// or 0 if that is negative, over sigma_p^2. NaN where a pose has no background, or fewer than two samples of an error.
+/// or 0 if that is negative, over sigma_p^2. NaN where a pose has no background, or fewer than two samples of an error,
+/// or where an index is not known.
 MeanSquare mean_square(const ResponseStudy& study);
 
 /// effects_p sigma_p^2 over its sum, [P]: the error's share of what all errors of these standard deviations add to the

@@ -1,6 +1,7 @@
 #include "models/chain/deformation_model.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/base/contract.h"
 #include "models/chain/block_solver.h"
@@ -84,6 +85,10 @@ std::vector<Response> deformation_responses() {
 }
 
 DeformationMeasure deformation_measure(const ParallelChain& chain) { return {kResponses - 1, rounding_level(chain)}; }
+
+double effect_rounding(const ParallelChain& chain) {
+  return 4.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, chain.reach());
+}
 
 std::vector<Detail> deformation_details(const ParallelChain& chain) {
   std::vector<Detail> details;

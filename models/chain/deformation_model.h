@@ -34,6 +34,10 @@ std::vector<Response> deformation_responses();
 /// deformation_max, and the rounding of its solves (see rounding_level()).
 DeformationMeasure deformation_measure(const ParallelChain& chain);
 
+/// Up to which an error may seem to have an effect on any response, as a standard deviation (rad, m): 4 eps x max(1,
+/// reach in m). Errors that deform nothing leave a sixteenth of it at the most, whatever their size.
+double effect_rounding(const ParallelChain& chain);
+
 /// One detail per pair of limbs, delta_mu_ki = [omega; v] (Eqs. 30, 46), named with limbs counted from 1.
 std::vector<Detail> deformation_details(const ParallelChain& chain);
 

@@ -133,6 +133,8 @@ class Machine final : public Model {
     return std::vector{alpha, beta, coordinates[4] - tip.z(), coordinates[2] - tip.x(), coordinates[3] - tip.y()};
   }
 
+  double rounding(std::size_t response) const override { return head_->rounding(response); }
+
   ErrorBound error_bound(FactorIndex factor) const override {
     if (factor.value < kFactors) return head_->error_bound(factor);
     const Factor& error = description_.factors[factor.value];

@@ -99,6 +99,8 @@ class TwoUprRpu final : public Model {
     return chain::deformation_trace(deformation_, pose, errors, options);
   }
 
+  double rounding(std::size_t /*response*/) const override { return chain::effect_rounding(deformation_.chain); }
+
   /// The smaller of the platform and the base, which every limb joins; the offsets c and d are no links and may be 0.
   ErrorBound error_bound(FactorIndex factor) const override {
     if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};

@@ -42,7 +42,8 @@ void offer_to_sensitivity(State state) {
     static_cast<void>(collector.total());
     if (!complete) return;
     const std::vector<double> background(fuzz::kResponses * plan.poses().size());
-    static_cast<void>(collector.history(sensitivity_result(plan, std::move(collector).cells(), background, 0.95)));
+    static_cast<void>(collector.history(sensitivity_result(plan, std::move(collector).cells(), background,
+                                                           std::vector<double>(fuzz::kResponses), 0.95)));
   });
 }
 

@@ -22,13 +22,13 @@ function check_values(result)
   assert(result.effect_units, {'deg'; 'mm'});
   assert(result.sigma, [0.5 / sqrt(3); 0.001], -1e-15);
   % Element (r, p) of array k is 1000 k + 100 r + 10 p, and the last of all is not known.
-  assert(result.index, [5000 5100; 5010 NaN]);
-  assert(result.index_low, [6000 6100; 6010 NaN]);
-  assert(result.index_high, [7000 7100; 7010 NaN]);
+  assert(result.index, [11000 11100; 11010 NaN]);
+  assert(result.index_low, [12000 12100; 12010 NaN]);
+  assert(result.index_high, [13000 13100; 13010 NaN]);
   to_effect = [0.5 / sqrt(3); 0.001] * [180 / pi, 1000];
-  assert(result.effect, [5000 5100; 5010 NaN] .* to_effect, -1e-15);
-  assert(result.effect_low, [6000 6100; 6010 NaN] .* to_effect, -1e-15);
-  assert(result.effect_high, [7000 7100; 7010 NaN] .* to_effect, -1e-15);
+  assert(result.effect, [11000 11100; 11010 NaN] .* to_effect, -1e-15);
+  assert(result.effect_low, [12000 12100; 12010 NaN] .* to_effect, -1e-15);
+  assert(result.effect_high, [13000 13100; 13010 NaN] .* to_effect, -1e-15);
   assert(result.rank, [1 1; 2 2]);
 end
 

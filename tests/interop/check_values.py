@@ -65,12 +65,17 @@ def check_sensitivity(path):
     for array, name in enumerate(["global", "global_ci_low", "global_ci_high"], start=5):
         assert found[name].dims == ("response", "factor"), name
         expect(found[name], numbered(array, 1)[:, :, 0])
+    for array, name in enumerate(["global_corrected", "global_corrected_ci_low", "global_corrected_ci_high"], start=11):
+        assert found[name].dims == ("response", "factor"), name
+        expect(found[name], numbered(array, 1)[:, :, 0])
+    expect(found["rounding"], [1e-15, 2e-15])
     assert found["count"].dtype.kind == "u"
     expect(found["count"], np.full((2, 2, 4), 97))
     assert found["local"].sel(response="linear_deformation", factor="epsilon_1", pose=2) == 100.25
     assert found["global"].attrs["unit"] == "SI: response unit / factor unit"
     assert found.attrs["conf_level"] == 0.95
-    for name in ("global_ci_low", "global_ci_high", "local_ci_low", "local_ci_high"):
+    for name in ("global_ci_low", "global_ci_high", "global_corrected_ci_low", "global_corrected_ci_high", "local_ci_low",
+                 "local_ci_high"):
         assert found[name].attrs["conf_level"] == 0.95
 
     assert found["background"].dims == ("response", "pose")

@@ -17,6 +17,9 @@ from report_test import Page
 DISPLAY = {"m": 1e-3, "rad": math.pi / 180.0, "1": 1.0}
 BELOW_ROUNDING = 1e-10  # an index this small is shown as 0
 FLOAT = 2.0**-23
+# What is shown as the index with its interval, and the published estimator with its own.
+SHOWN = ("global_corrected", "global_corrected_ci_low", "global_corrected_ci_high")
+PUBLISHED = ("global", "global_ci_low", "global_ci_high")
 
 
 def shown_alike(text, value):
@@ -48,7 +51,7 @@ class SameNumbers(ProgramTest):
             self.factor_display = [DISPLAY[unit] for unit in result["factors/unit"].asstr()[:]]
             self.response_display = [DISPLAY[unit] for unit in result["responses/unit"].asstr()[:]]
             self.sigma = result["factors/sigma"][:]
-            self.found = {name: result["sensitivity"][name][:] for name in ("global", "global_ci_low", "global_ci_high")}
+            self.found = {name: result["sensitivity"][name][:] for name in (*SHOWN, *PUBLISHED)}
             self.not_converged = result["solver/not_converged"][:].sum(axis=1)
             self.count = result["poses/z"].shape[0] * 1500
 
@@ -60,9 +63,9 @@ class SameNumbers(ProgramTest):
         return self.found[name][response, factor] * self.sigma[factor] / self.response_display[response]
 
     def expected_row(self, response, factor):
-        return {"effect": self.effect("global", response, factor), "index": self.index("global", response, factor),
-                "index_low": self.index("global_ci_low", response, factor),
-                "index_high": self.index("global_ci_high", response, factor),
+        index, low, high = (self.index(name, response, factor) for name in SHOWN)
+        return {"effect": self.effect("global_corrected", response, factor), "index": index, "index_low": low,
+                "index_high": high, "index_published": self.index("global", response, factor),
                 "sigma": self.sigma[factor] / self.factor_display[factor],
                 "not_converged": 100.0 * self.not_converged[factor] / self.count}
 
@@ -81,6 +84,15 @@ class SameNumbers(ProgramTest):
                     self.assertTrue(math.isclose(row[name], expected, rel_tol=1e-12, abs_tol=BELOW_ROUNDING))
                     self.assertTrue(shown_alike(shown[names.index(name)], expected), shown[names.index(name)])
 
+    def test_order_and_place_within_the_interval(self):
+        response = self.responses.index("linear_deformation")
+        effects = self.found["global_corrected"][response] * self.sigma
+        order = sorted(self.factors, key=lambda name: -effects[self.factors.index(name)])
+        self.assertEqual([row["error"] for row in self.json["ranked"]["rows"]], order)
+        value, low, high = (self.found[name] for name in SHOWN)
+        self.assertTrue(((low <= value) & (value <= high)).all())
+        self.assertTrue((value < self.found["global"]).any())  # or the two could be one
+
     def test_exported_indices(self):
         with open(self.folder / "tables/global.csv", newline="", encoding="utf-8") as file:
             head, *rows = csv.reader(file)
@@ -88,14 +100,14 @@ class SameNumbers(ProgramTest):
         for factor, row in enumerate(rows):
             self.assertEqual(row[0], self.factors[factor])
             for response, name in enumerate(self.responses):
-                for part, suffix in (("global", ""), ("global_ci_low", "_ci_low"), ("global_ci_high", "_ci_high")):
-                    self.assertEqual(float(row[columns[name + suffix]]), self.found[part][response, factor])
+                for part in (*SHOWN, *PUBLISHED):
+                    self.assertEqual(float(row[columns[part.replace("global", name)]]), self.found[part][response, factor])
 
     def test_bars_of_the_report(self):
         figure = self.page.data["figures"]["ranking"]
         order = [self.responses.index(name) for name in figure["choices"][0]["options"]]
         factors = [self.factors.index(name) for name in figure["items"]]
-        parts = {"value": "global", "low": "global_ci_low", "high": "global_ci_high"}
+        parts = dict(zip(("value", "low", "high"), SHOWN))
         for quantity, expected in zip(figure["quantities"], (self.effect, self.index)):
             for key, part in parts.items():
                 drawn = floats(self.page, quantity[key])

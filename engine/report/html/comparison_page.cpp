@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/report/display.h"
@@ -14,6 +15,7 @@
 #include "engine/report/html/what_was_run.h"
 #include "engine/report/ranking.h"
 #include "engine/report/tables.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
@@ -42,14 +44,14 @@ std::vector<double> local_differences(const StoredResult& a, const StoredResult&
                                       std::pair<std::size_t, std::size_t> response) {
   const auto effect = [](const StoredResult& of, std::size_t r, std::size_t p, std::size_t m) {
     const double index = of.sensitivity.local[(r * of.factors.size() + p) * of.poses.size() + m];
-    return without_rounding(index) * of.factor_sigma[p];
+    return without_rounding(of, index, r, p) * of.factor_sigma[p];
   };
   std::vector<double> list;
   for (const auto& [pa, pb] : factors) {
     const double sigma = std::max(a.factor_sigma[pa], b.factor_sigma[pb]);
     for (std::size_t m = 0; m < a.poses.size(); ++m) {
       const double difference = effect(b, response.second, pb, m) - effect(a, response.first, pa, m);
-      list.push_back(without_rounding(difference / sigma) * sigma);
+      list.push_back(std::abs(difference) < kIndexRounding * sigma ? 0.0 : difference);
     }
   }
   return list;

@@ -8,6 +8,7 @@
 #include "engine/report/display.h"
 #include "engine/report/html/comparison.h"
 #include "engine/report/html/parts.h"
+#include "engine/report/ranking.h"
 #include "engine/run/sensitivity.h"
 #include "engine/stats/tolerance.h"
 
@@ -67,16 +68,18 @@ std::vector<std::vector<std::string>> response_units(const Pair& pair) {
   return response_units(pair.a, of_a(pair.responses));
 }
 
+/// By the estimator that both results have.
 ComparedValues indices(const StoredResult& result, const Pair& pair, const Common& factors, bool as_effect) {
-  const SensitivityResult& found = result.sensitivity;
+  const bool corrected = has_corrected_indices(pair.a) && has_corrected_indices(pair.b);
+  const GlobalIndices indices = corrected ? shown_indices(result) : published_indices(result);
   const auto shown = [&](const std::vector<double>& of) {
     return gather(pair.responses, factors, &result == &pair.a, [&](std::size_t r, std::size_t p) {
-      const double index = of[r * found.factors + p];
+      const double index = without_rounding(result, of[r * result.factors.size() + p], r, p);
       const double scale = as_effect ? result.factor_sigma[p] : display(result.factors[p]).si;
-      return without_rounding(index) * scale / display(result.responses[r]).si;
+      return index * scale / display(result.responses[r]).si;
     });
   };
-  return {shown(found.global), shown(found.global_ci_low), shown(found.global_ci_high)};
+  return {shown(indices.value), shown(indices.low), shown(indices.high)};
 }
 
 /// Predicted from the errors one by one (stats/tolerance.h), in the unit shown.

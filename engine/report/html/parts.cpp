@@ -7,8 +7,9 @@
 #include <limits>
 
 #include "engine/base/units.h"
+#include "engine/report/ranking.h"
 #include "engine/report/tables.h"
-#include "engine/stats/tolerance.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
@@ -68,7 +69,9 @@ std::string some_names(const std::vector<std::string>& names) {
   return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
 }
 
-double without_rounding(double index) { return std::abs(index) < kIndexRounding ? 0.0 : index; }
+double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor) {
+  return told_from_rounding(index, index_rounding(result, response, factor));
+}
 
 std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
                                                   std::span<const std::size_t> factors) {

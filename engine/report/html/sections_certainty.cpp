@@ -7,7 +7,6 @@
 #include "engine/report/html/sections.h"
 #include "engine/report/ranking.h"
 #include "engine/report/tables.h"
-#include "engine/stats/tolerance.h"
 
 namespace poesy {
 namespace {
@@ -60,7 +59,7 @@ Panel panel_of(const StoredResult& result, const Course& course, std::size_t r, 
   }
   for (const std::size_t p : ranked_errors(result, response.name).rows) {
     const std::size_t at = r * result.factors.size() + p;
-    if (!has_effect(result.sensitivity.global[at])) continue;
+    if (!has_effect(result, r, p)) continue;
     panel.series.push_back(series_of(course, at, result.factor_sigma[p] / unit, result.factors[p].name,
                                      fmt::format("{}/{}", array, p), pool));
   }
@@ -75,9 +74,8 @@ Lines lines_of(const StoredResult& result, const Course& course, ArrayPool& pool
 }
 
 constexpr std::string_view kAtTheUpperEnd =
-    "Where poses differ by little more than chance the value stands at the upper end of its interval, for chance adds "
-    "to "
-    "the spread between poses; more samples close the gap.";
+    "The curves are of the published estimator. Where poses differ by little more than chance it is at the upper end "
+    "of its interval, because chance adds to the spread between poses; more samples close the gap.";
 
 /// Why there is no course, and what gives one.
 constexpr std::string_view kNoCourseOfIndices =
@@ -104,15 +102,16 @@ void add_certainty(const StoredResult& result, std::vector<Table>& tables, Page&
       fmt::format("Intervals are {} ones and speak of the samples alone: other poses, other sizes of errors, and "
                   "samples that did not converge are not in them.",
                   percent_text(indices ? result.sensitivity.conf_level : result.monte_carlo.conf_level)));
-  if (indices) section.paragraph(kAtTheUpperEnd);
   if (const std::optional<Course> course = course_of(result)) {
     section.paragraph(
         indices ? "What a study with fewer samples would have found: curves that have become flat, with narrow bands, "
                   "would not change with more. Effects are index x sigma; errors without effect are left out."
                 : "The mean over the samples of all poses after so many samples, with its interval.");
     add_figure(page, section, "convergence", lines_of(result, *course, page.figures.pool),
-               indices ? "The effect of each error over the number of samples, with its interval."
+               indices ? "The effect of each error by the published estimator over the number of samples, with its "
+                         "interval."
                        : "The overall mean over the number of samples, with its interval.");
+    if (indices) section.paragraph(kAtTheUpperEnd);
   } else {
     section.paragraph(indices ? kNoCourseOfIndices : kNoCourseOfMeans);
   }

@@ -21,13 +21,14 @@ namespace poesy {
 namespace {
 
 /// Indices [R x P] in the units shown and the order of response_order: as effects, index x sigma, or as they are.
-std::vector<double> shown_indices(const StoredResult& result, const std::vector<double>& indices, bool as_effect) {
+std::vector<double> in_shown_units(const StoredResult& result, const std::vector<double>& indices, bool as_effect) {
   std::vector<double> list;
   const std::size_t factors = result.factors.size();
   for (const std::size_t r : response_order(result)) {
     for (std::size_t p = 0; p < factors; ++p) {
       const double scale = as_effect ? result.factor_sigma[p] : display(result.factors[p]).si;
-      list.push_back(without_rounding(indices[r * factors + p]) * scale / display(result.responses[r]).si);
+      const double index = without_rounding(result, indices[r * factors + p], r, p);
+      list.push_back(index * scale / display(result.responses[r]).si);
     }
   }
   return list;
@@ -41,17 +42,17 @@ std::vector<std::size_t> all_errors(const StoredResult& result) {
 }
 
 BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& pool) {
-  const SensitivityResult& found = result.sensitivity;
+  const GlobalIndices shown = shown_indices(result);
   const std::string name = as_effect ? "global_effect" : "global_index";
   const auto add = [&](const std::string& suffix, const std::vector<double>& indices) {
-    return pool.add(name + suffix, shown_indices(result, indices, as_effect));
+    return pool.add(name + suffix, in_shown_units(result, indices, as_effect));
   };
   return {.label = as_effect ? "effect at the size the study sets (index x sigma)" : "global index",
           .units = as_effect ? response_units(result, response_order(result))
                              : index_units(result, response_order(result), all_errors(result)),
-          .value = add("", found.global),
-          .low = add("_low", found.global_ci_low),
-          .high = add("_high", found.global_ci_high)};
+          .value = add("", shown.value),
+          .low = add("_low", shown.low),
+          .high = add("_high", shown.high)};
 }
 
 /// Positions of values, the largest first.
@@ -94,13 +95,21 @@ std::string few_matter_text(const StoredResult& result) {
   return text;
 }
 
+constexpr std::string_view kCorrected =
+    "The published estimator counts the noise of sampling as spread between poses; the value shown is without that "
+    "noise, and 'published' in the table is with it.";
+constexpr std::string_view kPublished =
+    "The value shown is the published estimator, which counts the noise of sampling as spread between poses, because "
+    "an older poesy wrote this result.";
+
 Section which_errors_matter(const StoredResult& result, std::vector<Table>& tables, Page& page) {
   Section section("which-errors-matter", "Which errors matter");
   section.paragraph(fmt::format(
       "The global index of an error is the scatter of a response for each unit of scatter of the error, its mean over "
       "the {} plus its spread between them. Times the size that the study gives the error it is the effect, which "
-      "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals.",
-      counted(result.poses.size(), "pose", "poses"), 100.0 * result.sensitivity.conf_level));
+      "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals. {}",
+      counted(result.poses.size(), "pose", "poses"), 100.0 * result.sensitivity.conf_level,
+      has_corrected_indices(result) ? kCorrected : kPublished));
   if (const std::string text = few_matter_text(result); !text.empty()) section.paragraph(text);
   Bars bars{{{"response", names_of(result.responses, response_order(result))}},
             {bar_quantity(result, true, page.figures.pool), bar_quantity(result, false, page.figures.pool)},
@@ -117,7 +126,9 @@ std::vector<double> local_effects(const StoredResult& result, std::size_t respon
   const std::size_t cells = found.factors * found.poses;
   std::vector<double> effects(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    effects[cell] = without_rounding(found.local[response * cells + cell]) * result.factor_sigma[cell / found.poses];
+    const std::size_t p = cell / found.poses;
+    effects[cell] =
+        without_rounding(result, found.local[response * cells + cell], response, p) * result.factor_sigma[p];
   }
   return effects;
 }

@@ -11,7 +11,8 @@
 #include "engine/report/html/parts.h"
 #include "engine/report/html/study_facts.h"
 #include "engine/report/not_converged.h"
-#include "engine/stats/tolerance.h"
+#include "engine/report/ranking.h"
+#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
@@ -82,18 +83,34 @@ void warn_of_unsolved_poses(const StoredResult& result, Warnings& list) {
                              "number " + some_names(poses)));
 }
 
+void warn_of_small_errors(const StoredResult& result, Warnings& list) {
+  std::vector<std::string> small;
+  const GlobalIndices shown = shown_indices(result);
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    const auto is_small = [&](std::size_t r) {
+      return is_too_small_to_tell(shown.value[r * result.factors.size() + p], index_rounding(result, r, p));
+    };
+    if (std::ranges::any_of(result.headline, is_small)) small.push_back(result.factors[p].name);
+  }
+  if (small.empty()) return;
+  list.push_back(
+      fmt::format("{} so small in this study that an effect cannot be told from the rounding of the solves: "
+                  "{}. Study larger errors.",
+                  counted(small.size(), "error is", "errors are"), some_names(small)));
+}
+
 void warn_of_wide_intervals(const StoredResult& result, Warnings& list) {
   const SensitivityResult& found = result.sensitivity;
+  const GlobalIndices shown = shown_indices(result);
   std::size_t wide = 0;
   std::size_t all = 0;
   std::optional<std::pair<double, std::size_t>> widest;
   for (const std::size_t r : result.headline) {
     for (std::size_t at = r * found.factors; at < (r + 1) * found.factors; ++at) {
-      if (!has_effect(found.global[at])) continue;
+      if (!has_effect(result, r, at % found.factors)) continue;
       ++all;
-      const double reach =
-          std::max(found.global_ci_high[at] - found.global[at], found.global[at] - found.global_ci_low[at]);
-      const double relative = reach / found.global[at];
+      const double reach = std::max(shown.high[at] - shown.value[at], shown.value[at] - shown.low[at]);
+      const double relative = reach / shown.value[at];
       if (!(relative > kWideInterval)) continue;
       ++wide;
       if (!widest || relative > widest->first) widest = {relative, at};
@@ -151,6 +168,7 @@ void warn_of_fidelity(const StoredResult& result, Warnings& list) {
 
 void warn_of_sensitivity(const StoredResult& result, Warnings& list) {
   warn_of_unknown_indices(result, list);
+  warn_of_small_errors(result, list);
   if (const auto& found = result.sensitivity.convergence) {
     std::vector<std::size_t> all(result.responses.size());
     for (std::size_t r = 0; r < all.size(); ++r) all[r] = r;

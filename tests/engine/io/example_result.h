@@ -69,6 +69,12 @@ class Example {
       *values = numbered(array++, 1);
       values->back() = std::numeric_limits<double>::quiet_NaN();
     }
+    std::size_t after_history = array + 3;
+    for (auto* values : {&result.global_corrected, &result.global_corrected_ci_low, &result.global_corrected_ci_high}) {
+      *values = numbered(after_history++, 1);
+      values->back() = std::numeric_limits<double>::quiet_NaN();
+    }
+    result.rounding = {1e-15, 2e-15};
     result.count.assign(result.local.size(), 97.0);
     for (std::size_t k = 0; k < 2 * kPoses; ++k) result.background.push_back(static_cast<double>(k) / 16.0);
     for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {

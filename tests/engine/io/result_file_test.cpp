@@ -73,6 +73,10 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   expect_same(found.global, expected.global, "global");
   expect_same(found.global_ci_low, expected.global_ci_low, "global_ci_low");
   expect_same(found.global_ci_high, expected.global_ci_high, "global_ci_high");
+  expect_same(found.global_corrected, expected.global_corrected, "global_corrected");
+  expect_same(found.global_corrected_ci_low, expected.global_corrected_ci_low, "global_corrected_ci_low");
+  expect_same(found.global_corrected_ci_high, expected.global_corrected_ci_high, "global_corrected_ci_high");
+  expect_same(found.rounding, expected.rounding, "rounding");
   expect_same(found.background, expected.background, "background");
   ASSERT_TRUE(found.history);
   EXPECT_EQ(found.history->samples, expected.history->samples);

@@ -286,6 +286,9 @@ TEST(StudyKeys, HaveTheBoundsThatTheyName) {
                          Outside{"greater than 0",
                                  {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
                                  "it must be greater than zero"},
+                         Outside{"at least 1e-30 m or rad",
+                                 {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
+                                 "it must be at least 1e-30 m or 1e-30 rad"},
                          Outside{"greater than 1", {"1"}, "it must be greater than 1"},
                          Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
                          Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};

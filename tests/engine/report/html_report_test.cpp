@@ -238,7 +238,7 @@ TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
     for (std::size_t p = 0; p < 2; ++p) {
       const double scale = result.stored.factor_sigma[p] / unit;
       const std::vector<float> global = array(page, ranking["value"]);
-      expect_shown(global[shown * 2 + p], found.global[r * 2 + p] * scale);
+      expect_shown(global[shown * 2 + p], found.global_corrected[r * 2 + p] * scale);
       const std::size_t row = heat["rows"][0] == result.stored.factors[p].name ? 0 : 1;
       for (std::size_t m = 0; m < 4; ++m) expect_shown(local[row * 4 + m], found.local[(r * 2 + p) * 4 + m] * scale);
     }
@@ -279,7 +279,7 @@ TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.factor_sigma = {1.0, 1.0};
-  stored.sensitivity.global = {0.1, 1.0, 0.1, 1.0};
+  stored.sensitivity.global = stored.sensitivity.global_corrected = {0.1, 1.0, 0.1, 1.0};
   for (std::size_t at = 0; at < stored.sensitivity.local.size(); ++at) {
     stored.sensitivity.local[at] = at % 4 == 3 ? 5.0 : 1.0;  // the last pose is the worst, 2.5 times the mean
   }
@@ -406,7 +406,7 @@ TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
 TEST_F(HtmlReport, TakesRoundingForNoDifference) {
   const ReportedResult a = sensitivity();
   ReportedResult b = a;
-  for (double& value : b.stored.sensitivity.global) value *= 1.0 + 1e-13;
+  for (double& value : b.stored.sensitivity.global_corrected) value *= 1.0 + 1e-13;
   for (double& value : b.stored.sensitivity.local) value += 1e-12;
   const std::string html = report(a, b);
   const Json page = data(html);
@@ -434,7 +434,7 @@ TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
   IndexHistory history{
       {10, 100}, std::vector<double>(8, 0.5), std::vector<double>(8, 0.25), std::vector<double>(8, 1.0)};
   result.stored.sensitivity.history = history;
-  result.stored.sensitivity.global.assign(4, 0.5);
+  result.stored.sensitivity.global_corrected.assign(4, 0.5);
   const std::string html = report(result);
   check_page(html);
   const Json page = data(html);
@@ -483,7 +483,8 @@ TEST_F(HtmlReport, HasNoSectionOfWarningsWithoutAny) {
   stored.git_commit = "abc";
   stored.condition = {1.0, 1.0, 1.0, 1.0};
   SensitivityResult& found = stored.sensitivity;
-  found.global = found.global_ci_low = found.global_ci_high = {1.0, 1.0, 1.0, 1.0};
+  found.global = {1.0, 1.0, 1.0, 1.0};
+  found.global_corrected = found.global_corrected_ci_low = found.global_corrected_ci_high = found.global;
   for (SolveCounts& solves : found.solves) solves.by_status = {100, 0, 0, 0, 0};
   found.failures.clear();
   EXPECT_EQ(body(report(result)).find("id=\"warnings\""), std::string::npos);
@@ -519,7 +520,7 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   const ReportedResult a = sensitivity();
   ReportedResult b = a;
   b.path = "b.h5";
-  b.stored.sensitivity.global[0] += 10.0;
+  b.stored.sensitivity.global_corrected[0] += 10.0;
   b.stored.factors[1].name = "another";
   const std::string html = report(a, b);
   check_page(html);
@@ -529,8 +530,8 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   const double scale = a.stored.factor_sigma[0] / display(a.stored.responses[0]).si;
   const std::vector<std::string> responses = page["figures"]["side-by-side"]["choices"][0]["options"];
   const std::size_t r = responses[0] == a.stored.responses[0].name ? 0 : 1;
-  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(a.stored.sensitivity.global[0] * scale));
-  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(b.stored.sensitivity.global[0] * scale));
+  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(a.stored.sensitivity.global_corrected[0] * scale));
+  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(b.stored.sensitivity.global_corrected[0] * scale));
   EXPECT_NE(html.find("Only in B: another."), std::string::npos);
   for (const Json& layer : page["figures"]["heat"]["layers"]) EXPECT_TRUE(layer["signed"]);
 }
@@ -580,6 +581,40 @@ TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
   EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\">7.069</td>"), std::string::npos)
       << rows;
   EXPECT_NE(rows.find(">0.7071</td><td>mm</td><td class=\"n\">0.1</td>"), std::string::npos) << rows;
+}
+
+TEST_F(HtmlReport, ComparesByTheEstimatorThatBothResultsHave) {
+  const ReportedResult newer = sensitivity();
+  ReportedResult older = newer;
+  older.path = "b.h5";
+  SensitivityResult& found = older.stored.sensitivity;
+  for (auto* values :
+       {&found.global_corrected, &found.global_corrected_ci_low, &found.global_corrected_ci_high, &found.rounding}) {
+    values->clear();
+  }
+  using Pair = std::pair<const ReportedResult*, const ReportedResult*>;
+  for (const auto& [a, b] : {Pair(&newer, &older), Pair(&older, &newer)}) {
+    const Json page = data(report(*a, *b));
+    const std::vector<float> effects = array(page, page["figures"]["side-by-side"]["quantities"][0]["value"]);
+    const std::vector<std::string> responses = page["figures"]["side-by-side"]["choices"][0]["options"];
+    const std::size_t r = responses[0] == newer.stored.responses[0].name ? 0 : 1;
+    const double scale = newer.stored.factor_sigma[0] / display(newer.stored.responses[0]).si;
+    for (const std::size_t at : {r * 2, 4 + r * 2}) {
+      EXPECT_FLOAT_EQ(effects.at(at), static_cast<float>(newer.stored.sensitivity.global[0] * scale)) << at;
+    }
+  }
+}
+
+TEST_F(HtmlReport, WarnsOfErrorsTooSmallToTell) {
+  ReportedResult result = sensitivity();
+  EXPECT_EQ(report(result).find("so small in this study"), std::string::npos);
+  StoredResult& stored = result.stored;
+  stored.factor_sigma[1] = 1e-12;
+  stored.sensitivity.global_corrected[1] = stored.sensitivity.global_corrected[3] = std::nan("");
+  EXPECT_NE(report(result).find("1 error is so small in this study that an effect cannot be told from the rounding of "
+                                "the solves: " +
+                                stored.factors[1].name + ". Study larger errors."),
+            std::string::npos);
 }
 
 TEST_F(HtmlReport, OfTwoResultsOfEveryKindIsWhole) {

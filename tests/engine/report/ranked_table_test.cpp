@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 
 #include "engine/report/tables.h"
@@ -45,6 +46,47 @@ TEST(RankedTable, HasTheHeadlinesOtherResponses) {
   EXPECT_EQ(table.rows[0][10].text, "0.8");
   EXPECT_EQ(table.rows[2][8].text, "0");  // rounding
   EXPECT_NE(table.rows[2][8].value, 0.0);
+}
+
+/// The same with corrected indices of half the size, and in another order.
+StoredResult corrected_result() {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  StoredResult result = ranked_result();
+  SensitivityResult& found = result.sensitivity;
+  found.global_corrected = {0.2, 0.05, 0.05, kNaN, 1e-13, 0.35, 0.0, kNaN, 0.5, 0.5, 0.5, kNaN};
+  found.global_corrected_ci_low = {0.1, 0.04, 0.04, kNaN, 0.0, 0.3, 0.0, kNaN, 0.4, 0.4, 0.4, kNaN};
+  found.global_corrected_ci_high = {0.3, 0.06, 0.06, kNaN, 1e-13, 0.4, 0.0, kNaN, 0.6, 0.6, 0.6, kNaN};
+  found.rounding = {1e-15, 1e-15, 0.0};
+  return result;
+}
+
+TEST(RankedTable, ShowsAndRanksByTheCorrectedIndexWithThePublishedOneBeside) {
+  const StoredResult result = corrected_result();
+  const Table table = ranked_table(result, ranked_errors(result, "x"));
+  EXPECT_EQ(table.columns.back().name, "index_published");
+  EXPECT_EQ(table.columns.back().unit, "mm/unit");
+  std::vector<std::string> shown;
+  for (const std::vector<Cell>& row : table.rows) {
+    shown.push_back(row[1].text + " " + row[2].text + " " + row[3].text + " " + row[4].text + " " + row[5].text + " " +
+                    row.back().text);
+  }
+  EXPECT_EQ(shown,
+            (std::vector<std::string>{"epsilon_a 0.4363 0.8727 0.6981 1.047 1.745", "delta_b 0.2 0.2 0.1 0.3 0.4",
+                                      "delta_c 0.1 0.05 0.04 0.06 0.3", "delta_a - - - - -"}));
+  EXPECT_TRUE(table.notes[1].starts_with("published: ")) << table.notes[1];
+  EXPECT_NE(ranked_table(ranked_result(), ranked_errors(ranked_result(), "x")).notes[1].find("older poesy"),
+            std::string::npos);
+}
+
+TEST(RankedTable, SaysWhichErrorsAreTooSmallToTell) {
+  StoredResult result = corrected_result();
+  const std::size_t notes = ranked_table(result, ranked_errors(result, "x")).notes.size();
+  result.factor_sigma[3] = 1e-11;  // of which no index is known
+  const Table table = ranked_table(result, ranked_errors(result, "x"));
+  EXPECT_EQ(table.rows[3][3].text, "rounding");
+  EXPECT_FALSE(table.rows[3][3].value);
+  ASSERT_EQ(table.notes.size(), notes + 1);
+  EXPECT_TRUE(table.notes.back().starts_with("rounding: the error is so small")) << table.notes.back();
 }
 
 TEST(RankedTable, IsInTheOrderAskedFor) {

@@ -152,7 +152,7 @@ TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
 
 TEST(Rounds, ResponsesThatDoNotDecideAreReportedOnly) {
   const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 4000));
-  Rounds rounds(run.plan, {2, {0}, 0.95, 0.0});
+  Rounds rounds(run.plan, {2, {0}, 0.95, {0.0}});
   EXPECT_FALSE(rounds.go_on([](std::size_t) {
     return std::vector<Estimate>{{1.0, {0.995, 1.005}}, {1.0, {0.0, 2.0}}};
   }));
@@ -162,7 +162,7 @@ TEST(Rounds, ResponsesThatDoNotDecideAreReportedOnly) {
 TEST(Rounds, ExpectTheSolvesThatTheHalfWidthsAskFor) {
   Study study = adaptive_study(Kind::monte_carlo, 0.01, 100'000);
   const AdaptiveRun run(study);
-  Rounds rounds(run.plan, {1, {0}, 0.95, 0.0});
+  Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
   EXPECT_EQ(rounds.samples(0), 1000u);
   EXPECT_EQ(rounds.expected_solves(), 300'000u);
   // Three times too wide: nine times the samples, and the milestone above that.
@@ -175,7 +175,7 @@ TEST(Rounds, WhatIsUnknownIsNotReached) {
   const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 3000));
   const double nan = std::nan("");
   for (const Estimate& unknown : {Estimate{nan, {nan, nan}}, Estimate{1.0, {nan, nan}}, Estimate{1.0, {1.0, nan}}}) {
-    Rounds rounds(run.plan, {1, {0}, 0.95, kIndexRounding});
+    Rounds rounds(run.plan, {1, {0}, 0.95, {kIndexRounding}});
     while (rounds.go_on([&](std::size_t) { return std::vector{unknown}; })) {
     }
     EXPECT_EQ(rounds.samples(0), 3000u);
@@ -187,10 +187,10 @@ TEST(Rounds, BothEndsOfAnIntervalCount) {
   const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 3000));
   for (const Estimate& wide :
        {Estimate{1.0, {0.98, 1.001}}, Estimate{1.0, {0.999, 1.02}}, Estimate{-1.0, {-1.02, -1.0}}}) {
-    Rounds rounds(run.plan, {1, {0}, 0.95, 0.0});
+    Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
     EXPECT_TRUE(rounds.go_on([&](std::size_t) { return std::vector{wide}; }));
   }
-  Rounds rounds(run.plan, {1, {0}, 0.95, 0.0});
+  Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
   EXPECT_FALSE(rounds.go_on([&](std::size_t) { return std::vector{Estimate{-1.0, {-1.009, -0.991}}}; }));
 }
 

@@ -27,7 +27,8 @@ std::string hash_of(const Study& study, const Model& model, const std::vector<st
   }
   const test::TempFolder folder;
   write_sensitivity(folder / "r.h5", study, poses,
-                    sensitivity_result(plan, cells, background_responses(plan, model), 0.95), {});
+                    sensitivity_result(plan, cells, background_responses(plan, model), response_rounding(model), 0.95),
+                    {});
   return verify_result(folder / "r.h5").computed;
 }
 

@@ -149,5 +149,45 @@ TEST(GlobalIndexInterval, ReachesPlainEstimateWithoutSpread) {
   EXPECT_TRUE(holds(index.interval, mean_plus_spread(scales)));
 }
 
+/// How far both estimators are from the truth on average.
+struct Bias {
+  Moments published;
+  Moments corrected;
+
+  /// In standard errors of the average.
+  static double z(const Moments& errors) {
+    return errors.mean() * std::sqrt(static_cast<double>(errors.count())) / errors.standard_deviation();
+  }
+};
+
+Bias bias(const std::vector<double>& scales, int samples, int repetitions, std::uint64_t seed) {
+  Experiment experiment(seed);
+  const double truth = mean_plus_spread(scales);
+  Bias found;
+  for (int r = 0; r < repetitions; ++r) {
+    const std::vector<LocalIndex> poses = experiment.folded_poses(scales, samples);
+    found.published.add(global_index(poses, kLevel).value - truth);
+    found.corrected.add(corrected_global_index(poses, kLevel).value - truth);
+  }
+  return found;
+}
+
+TEST(CorrectedGlobalIndex, HasNoBiasWherePosesDifferClearly) {
+  for (const std::size_t poses : {std::size_t{4}, std::size_t{20}}) {
+    const Bias found = bias(scales_between(0.2, 1.0, poses), 200, 4000, 41 + poses);
+    EXPECT_LE(std::abs(Bias::z(found.corrected)), 3.291) << poses << " poses";
+  }
+}
+
+TEST(CorrectedGlobalIndex, IsNearerToTheTruthWherePosesDifferByLittleMoreThanNoise) {
+  for (const double half : {0.0, 0.03, 0.1}) {
+    const Bias found = bias(scales_between(1.0 - half, 1.0 + half, 20), 200, 2000, 51);
+    // What is left cannot be taken off: a spread is not negative, so its noise does not average out near zero.
+    EXPECT_GT(Bias::z(found.published), 3.090) << half;
+    const double error = found.corrected.standard_deviation() / std::sqrt(2000.0);
+    EXPECT_LT(std::abs(found.corrected.mean()) + 3.090 * error, 0.5 * found.published.mean()) << half;
+  }
+}
+
 }  // namespace
 }  // namespace poesy

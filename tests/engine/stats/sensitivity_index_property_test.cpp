@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -126,6 +127,70 @@ TEST(GlobalIndexInterval, IsOrderedAndNotNegativeInAnyNoise) {
       EXPECT_TRUE(std::isfinite(index.interval.high)) << count << " poses, noise " << relative_error;
     }
   }
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Lists of poses at the edges of what can happen, and a hundred random ones.
+std::vector<std::vector<LocalIndex>> lists_of_poses() {
+  std::vector<std::vector<LocalIndex>> lists{{{0.7, 0.1}},
+                                             {{0.7, 0.0}},
+                                             {{0.0, 0.0}},
+                                             {{0.0, 0.0}, {0.0, 0.0}},
+                                             {{0.0, 0.0}, {0.3, 0.1}},
+                                             {{1.0, 0.2}, {1.0, 0.2}},
+                                             {{1.0, 0.2}, {1.05, 0.2}, {0.97, 0.2}},
+                                             {{0.1, 1e-9}, {5.0, 1e-9}},
+                                             {{1e-9, 2e-9}, {1.0, 0.1}}};
+  std::mt19937_64 engine(23);
+  std::uniform_real_distribution<double> exponent(-8.0, 0.5);
+  for (int k = 0; k < 100; ++k) {
+    const double spread = std::pow(10.0, exponent(engine));
+    const double noise = std::pow(10.0, exponent(engine));
+    std::normal_distribution<double> draw(1.0, spread);
+    std::vector<LocalIndex> poses(static_cast<std::size_t>(1 + k % 13));
+    for (LocalIndex& pose : poses) pose = {std::abs(draw(engine)), noise};
+    lists.push_back(std::move(poses));
+  }
+  return lists;
+}
+
+TEST(CorrectedGlobalIndex, StandsWithinItsIntervalWhateverThePosesAre) {
+  for (const std::vector<LocalIndex>& poses : lists_of_poses()) {
+    for (const double level : {0.01, 0.5, 0.95, 0.999}) {
+      const Estimate index = corrected_global_index(poses, level);
+      EXPECT_GE(index.interval.low, 0.0);
+      EXPECT_LE(index.interval.low, index.value) << poses.size() << " poses, level " << level;
+      EXPECT_LE(index.value, index.interval.high) << poses.size() << " poses, level " << level;
+    }
+  }
+}
+
+TEST(CorrectedGlobalIndex, HasTheIntervalOfThePublishedOneBeforeItIsExtended) {
+  for (const std::vector<LocalIndex>& poses : lists_of_poses()) {
+    const Estimate published = global_index(poses, 0.95);
+    const Estimate corrected = corrected_global_index(poses, 0.95);
+    EXPECT_EQ(corrected.interval.low, published.interval.low);
+    EXPECT_EQ(std::max(corrected.interval.high, published.value), published.interval.high);
+  }
+}
+
+TEST(CorrectedGlobalIndex, IsMeanPlusSpreadWithoutNoise) {
+  const std::vector<LocalIndex> exact{{0.2, 0.0}, {0.5, 0.0}, {1.1, 0.0}};
+  EXPECT_NEAR(corrected_global_index(exact, 0.95).value, 0.6 + std::sqrt((0.16 + 0.01 + 0.25) / 2.0), 1e-15);
+  // x = 1.005, 2.0025: mean 1.50375; variance over poses 0.9975^2 / 2, of which 0.01 is noise.
+  const std::vector<LocalIndex> noisy{{1.0, 0.1}, {2.0, 0.1}};
+  EXPECT_NEAR(corrected_global_index(noisy, 0.95).value, 1.50375 + std::sqrt(0.9975 * 0.9975 / 2.0 - 0.01), 1e-14);
+}
+
+TEST(CorrectedGlobalIndex, IsThePublishedOneWithoutIntervalWhereNoiseIsNotKnown) {
+  const std::vector<LocalIndex> few{{1.0, kNaN}, {2.0, 0.1}};
+  EXPECT_EQ(corrected_global_index(few, 0.95).value, global_index(few, 0.95).value);
+  EXPECT_TRUE(std::isnan(corrected_global_index(few, 0.95).interval.low));
+  const std::vector<LocalIndex> unknown{{kNaN, kNaN}, {2.0, 0.1}};
+  EXPECT_TRUE(std::isnan(corrected_global_index(unknown, 0.95).value));
+  EXPECT_TRUE(std::isnan(corrected_global_index(unknown, 0.95).interval.high));
+  EXPECT_TRUE(std::isnan(corrected_global_index({}, 0.95).value));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -52,6 +53,30 @@ void expect_motion(const Solved& found, const json& expected) {
     EXPECT_NEAR(found.responses[k], expected[k].get<double>(), 1e-12);
     EXPECT_NEAR(found.responses[3 + k] / kMm, expected[3 + k].get<double>(), 1e-9);
   }
+}
+
+TEST(Rounding, IsAboveWhatExactSolvesOfTinyErrorsLeave) {
+  // At 1e-13 m, or rad, what is not of the first order is 1e-26: all else is rounding.
+  constexpr double kTiny = 1e-13;
+  const auto exact = published("exact");
+  const auto first_order = published("first-order");
+  const std::vector<double> pose{0.1, -0.2, 0.7};
+  double largest = 0.0;
+  for (std::size_t f = 0; f < kFactors; ++f) {
+    for (const double value : {kTiny, -0.3 * kTiny}) {
+      std::vector<double> errors(kFactors, 0.0);
+      errors[f] = value;
+      const Solved found = solve(*exact, pose, errors);
+      const Solved linear = solve(*first_order, pose, errors);
+      for (std::size_t r = 0; r < found.responses.size(); ++r) {
+        const double left = std::abs(found.responses[r] - linear.responses[r]);
+        EXPECT_LT(left, exact->rounding(r)) << f << " " << r;
+        largest = std::max(largest, left);
+      }
+    }
+  }
+  EXPECT_GT(largest, 0.02 * exact->rounding(0));  // it is not far above either
+  EXPECT_EQ(first_order->rounding(0), 0.0);
 }
 
 TEST(Oracle, ExactAndFirstOrderSolves) {

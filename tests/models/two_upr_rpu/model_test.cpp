@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -54,6 +55,25 @@ Solved solve(const Model& model, std::span<const double> pose, std::span<const d
   model.evaluator({})->evaluate({pose, errors, {}, {}, 1},
                                 {out.responses, std::span(&out.status, 1), std::span(&out.iterations, 1), out.details});
   return out;
+}
+
+TEST(Rounding, IsAboveWhatErrorsWithoutEffectLeaveAtAnySize) {
+  const auto model = published();
+  const ModelDescription& description = model->description();
+  const std::vector<double> pose{-0.22, 0.2, -0.3};
+  double largest = 0.0;
+  for (const FactorIndex factor : description.find_set("benign")->factors) {
+    for (const double value : {1e-2, 1e-4, 1e-7, 1e-12, -3e-3, -5e-8}) {
+      std::vector<double> errors(description.factors.size(), 0.0);
+      errors[factor.value] = value;
+      const Solved found = solve(*model, pose, errors);
+      for (std::size_t r = 0; r < found.responses.size(); ++r) {
+        EXPECT_LT(found.responses[r], model->rounding(r)) << description.factors[factor.value].name << " " << value;
+        largest = std::max(largest, found.responses[r]);
+      }
+    }
+  }
+  EXPECT_GT(largest, 0.02 * model->rounding(0));  // it is not far above either
 }
 
 TEST(Oracle, JointDisplacements) {

@@ -1,0 +1,47 @@
+#include "engine/stats/rounding.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace poesy {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSolver = 1e-15;  ///< m, as Model::rounding gives it
+
+TEST(IndexRounding, IsThatOfSolvesOverTheErrorButNeverLessThanThatOfDigits) {
+  EXPECT_DOUBLE_EQ(index_rounding(kSolver, 1e-7), 1e-8);
+  EXPECT_EQ(index_rounding(kSolver, 1e-3), kIndexRounding);
+  EXPECT_EQ(index_rounding(0.0, 1e-300), kIndexRounding);
+}
+
+TEST(HasEffect, ComparesTheEffectWithTheRoundingOfSolves) {
+  for (const double sigma : {1e-3, 1e-6, 1e-9}) {
+    const double rounding = index_rounding(kSolver, sigma);
+    EXPECT_TRUE(has_effect(1.01 * rounding, rounding)) << sigma;
+    EXPECT_FALSE(has_effect(0.99 * rounding, rounding)) << sigma;
+    EXPECT_FALSE(has_effect(kNaN, rounding)) << sigma;
+  }
+}
+
+TEST(ToldFromRounding, IsTheIndexOrNothingOrUnknown) {
+  const double large = index_rounding(kSolver, 1e-7);
+  EXPECT_EQ(told_from_rounding(0.5, large), 0.5);
+  EXPECT_EQ(told_from_rounding(5e-9, large), 0.0);
+  EXPECT_TRUE(std::isnan(told_from_rounding(kNaN, large)));
+  const double small = index_rounding(kSolver, 1e-12);  // an index of 1e-3 would be rounding
+  EXPECT_EQ(told_from_rounding(0.5, small), 0.5);
+  EXPECT_TRUE(std::isnan(told_from_rounding(5e-4, small)));
+  EXPECT_TRUE(std::isnan(told_from_rounding(0.0, small)));
+}
+
+TEST(IsTooSmallToTell, WhereAnIndexOfInterestWouldBeRounding) {
+  EXPECT_FALSE(is_too_small_to_tell(0.0, index_rounding(kSolver, 1.01e-9)));
+  EXPECT_TRUE(is_too_small_to_tell(0.0, index_rounding(kSolver, 0.99e-9)));
+  EXPECT_FALSE(is_too_small_to_tell(0.5, index_rounding(kSolver, 0.99e-9)));
+}
+
+}  // namespace
+}  // namespace poesy
