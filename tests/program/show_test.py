@@ -67,7 +67,7 @@ class Show(ProgramTest):
         narrow = self.on_terminal(80, {"COLUMNS": "250"})
         self.assertEqual(narrow, self.succeeds("show", "out.h5", "--width", "80"))
         self.assertLessEqual(self.table_width(narrow), 80)
-        self.assertRegex(narrow, r"\(no room for .*angular_deformation: [^)]*--response NAME[^)]*--json\s+shows\s+more\)")
+        self.assertRegex(narrow, r"\(no room for .*angular_deformation, published: [^)]*--response\s+NAME[^)]*--json\s+shows\s+more\)")
         self.assertEqual(self.on_terminal(0, {"COLUMNS": "250"}), wide)
         self.assertEqual(self.on_terminal(0, {"COLUMNS": ""}), narrow)
 
@@ -98,7 +98,7 @@ class Show(ProgramTest):
             names = list(file["factor"].asstr())
             responses = list(file["response"].asstr())
             at = responses.index("linear_deformation")
-            index = dict(zip(names, file["sensitivity/global"][at]))
+            index = dict(zip(names, file["sensitivity/global_corrected"][at]))
         self.assertEqual((done["kind"], done["model"], done["seed"], done["poses"]), ("sensitivity", "2upr-rpu", 5, 6))
         self.assertEqual(done["solves"]["total"], 3 * 6 * 1500)
         self.assertEqual(sum(done["solves"]["by_status"].values()), done["solves"]["total"])
