@@ -1,12 +1,11 @@
 #include "models/three_prs/model.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 #include "engine/base/contract.h"
+#include "models/three_prs/closure.h"
 #include "models/three_prs/closure_trace.h"
 #include "models/three_prs/error_mapping.h"
 #include "models/three_prs/errors.h"
@@ -150,11 +149,11 @@ class ThreePrs final : public Model {
     return closure_trace(geometry_, pose, errors, options);
   }
 
-  /// Solves leave up to 2 eps of lengths of 1 m, as a standard deviation: this is eight times as much. First order only
+  /// As a standard deviation, exact solves leave up to a tenth of the level at which they stop. First order only
   /// multiplies.
   double rounding(std::size_t /*response*/) const override {
     if (fidelity_ == Fidelity::first_order) return 0.0;
-    return 16.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, geometry_.rail + geometry_.l + geometry_.h);
+    return rounding_level({geometry_.a, 0.0, geometry_.rail + geometry_.l + geometry_.h});
   }
 
   ErrorBound error_bound(FactorIndex factor) const override {

@@ -83,7 +83,7 @@ class SmallErrors(ProgramTest):
         self.assertEqual(samples, {"delta_3_3_x": 1000, "delta_1_1_y": 3000})
 
     def test_errors_too_small_to_tell_are_said_to_be(self):
-        result = self.run_study("tiny", "3-prs", "1e-12 mm", "1e-12 mrad", poses=3)
+        result = self.run_study("tiny", "3-prs", "1e-13 mm", "1e-13 mrad", poses=3)
         ranked = json.loads(self.succeeds("show", result, "--json"))["tables"][0]
         self.assertTrue(any("cannot be told from the rounding" in note for note in ranked["notes"]), ranked["notes"])
         self.assertEqual({(row["effect"], row["index"], row["index_low"], row["index_high"]) for row in ranked["rows"]},
@@ -98,6 +98,25 @@ class SmallErrors(ProgramTest):
         for limit in ([], ["--limit", "1 um"]):
             message = self.refusal("tolerances", result, "--response", "tip_position", *limit)
             self.assertIn("cannot be told from the rounding of the solves; study larger errors", message)
+
+    def test_what_is_told_of_tiny_errors_is_right(self):
+        first_order = 'fidelity = "first-order"'
+        told = {}
+        for size in ("1e-10", "1e-11", "1e-12", "1e-13"):
+            sizes = (f"{size} mm", f"{size} mrad")
+            with h5py.File(self.folder / self.run_study("exact", "3-prs", *sizes, 3)) as exact, \
+                    h5py.File(self.folder / self.run_study("linear", "3-prs", *sizes, 3, fidelity=first_order)) as linear:
+                found = exact["sensitivity/global_corrected"][:]
+                low, high = (exact["sensitivity/global_corrected" + end][:] for end in ("_ci_low", "_ci_high"))
+                expected = linear["sensitivity/global_corrected"][:]
+                effect = found * exact["factors/sigma"][:] > exact["sensitivity/rounding"][:][:, None]
+            told[size] = effect.sum()
+            # The same draws, so all that differs is rounding.
+            numpy.testing.assert_allclose(found[effect], expected[effect], rtol=0.02)
+            self.assertTrue(((low <= found) & (found <= high))[effect].all())
+            self.assertTrue(numpy.isnan(found[~effect]).all())
+        self.assertGreater(told["1e-10"], 100)
+        self.assertEqual(told["1e-13"], 0)
 
     def test_first_order_has_no_rounding_of_its_own(self):
         first_order = 'fidelity = "first-order"'
