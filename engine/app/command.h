@@ -23,5 +23,7 @@ void add_template(CLI::App& program, Action& action);
 void add_tolerances(CLI::App& program, Action& action);
 void add_completion(CLI::App& program, Action& action);
 void add_man(CLI::App& program, Action& action);
+void add_help(CLI::App& program, Action& action);
+void add_version(CLI::App& program, Action& action);
 
 }  // namespace poesy::app

@@ -39,12 +39,6 @@ std::string unknown_option(const std::string& word, const DescribedCommand& comm
                      see_help(command));
 }
 
-std::string unknown_command(const std::string& word, const DescribedProgram& described) {
-  std::vector<std::string> known;
-  for (const DescribedCommand& command : described.commands) known.push_back(command.name);
-  return fmt::format("no command '{}'; {}{}", printable(word), nearest_text(word, known), see_help(described.program));
-}
-
 /// What the command cannot do without, and was not given.
 std::vector<std::string> missing(const CLI::App& app, const DescribedCommand& command) {
   const auto options = app.get_options();
@@ -134,12 +128,31 @@ bool has_unknown_command(const CLI::App& program) {
   return program.get_subcommands().empty() && !extras.empty() && !is_option(extras.front());
 }
 
-std::string command_line_problem(const CLI::App& program, const CLI::ParseError& error) {
+std::string unknown_command(const std::string& word, const CLI::App& program) {
   const DescribedProgram described = describe(program);
+  std::vector<std::string> known;
+  for (const DescribedCommand& command : described.commands) known.push_back(command.name);
+  return fmt::format("no command '{}'; {}{}", printable(word), nearest_text(word, known), see_help(described.program));
+}
+
+std::optional<std::string> empty_value(const CLI::App& program) {
+  for (const CLI::App* called : program.get_subcommands()) {
+    const DescribedCommand command = describe_command(*called);
+    const auto options = called->get_options();
+    for (std::size_t k = 0; k < options.size(); ++k) {
+      if (std::ranges::count(options[k]->results(), std::string()) == 0) continue;
+      return fmt::format("{} is empty; write {}, {}", shown_name(command.options[k]), heading(command.options[k]),
+                         see_help(command));
+    }
+  }
+  return std::nullopt;
+}
+
+std::string command_line_problem(const CLI::App& program, const CLI::ParseError& error) {
   const std::vector<std::string> extras = program.remaining();
   if (!extras.empty()) {
-    return is_option(extras.front()) ? unknown_option(extras.front(), described.program)
-                                     : unknown_command(extras.front(), described);
+    return is_option(extras.front()) ? unknown_option(extras.front(), describe_command(program))
+                                     : unknown_command(extras.front(), program);
   }
   const auto called = program.get_subcommands();
   return called.empty() ? "no command given; see poesy --help" : problem_of_command(*called.front(), error);

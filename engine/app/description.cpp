@@ -84,6 +84,17 @@ void take_apart(const std::string& footer, DescribedCommand& command) {
   }
 }
 
+/// The commands' names, wherever a command is asked for.
+void offer_commands(DescribedProgram& described) {
+  std::vector<std::string> names;
+  for (const DescribedCommand& command : described.commands) names.push_back(command.name);
+  for (DescribedCommand& command : described.commands) {
+    for (DescribedOption& option : command.options) {
+      if (option.value == "COMMAND") option.offer = {Offer::Kind::words, names, {}};
+    }
+  }
+}
+
 }  // namespace
 
 DescribedCommand describe_command(const CLI::App& command) {
@@ -101,6 +112,7 @@ DescribedProgram describe(const CLI::App& program) {
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     described.commands.push_back(describe_command(*command));
   }
+  offer_commands(described);
   return described;
 }
 

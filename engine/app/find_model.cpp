@@ -1,6 +1,7 @@
 #include "engine/app/find_model.h"
 
 #include "engine/base/error.h"
+#include "engine/base/letters.h"
 #include "engine/io/wording.h"
 #include "models/registry.h"
 
@@ -10,7 +11,7 @@ const CatalogEntry& find_model(const std::string& name) {
   if (const CatalogEntry* entry = find(registry(), name)) return *entry;
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : registry()) known.push_back(entry.description.name);
-  throw InputError({}, "no model '" + printable(name) + "'", suggestion(name, known));
+  throw InputError({}, "no model '" + printable(name) + "'", suggestion(lower_case(name), known));
 }
 
 }  // namespace poesy::app

@@ -6,7 +6,7 @@
 
 namespace poesy::app {
 
-/// The mechanism of that name. Throws InputError that lists the known ones.
+/// The mechanism of that name, in capitals or small letters. Throws InputError that lists the known ones.
 const CatalogEntry& find_model(const std::string& name);
 
 }  // namespace poesy::app

@@ -23,7 +23,7 @@ void describe_program(CLI::App& program) {
   program.formatter_fn(
       [](const CLI::App* app, const std::string&, CLI::AppFormatMode) { return help_text(*app, help_width()); });
   program.set_help_flag("-h,--help", "print this help");
-  program.set_version_flag("--version", version_text(), "print the version");
+  program.set_version_flag("-v,--version", version_text(), "print the version");
   program.require_subcommand(1);
   program.footer(
       footer("A study file says which mechanism, errors and poses are looked at, and how. poesy draws the errors, "
@@ -45,7 +45,7 @@ void add_commands(CLI::App& program, Action& action) {
   group("Prepare a study", {add_models, add_template, add_check});
   group("Compute", {add_run, add_merge, add_evaluate});
   group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
-  group("About the program", {add_completion, add_man});
+  group("About the program", {add_help, add_version, add_completion, add_man});
 }
 
 int parse_and_run(int argc, char** argv) {
@@ -53,6 +53,10 @@ int parse_and_run(int argc, char** argv) {
   Action action;
   describe_program(program);
   add_commands(program, action);
+  if (argc < 2) {
+    std::fputs(help_text(program, help_width()).c_str(), stdout);
+    return kDone;
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -61,6 +65,7 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return complain(command_line_problem(program, error), kBadInput);
   }
+  if (const auto problem = empty_value(program)) return complain(*problem, kBadInput);
   // Nothing else knows how to share its work; under a launcher the first process does it.
   if (!program.got_subcommand("run") && find_launch().value_or(Launch()).rank != 0) return kDone;
   return action();

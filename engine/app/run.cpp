@@ -8,12 +8,14 @@
 #include "engine/app/description.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/interrupt.h"
+#include "engine/app/message.h"
 #include "engine/app/progress.h"
 #include "engine/app/resumable.h"
 #include "engine/app/run_on_ranks.h"
 #include "engine/app/run_study.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
+#include "engine/io/held_errors.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
 #include "engine/io/wording.h"
@@ -174,6 +176,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   resumable.start(identity, options.quiet);
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
+  if (const std::string held = held_errors_text(study); !held.empty() && !options.quiet) say(Message::note, held);
   ProgressPrinter printer(options.quiet);
   const auto on_progress = [&](const Progress& progress) {
     printer(progress);

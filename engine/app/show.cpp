@@ -15,11 +15,14 @@
 #include "engine/app/output_width.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
+#include "engine/io/held_errors.h"
 #include "engine/io/result_file.h"
+#include "engine/io/study_file.h"
 #include "engine/io/wording.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
+#include "models/registry.h"
 
 namespace poesy::app {
 namespace {
@@ -76,6 +79,19 @@ void show_alone(const std::string& response, StoredResult& result) {
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
+/// What the study held constant; empty where it held nothing, where a table of errors was solved instead of the study,
+/// and where this program cannot read the study.
+std::string held_errors_line(const StoredResult& result, std::size_t width) {
+  if (result.kind == "evaluate" && result.cases.empty()) return {};
+  try {
+    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
+    const std::string held = held_errors_text(study);
+    return held.empty() ? held : prose_of(held, width);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 int show(const ShowOptions& options) {
   const RowOrder order = order_of(options);
   StoredResult result = read_result_warily(options.result);
@@ -86,8 +102,9 @@ int show(const ShowOptions& options) {
   if (options.top) keep_first(*options.top, tables);
   const std::size_t width = options.width.value_or(output_width());
   const std::string text = options.json ? json_of(result, tables)
-                                        : summary_text(result, width) + failures_text(result, options.result, width) +
-                                              "\n" + text_of(tables, width, kRemedy);
+                                        : summary_text(result, width) + held_errors_line(result, width) +
+                                              failures_text(result, options.result, width) + "\n" +
+                                              text_of(tables, width, kRemedy);
   std::fputs(text.c_str(), stdout);
   return kDone;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/io/file_writer.h"
+#include "engine/io/second_name.h"
 
 namespace poesy {
 namespace {
@@ -62,12 +63,7 @@ void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& t
   writer.expect(pieces.size());
   pieces.for_each([&](std::span<const std::byte> piece) { writer.write(piece); });
   writer.sync();
-  if (newer_is_sound_) {
-    std::error_code error;
-    fs::rename(newer_, older_, error);
-    if (error) throw FileError(older_, "cannot be put in place (" + error.message() + ")", "check the folder");
-    newer_is_sound_ = false;
-  }
+  if (newer_is_sound_) put_at_second_name(newer_, older_);
   writer.commit();
   newer_is_sound_ = true;
 }

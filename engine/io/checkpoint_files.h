@@ -16,8 +16,9 @@ struct FoundCheckpoint {
 };
 
 /// The checkpoints of an unfinished run beside its result: RESULT.h5.part, and the one before it as RESULT.h5.part.1.
-/// Each has its own digest and comes into being whole: written as RESULT.h5.part.tmp, synced and renamed, after the
-/// newer one was renamed to be the older one. At any moment at least one of those that were there is there.
+/// Each has its own digest and comes into being whole: written as RESULT.h5.part.tmp and synced; then the newer one
+/// gets the older one's name as well, and the new one is renamed to take its place. Once there is a RESULT.h5.part, it
+/// is there at any moment.
 class CheckpointFiles {
  public:
   /// Beside this result.

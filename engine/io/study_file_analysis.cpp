@@ -33,14 +33,21 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   value.fail("is '" + printable(written) + "', which is no factor set of the model", suggestion(written, known));
 }
 
-std::optional<Background> read_background(const StudySection& analysis, const ModelDescription& model) {
+/// The size at which errors of a dimension are held: as large as errors of the study are, unless it says otherwise.
+double read_held_size(const StudySection& background, const StudySection& root, Dimension dimension) {
+  if (const auto value = background.find(error_kind(dimension))) return value->quantity(dimension);
+  return read_usual_distribution(root, dimension).standard_deviation();
+}
+
+std::optional<Background> read_background(const StudySection& root, const StudySection& analysis,
+                                          const ModelDescription& model) {
   if (!analysis.find("background")) return std::nullopt;
   const StudySection section = analysis.section("background");
   section.allow();
   Background background;
   background.factors = read_factors(section.require("factors", "write a factor set or a list of factors"), model);
-  if (const auto value = section.find("linear")) background.linear = value->quantity(Dimension::length);
-  if (const auto value = section.find("angular")) background.angular = value->quantity(Dimension::angle);
+  background.linear = read_held_size(section, root, Dimension::length);
+  background.angular = read_held_size(section, root, Dimension::angle);
   return background;
 }
 
@@ -117,7 +124,7 @@ Analysis read_analysis(const StudySection& root, const ModelDescription& model, 
   analysis.factors = factors ? read_factors(*factors, model) : usual_factors(analysis.kind, model);
   if (analysis.kind == Kind::evaluate) analysis.factors.clear();
   read_samples(section, analysis);
-  analysis.background = read_background(section, model);
+  analysis.background = read_background(root, section, model);
   if (const auto value = section.find("reference")) analysis.reference = read_reference(*value, analysis, model);
   if (const auto value = section.find("linearity")) analysis.linearity = read_share(*value, "0.01");
   if (const auto value = section.find("quantiles")) analysis.quantiles = read_quantiles(*value);

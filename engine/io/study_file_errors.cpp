@@ -59,18 +59,19 @@ Distribution read_distribution(const StudyValue& value, Dimension dimension) {
   }
 }
 
-Distribution read_default(const StudySection& section, std::string_view key, Dimension dimension) {
-  if (const auto value = section.find(key)) return read_distribution(*value, dimension);
+}  // namespace
+
+Distribution read_usual_distribution(const StudySection& root, Dimension dimension) {
+  if (const auto value = root.section("errors").find(error_kind(dimension)))
+    return read_distribution(*value, dimension);
   return Distribution::normal(display_unit(dimension).si);
 }
-
-}  // namespace
 
 ErrorModel read_error_model(const StudySection& root, const ModelDescription& model) {
   const StudySection section = root.section("errors");
   section.allow();
-  const Distribution linear = read_default(section, "linear", Dimension::length);
-  const Distribution angular = read_default(section, "angular", Dimension::angle);
+  const Distribution linear = read_usual_distribution(root, Dimension::length);
+  const Distribution angular = read_usual_distribution(root, Dimension::angle);
   const StudySection overrides = section.section("override");
   overrides.allow(names(model.factors), "factor");
   ErrorModel errors;

@@ -1,6 +1,7 @@
 #include <array>
 #include <filesystem>
 
+#include "engine/base/letters.h"
 #include "engine/io/study_file_parts.h"
 #include "engine/io/study_text.h"
 #include "engine/io/table_file.h"
@@ -8,6 +9,14 @@
 
 namespace poesy {
 namespace {
+
+const CatalogEntry& read_model(const StudyValue& value, const Catalog& catalog) {
+  const std::string written = value.text();
+  if (const CatalogEntry* entry = find(catalog, written)) return *entry;
+  std::vector<std::string_view> known;
+  for (const CatalogEntry& entry : catalog) known.push_back(entry.description.name);
+  value.fail("is '" + printable(written) + "', which is unknown", suggestion(lower_case(written), known));
+}
 
 std::vector<double> read_geometry(const StudySection& section, const ModelDescription& model) {
   section.allow(names(model.geometry), "parameter");
@@ -144,11 +153,9 @@ double read_max_condition(const StudyValue& value) {
 MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog) {
   const StudySection section = root.require("mechanism", "add the section [mechanism] with the key model").section();
   section.allow();
-  const StudyValue model = section.require("model", "write model = \"NAME\"; 'poesy models' lists the names");
-  std::vector<std::string_view> known;
-  for (const CatalogEntry& entry : catalog) known.push_back(entry.description.name);
   MechanismChoice choice;
-  choice.entry = &catalog[model.word(known)];
+  choice.entry =
+      &read_model(section.require("model", "write model = \"NAME\"; 'poesy models' lists the names"), catalog);
   const auto geometry = section.find("geometry");
   choice.place = geometry ? geometry->place() : section.place();
   choice.geometry = read_geometry(section.section("geometry"), choice.entry->description);

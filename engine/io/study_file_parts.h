@@ -27,6 +27,8 @@ double read_max_condition(const StudyValue& value);
 /// trajectory may be absent and its file is not opened.
 void read_trajectory_section(const StudySection& poses, const ModelDescription& model, StudyUse use,
                              PoseSelection& selection);
+/// What errors of this dimension have that have no distribution of their own.
+Distribution read_usual_distribution(const StudySection& root, Dimension dimension);
 /// [errors].
 ErrorModel read_error_model(const StudySection& root, const ModelDescription& model);
 /// The cases of kind = "evaluate"; what a case does not set has the background's value.

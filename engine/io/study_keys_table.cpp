@@ -431,12 +431,11 @@ StudyTable background() {
                .meaning = "The errors that are held: a factor set, all, or a list of factors."},
               {.name = "linear",
                .type = "length",
-               .usual = "`\"0 mm\"`",
-               .meaning = "The value of those that are "
-                          "lengths."},
+               .usual = "the standard deviation of linear in [errors]",
+               .meaning = "The value of those that are lengths."},
               {.name = "angular",
                .type = "angle",
-               .usual = "`\"0 deg\"`",
+               .usual = "the standard deviation of angular in [errors]",
                .meaning = "The value of those that are angles."},
           }};
 }

@@ -19,9 +19,8 @@ std::string title(Analysis::Kind kind) {
 }
 
 std::string head(const ModelDescription& model, Analysis::Kind kind) {
-  return comment(model.name + ": " + model.title) +
-         "# Run this study with: poesy run STUDY.toml\n"
-         "# Quantities are texts with a unit: m, mm, um, rad, mrad, deg, arcsec, s, ms, min, h.\n"
+  return comment(model.name + ": " + model.title) + "# Run this study with: poesy run STUDY.toml\n" +
+         comment("Quantities are texts with a unit: " + unit_names() + ".") +
          "# A key behind a '#' shows a default or an alternative. All keys: poesy template --reference\n" +
          explained("", "format", "format = \"poesy-study\"") + explained("", "version", "version = 1") +
          explained("", "title", "title = " + in_quotes(title(kind) + " of " + model.name));
@@ -174,8 +173,7 @@ std::string reference_key(const ModelDescription& model) {
 std::string sensitivity_keys(const ModelDescription& model) {
   const bool has_benign = model.find_set("benign") != nullptr;
   std::string text = factors_key(model, model.find_set("deforming") != nullptr ? "deforming" : "all") + samples_keys();
-  text += background_key(fmt::format("{}background = {{ factors = \"{}\", linear = \"1 mm\", angular = \"1 deg\" }}",
-                                     has_benign ? "" : "# ", has_benign ? "benign" : "all"));
+  text += background_key(has_benign ? "background = { factors = \"benign\" }" : "# background = { factors = \"all\" }");
   if (model.fidelities.size() == 2) text += explained("analysis", "linearity", "# linearity = 0.01");
   return text + reference_key(model);
 }
@@ -197,7 +195,7 @@ std::string monte_carlo_keys(const ModelDescription& model) {
   return factors_key(model, "all") + samples_keys() +
          explained("analysis", "quantiles", "quantiles = [0.05, 0.5, 0.95]") + response_limits_key(model) +
          explained("analysis", "judge", "# judge = \"rms\"") + explained("analysis", "share", "# share = 0.9973") +
-         background_key("# background = { factors = \"all\", linear = \"1 mm\", angular = \"1 deg\" }");
+         background_key("# background = { factors = \"all\" }");
 }
 
 std::string identification_keys(const ModelDescription& model) {
@@ -211,9 +209,9 @@ std::string identification_keys(const ModelDescription& model) {
 
 std::string evaluate_keys(const ModelDescription& model) {
   std::string text =
-      background_key("# background = { factors = \"all\", linear = \"0.1 mm\", angular = \"0.1 deg\" }") +
-      response_limits_key(model) + "\n" + explanation_lines("analysis", "cases") + keys_lines("analysis.cases") +
-      keys_lines("analysis.cases.errors", 2) + comment("    " + std::string(table_meaning("analysis.cases.errors"))) +
+      background_key("# background = { factors = \"all\" }") + response_limits_key(model) + "\n" +
+      explanation_lines("analysis", "cases") + keys_lines("analysis.cases") + keys_lines("analysis.cases.errors", 2) +
+      comment("    " + std::string(table_meaning("analysis.cases.errors"))) +
       keys_lines("analysis.cases.errors.SET", 3) +
       "[[analysis.cases]]\nname = \"group 1\"\nerrors = { linear = \"0.1 mm\", angular = \"0.1 deg\" }\n";
   if (model.factors.empty()) return text;

@@ -1,7 +1,9 @@
 #include "engine/io/wording.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
 #include <numeric>
 #include <sstream>
 
@@ -10,19 +12,37 @@ namespace {
 
 constexpr std::size_t kMostWords = 12;
 
+/// What the first byte of a character of several bytes says.
+struct Lead {
+  std::size_t length;   ///< bytes of the character; 0: it is none
+  std::uint32_t begin;  ///< the bits of the code point in the first byte
+};
+
+Lead lead_of(unsigned char byte) {
+  if ((byte & 0xE0U) == 0xC0) return {2, byte & 0x1FU};
+  if ((byte & 0xF0U) == 0xE0) return {3, byte & 0x0FU};
+  if ((byte & 0xF8U) == 0xF0) return {4, byte & 0x07U};
+  return {0, 0};
+}
+
+/// Whether UTF-8 writes this code point in so many bytes: it has a shortest form, and none for surrogates (RFC 3629).
+bool is_written_in(std::size_t length, std::uint32_t code) {
+  constexpr std::array<std::uint32_t, 6> kFirst{0, 0, 0x80, 0x800, 0x10000, 0x110000};
+  const bool surrogate = code >= 0xD800 && code < 0xE000;
+  return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate;
+}
+
 /// Length of the UTF-8 character at the start of this text, 0 when it is not one.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  std::size_t length = 0;
   if (byte(0) < 0x80) return 1;
-  if (byte(0) >= 0xC2 && byte(0) < 0xE0) length = 2;
-  if (byte(0) >= 0xE0 && byte(0) < 0xF0) length = 3;
-  if (byte(0) >= 0xF0 && byte(0) < 0xF5) length = 4;
-  if (length > text.size()) return 0;
+  auto [length, code] = lead_of(byte(0));
+  if (length == 0 || length > text.size()) return 0;
   for (std::size_t k = 1; k < length; ++k) {
-    if ((byte(k) & 0xC0) != 0x80) return 0;
+    if ((byte(k) & 0xC0U) != 0x80) return 0;
+    code = code << 6U | (byte(k) & 0x3FU);
   }
-  return length;
+  return is_written_in(length, code) ? length : 0;
 }
 
 bool is_control(std::string_view character) {

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <random>
 #include <set>
+#include <tuple>
 
 #include "engine/io/study_file.h"
 
@@ -244,6 +246,34 @@ TEST_P(EveryMechanism, BoundsErrorsAboveZero) {
   for (std::size_t f = 0; f < description().factors.size(); ++f) {
     EXPECT_GT(model_->error_bound(FactorIndex(f)).size, 0.0) << description().factors[f].name;
   }
+}
+
+TEST_P(EveryMechanism, FindsNothingUnusualInThePublishedGeometry) { EXPECT_TRUE(model_->unusual_geometry().empty()); }
+
+/// Parameters of the platform and of the base, 800 mm against 200 mm.
+TEST(UnusualGeometry, IsAPlatformLargerThanItsBase) {
+  for (const auto& [model, platform, base] :
+       {std::tuple("2upr-rpu", "l_A", "l_B"), {"3-prs", "c", "a"}, {"xy-3-prs", "c", "a"}}) {
+    const CatalogEntry& entry = *find(registry(), model);
+    std::vector<double> geometry;
+    for (const GeometryParameter& parameter : entry.description.geometry) {
+      const bool is_length_of_rod = parameter.name == "l";
+      geometry.push_back(parameter.name == platform ? 0.8
+                         : parameter.name == base   ? 0.2
+                         : is_length_of_rod         ? 1.0
+                                                    : parameter.published);
+    }
+    const std::vector<std::string> found = entry.build(geometry, 0)->unusual_geometry();
+    ASSERT_EQ(found.size(), 1u) << model;
+    EXPECT_NE(found.front().find(std::string(platform) + " = 800 mm"), std::string::npos) << found.front();
+    EXPECT_NE(found.front().find(std::string(base) + " = 200 mm"), std::string::npos) << found.front();
+  }
+}
+
+TEST_P(EveryMechanism, IsFoundInCapitals) {
+  std::string capitals = description().name;
+  std::ranges::transform(capitals, capitals.begin(), [](unsigned char c) { return std::toupper(c); });
+  EXPECT_EQ(find(registry(), capitals), GetParam().entry);
 }
 
 TEST_P(EveryMechanism, HasTemplatesThatReadBack) {

@@ -1,6 +1,6 @@
 """What the program says of command lines that it does not understand."""
 
-from poesy_program import ProgramTest, main
+from poesy_program import STUDY, ProgramTest, main
 
 
 class CommandLine(ProgramTest):
@@ -11,10 +11,42 @@ class CommandLine(ProgramTest):
             self.assertEqual(done.stderr.decode(), f"poesy: {message}\n")
 
     def test_commands(self):
-        self.refuses("", "no command given; see poesy --help")
         self.refuses("rn study.toml", "no command 'rn'; did you mean 'run'? see poesy --help")
         self.refuses("toler r.h5", "no command 'toler'; did you mean 'tolerances'? see poesy --help")
         self.refuses("frobnicate --help", "no command 'frobnicate'; see poesy --help")
+
+    def test_help_and_version_by_name(self):
+        self.assertEqual(self.succeeds(), self.succeeds("--help"))
+        self.assertEqual(self.succeeds("help"), self.succeeds("--help"))
+        for command in ("run", "replay", "help", "version"):
+            self.assertEqual(self.succeeds("help", command), self.succeeds(command, "--help"))
+        self.assertEqual(self.succeeds("version"), self.succeeds("--version"))
+        self.assertEqual(self.succeeds("-v"), self.succeeds("--version"))
+        self.refuses("help rn", "no command 'rn'; did you mean 'run'? see poesy --help")
+
+    def test_models_in_capitals(self):
+        for command in (("models",), ("template",)):
+            self.assertEqual(self.succeeds(*command, "2UPR-RPU"), self.succeeds(*command, "2upr-rpu"))
+        self.refuses("models 2UPR-RPX", "no model '2UPR-RPX'; did you mean '2upr-rpu'?")
+        self.write("study.toml", STUDY)
+        self.write("capitals.toml", STUDY.replace("2upr-rpu", "2Upr-RPU"))
+        resolved = [self.succeeds("check", name).split("# valid")[0] for name in ("study.toml", "capitals.toml")]
+        self.assertEqual(resolved[0], resolved[1])
+
+    def test_empty_values(self):
+        """As of a script whose variable is not set."""
+        self.write("study.toml", STUDY)
+        for line, shown, told in ((("run", "study.toml", "--max-wall", ""), "--max-wall", "--max-wall TIME"),
+                                  (("run", "study.toml", "-o", ""), "--output", "-o, --output RESULT.h5"),
+                                  (("show", "r.h5", "--response", ""), "--response", "--response NAME"),
+                                  (("run", ""), "STUDY.toml", "STUDY.toml"), (("export", "r.h5", "-d", ""), None, " DIR")):
+            with self.subTest(line=line):
+                done = self.poesy(*line)
+                self.assertEqual((done.returncode, done.stdout), (2, b""))
+                message = done.stderr.decode()
+                self.assertIn(f"poesy: {shown} is empty; write {told}, see poesy {line[0]} --help" if shown else told, message)
+                self.assertIn("is empty", message)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["study.toml"])
 
     def test_too_many_results(self):
         self.refuses("report a b c", "poesy report takes at most 2 results, not 3; write poesy report RESULT.h5 ... [options], "

@@ -50,6 +50,8 @@ program_test(show unit)
 program_test(small_errors unit)
 program_test(command_line unit)
 program_test(reference unit)
+program_test(study_notes unit)
+program_test(memory unit)
 program_test(tutorial unit)
 
 add_test(NAME regression.golden

@@ -159,6 +159,40 @@ TEST(ReadStudyToEvaluate, TakesKindsAndPosesThatCannotBeRunYet) {
            StudyUse::evaluate);
 }
 
+/// What is said of a standard deviation of linear errors; empty when it is taken.
+std::string refusal_of_sigma(const std::string& sigma) {
+  const std::string errors = "[errors]\nlinear = { distribution = \"normal\", sigma = \"" + sigma + "\" }\n";
+  try {
+    study_of_text("format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\ncount = 3\n" + errors,
+                  "study.toml", kCatalog, StudyUse::run);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+/// Of units that a letter more or less makes another one, none is proposed: 8 dm would become 8 m.
+TEST(ReadStudy, GuessesNoUnitOfAnotherSize) {
+  for (const std::string unit : {"dm", "km", "nm", "pm", "em", "mn", "mmm", "inch", "grad", "x"}) {
+    const std::string said = refusal_of_sigma("8 " + unit);
+    EXPECT_NE(said.find("unknown unit '" + unit + "'"), std::string::npos) << said;
+    EXPECT_EQ(said.find("did you mean"), std::string::npos) << said;
+    EXPECT_EQ(said.find("arcsec"), std::string::npos) << said << ": lists units of another dimension";
+  }
+  EXPECT_NE(refusal_of_sigma("8 MM").find("did you mean 'mm'?"), std::string::npos);
+  EXPECT_EQ(refusal_of_sigma("1 cm"), "");
+  EXPECT_EQ(refusal_of_sigma("1 \xC2\xB5m"), "");
+  EXPECT_NE(refusal_of_sigma("1 \xC2\xB0").find("must be a length"), std::string::npos);
+  EXPECT_NE(refusal_of_sigma("0,08 mm").find("decimal comma; write a decimal point"), std::string::npos);
+  EXPECT_NE(refusal_of_sigma("1e-999 mm").find("too small"), std::string::npos);
+}
+
+TEST(ReadStudy, TakesNamesOfMechanismsInCapitals) {
+  const std::string study =
+      "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"Fake\"\n[poses]\ncount = 3\n";
+  EXPECT_EQ(study_of_text(study, "study.toml", kCatalog, StudyUse::run).model().name, "fake");
+}
+
 TEST(ReadStudy, TellsAFolderFromAMissingFile) {
   const test::TempFolder folder;
   test::expect_input_error([&] { read_study(folder.file("."), kCatalog, StudyUse::run); }, {folder.file("."), 0, 0},
@@ -367,8 +401,14 @@ INSTANTIATE_TEST_SUITE_P(
                  "sigma = \"1 mm\" }\nangular",
                  "sigma = ^1 }\nangular",
                  {"errors.linear.sigma is the bare number 1", "\"1 mm\""}},
-        BadStudy{"UnknownUnit", "\"1 mm\" }\nangular", "^\"1 mn\" }\nangular", {"unknown unit 'mn'", "did you mean"}},
-        BadStudy{"ForeignUnit", "\"1 mm\" }\nangular", "^\"1 inch\" }\nangular", {"unknown unit 'inch'", "arcsec"}},
+        BadStudy{"UnknownUnit",
+                 "\"1 mm\" }\nangular",
+                 "^\"1 mn\" }\nangular",
+                 {"unknown unit 'mn'", "(known: m, cm, mm, um); write"}},
+        BadStudy{"ForeignUnit",
+                 "\"1 mm\" }\nangular",
+                 "^\"1 inch\" }\nangular",
+                 {"unknown unit 'inch'", "(known: m, cm, mm, um); write"}},
         BadStudy{"NoUnit", "\"1 mm\" }\nangular", "^\"1\" }\nangular", {"'1' has no unit"}},
         BadStudy{
             "NoNumber", "\"1 mm\" }\nangular", "^\"one mm\" }\nangular", {"'one mm'", "write a number and a unit"}},

@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
         "title = \"quotes \\\" backslash \\\\ line \\n control \\u0001\\u007f and \xC2\xB5\"\n" +
             shortest_study("[poses]\ncount = 3\n")),
     test::named({"Whole", "Shortest", "Limits", "Boundary", "Grid", "GridCounts", "File", "Override", "Background",
-                 "Title"}));
+                 "LimitsByShare", "LimitsOfCases", "Title"}));
 
 TEST(ResolvedTextOf, TheShortestStudyShowsEveryDefault) {
   EXPECT_EQ(resolved_text(study_of(shortest_study("[poses]\ncount = 3\n"))), R"(format = "poesy-study"

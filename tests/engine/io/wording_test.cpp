@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 namespace poesy {
 namespace {
 
@@ -42,6 +46,38 @@ TEST(Printable, KeepsTextAndReplacesTheRest) {
             "?"
             "?-?");                        // not UTF-8
   EXPECT_EQ(printable("\xE2\x82"), "??");  // cut off
+}
+
+/// A code point in UTF-8, in this many bytes, whether that is its form or not.
+std::string written_in(std::size_t length, std::uint32_t code) {
+  constexpr unsigned char kLead[] = {0, 0, 0xC0, 0xE0, 0xF0};
+  std::string bytes(length, '\0');
+  for (std::size_t k = length; k-- > 1; code >>= 6U) bytes[k] = static_cast<char>(0x80U | (code & 0x3FU));
+  bytes[0] = static_cast<char>(kLead[length] | code);
+  return bytes;
+}
+
+/// Every code point in every number of bytes that its bits fit into: one of them is its form, unless it has none.
+TEST(Printable, TakesEachCodePointInItsShortestFormAlone) {
+  constexpr std::uint32_t kBeyond[] = {0, 0, 1U << 11U, 1U << 16U, 1U << 21U};
+  for (std::size_t length = 2; length <= 4; ++length) {
+    for (std::uint32_t code = 0; code < kBeyond[length]; ++code) {
+      const std::size_t form = code < 0x80 ? 1 : code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
+      const bool has_form = code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
+      const bool control = code >= 0x80 && code < 0xA0;
+      const std::string bytes = written_in(length, code);
+      const std::string expected = form != length || !has_form ? std::string(length, '?') : control ? "?" : bytes;
+      ASSERT_EQ(printable(bytes), expected) << length << " bytes, code point " << code;
+    }
+  }
+}
+
+TEST(Printable, RefusesBytesThatBeginNoCharacter) {
+  for (unsigned byte = 0x80; byte <= 0xFF; ++byte) {
+    EXPECT_EQ(printable(std::string(1, static_cast<char>(byte)) + "a"), "?a") << byte;
+  }
+  EXPECT_EQ(printable("\xF8\x88\x80\x80\x80"), "?????");  // five bytes
+  EXPECT_EQ(printable("\xF0\x9F\x98"), "???");            // cut off
 }
 
 TEST(Printable, CutsLongTextBetweenCharacters) {

@@ -1,0 +1,82 @@
+"""What the program says of a study besides its results: what it holds constant, what looks like a slip, and what may
+help where samples did not converge."""
+
+from poesy_program import STUDY, ProgramTest, main
+
+HELD = "held constant: 30 errors of set 'benign' at 1 mm and 1 deg"
+CASES = """\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "2upr-rpu"
+[poses]
+count = 2
+[analysis]
+kind = "evaluate"
+background = { factors = "benign", linear = "20 um", angular = "1 arcmin" }
+cases = [{ errors = { delta_1_1_y = "1 mm" } }]
+"""
+
+
+class StudyNotes(ProgramTest):
+    def test_what_is_held_is_said_everywhere(self):
+        self.write("study.toml", STUDY.replace("samples = 1500", "samples = 20"))
+        self.assertIn(f"\n# {HELD}\n", self.succeeds("check", "study.toml"))
+        self.assertIn(f"poesy: {HELD}\n", self.poesy("run", "study.toml", "-o", "r.h5").stderr.decode())
+        self.assertEqual(self.poesy("run", "study.toml", "-o", "r.h5", "--quiet").stderr, b"")
+        self.assertIn(f"\n{HELD}\n", self.succeeds("show", "r.h5"))
+
+    def test_nothing_is_said_where_nothing_is_held(self):
+        self.write("study.toml", STUDY.replace("samples = 1500", "samples = 20").replace("background =", "# background ="))
+        done = self.poesy("run", "study.toml", "-o", "r.h5")
+        for text in (done.stderr.decode(), self.succeeds("check", "study.toml"), self.succeeds("show", "r.h5")):
+            self.assertNotIn("held constant", text)
+
+    def test_cases_and_tables_of_errors(self):
+        self.write("study.toml", CASES)
+        self.succeeds("run", "study.toml", "-o", "r.h5")
+        self.assertIn("held constant, unless a case sets another value: 30 errors of set 'benign' at 0.02 mm and "
+                      "0.0166667 deg", self.succeeds("show", "r.h5"))
+        self.write("poses.csv", "z,beta,gamma\n-0.25,0.1,0.2\n")
+        self.write("errors.csv", "delta_1_1_y\n0.001\n")
+        self.succeeds("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "e.h5")
+        self.assertNotIn("held constant", self.succeeds("show", "e.h5"), "the table sets all errors")
+
+    def test_the_template_holds_errors_of_the_study_size(self):
+        template = self.succeeds("template", "2upr-rpu")
+        for sigma, size in (("1 mm", "1 mm"), ("20 um", "0.02 mm")):
+            self.write("study.toml", template.replace('sigma = "1 mm"', f'sigma = "{sigma}"'))
+            self.assertIn(f"30 errors of set 'benign' at {size} and 1 deg", self.succeeds("check", "study.toml"))
+
+    def test_a_platform_larger_than_its_base(self):
+        wide = STUDY.replace('"2upr-rpu"', '"2upr-rpu"\ngeometry = { l_A = "800 mm", l_B = "200 mm" }')
+        self.write("study.toml", wide.replace("count = 6", 'count = 1\nmax_condition = 1e30'))
+        hint = "# hint: the platform (l_A = 800 mm) is larger than the base (l_B = 200 mm); is that meant?\n"
+        self.assertIn(hint, self.succeeds("check", "study.toml"))
+        self.write("study.toml", STUDY)
+        self.assertNotIn("# hint", self.succeeds("check", "study.toml"))
+
+    def warning(self, study):
+        """What is said on stderr of samples that did not converge."""
+        self.write("study.toml", study)
+        done = self.poesy("run", "study.toml", "-o", "r.h5", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stderr.decode()
+
+    def test_advice_is_of_what_the_study_does_not_use(self):
+        few = STUDY.replace("samples = 1500", "samples = 20").replace('"gauss-newton"', '"gauss-newton"\nmax_iterations = 8')
+        self.assertIn('take method = "newton"', self.warning(few))
+        large = STUDY.replace('"sensitivity"', '"monte-carlo"').replace("0.2 deg", "1 deg").replace("background =", "# background =")
+        large = large.replace("samples = 1500", "samples = 300").replace('factors = ["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]',
+                                                                        'factors = "all"')
+        of_newton = self.warning(large.replace('"gauss-newton"', '"newton"'))
+        self.assertIn("did not converge and are left out", of_newton)
+        self.assertNotIn("method", of_newton)
+        self.assertIn("study smaller errors, or raise solver.max_iterations above 50", of_newton)
+
+    def test_what_the_study_allows_is_no_warning(self):
+        allowed = '"gauss-newton"\nmax_iterations = 8\nmax_not_converged = 0.9'
+        self.assertEqual(self.warning(STUDY.replace("samples = 1500", "samples = 20").replace('"gauss-newton"', allowed)), "")
+
+
+main()
