@@ -58,7 +58,7 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
             "linear_deformation: the largest q_0.95 is at pose 0, but its samples do not tell it from pose 1\n");
 }
 
-TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstWithTheirCoordinates) {
+TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
   StoredResult result = example();
   constexpr std::size_t kPoses = 10;
   MonteCarloResult& found = result.monte_carlo;

@@ -46,7 +46,7 @@ double folded_normal(boost::random::mt19937_64& engine) {
 }
 
 // Quantiles of |N(0, 1)|: those of N(0, 1) for (1 + q) / 2.
-TEST(QuantileInterval, CoversTheMedianOfAFoldedNormalAndNoMore) {
+TEST(QuantileInterval, CoversTheMedianOfAFoldedNormalOnly) {
   EXPECT_LE(std::abs(z_of_coverage(folded_normal, 0.5, 0.6744897501961, 1000, 21)), 3.291);
 }
 
@@ -78,7 +78,7 @@ TEST(QuantileInterval, CoversAQuantileBelowZero) {
 }
 
 /// Draws from several distributions in fixed numbers, as at several poses: the interval is wider than need be.
-TEST(QuantileInterval, CoversTheQuantileOfAMixtureInFixedShares) {
+TEST(QuantileInterval, CoversThatOfAMixtureInFixedShares) {
   int drawn = 0;
   const Draw draw = [&drawn](boost::random::mt19937_64& engine) {
     return (drawn++ % 2 == 0 ? 0.0 : 10.0) + boost::random::normal_distribution<double>()(engine);
