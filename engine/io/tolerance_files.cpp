@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/io/export_tables.h"
 #include "engine/io/file_writer.h"
+#include "engine/io/held_errors.h"
 #include "engine/io/study_file.h"
 
 namespace poesy {
@@ -63,6 +64,7 @@ void set_tolerances(Study& study, const Model& model, std::span<const double> to
 std::string write_study(const std::string& folder, const std::string& name, const Study& study) {
   const std::string path = (std::filesystem::path(folder) / (name + ".toml")).string();
   FileWriter writer(path);
+  if (const std::string held = held_errors_text(study); !held.empty()) writer.write("# " + held + "\n");
   writer.write(resolved_text(study));
   writer.commit();
   return path;

@@ -52,6 +52,7 @@ program_test(command_line unit)
 program_test(reference unit)
 program_test(study_notes unit)
 program_test(memory unit)
+program_test(readme unit)
 program_test(tutorial unit)
 
 add_test(NAME regression.golden

@@ -111,6 +111,8 @@ class Tolerances(ProgramTest):
         study = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '"deforming"').replace('method = "gauss-newton"', "")
         study = study.replace('"1 mm" }\nang', '"0.01 mm" }\nang').replace("0.2 deg", "0.01 deg").replace("samples = 1500", "samples = 500")
         self.succeeds("tolerances", self.result(study), "--response", RESPONSE, "--limit", "0.05 mm", "-d", "out")
+        self.assertEqual((self.folder / "out/confirm_equal_effect.toml").read_text().splitlines()[0],
+                         "# held constant: 30 errors of set 'benign' at 1 mm and 1 deg")
         done = self.poesy("run", "out/confirm_equal_effect.toml", "--quiet")
         self.assertEqual(done.returncode, 6, done.stderr)
         with h5py.File(self.folder / "confirm_equal_effect.h5") as file:

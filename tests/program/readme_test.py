@@ -1,0 +1,54 @@
+"""README.md: its study runs and is judged, its ranking is the published study's, and it is short."""
+
+import re
+from pathlib import Path
+
+from poesy_program import ProgramTest, main
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+MOST_WORDS = 1500
+
+
+def block(language, containing):
+    """The one fenced block in this language with this text."""
+    found = [code for code in re.findall(rf"^```{language}\n(.*?)^```$", README, re.DOTALL | re.MULTILINE) if containing in code]
+    assert len(found) == 1, f"{len(found)} blocks with {containing!r}"
+    return found[0]
+
+
+class Readme(ProgramTest):
+    def test_it_is_short(self):
+        self.assertLess(len(README.split()), MOST_WORDS)
+
+    def test_its_study_runs_and_is_judged(self):
+        study = self.write("machine.toml", block("toml", "poesy-study"))
+        self.assertLessEqual(len(study.read_text().splitlines()), 10)
+        done = self.poesy("run", study, "-o", "machine.h5")
+        shown = self.succeeds("show", "machine.h5")
+        verdict = "PASS" if done.returncode == 0 else "FAIL"
+        self.assertIn(done.returncode, (0, 6), done.stderr.decode())
+        self.assertRegex(shown, rf"{verdict}\b.*linear_deformation")
+
+    def test_its_study_ranks_as_the_readme_says(self):
+        analysis = re.search(r"`(analysis = \{ kind = \"sensitivity\".*?\})`", README.replace("\n", " "))[1]
+        study = re.sub(r"^analysis = .*$", analysis, block("toml", "poesy-study"), flags=re.MULTILINE)
+        self.write("ranking.toml", study)
+        self.succeeds("run", "ranking.toml")
+        for command in block("", "poesy tolerances ranking.h5").splitlines():
+            arguments = re.findall(r'"[^"]*"|\S+', command.split("#")[0])
+            self.assertEqual(arguments[0], "poesy")
+            if arguments[1] != "run":
+                self.succeeds(*(argument.strip('"') for argument in arguments[1:]))
+
+    def test_its_ranking_is_of_the_published_study(self):
+        published = (ROOT / "results/2upr-rpu-sensitivity/ranking.txt").read_text(encoding="utf-8").splitlines()
+        numbers = {tuple(line.split()[:4]) for line in published}
+        rows = [line.split() for line in block("", "epsilon_1_4_z").splitlines() if re.match(r"\s*\d+ ", line)]
+        self.assertGreaterEqual(len(rows), 5)
+        for row in rows:
+            self.assertIn(tuple(row[:4]), numbers)
+
+
+if __name__ == "__main__":
+    main()
