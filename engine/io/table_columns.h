@@ -29,7 +29,7 @@ struct KnownColumns {
 struct TableColumn {
   /// What its cells are.
   enum class Role { number, fact, label };
-  Role role;
+  Role role;                                ///< of its cells
   std::string_view name;                    ///< KnownColumn::stands, or one of KnownColumns::labels; refers to these
   std::string_view title;                   ///< as the header has it, with its unit; refers to the lines
   Dimension dimension = Dimension::number;  ///< of its numbers

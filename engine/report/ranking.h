@@ -35,9 +35,9 @@ RankedErrors ranked_errors(const StoredResult& result, std::string_view response
 
 /// Global indices with their intervals, [R x P], by one estimator (run/result.h). Refers to the result.
 struct GlobalIndices {
-  const std::vector<double>& value;
-  const std::vector<double>& low;
-  const std::vector<double>& high;
+  const std::vector<double>& value;  ///< SI
+  const std::vector<double>& low;    ///< lower end of the interval
+  const std::vector<double>& high;   ///< upper end
 };
 
 /// Whether the result has corrected indices; those of older versions have none.

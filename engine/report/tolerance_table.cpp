@@ -110,11 +110,11 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   add_bound_note(list, result, tolerances);
   add_distribution_note(list, result);
   add_extrapolation_note(list, result, tolerances);
-  list.push_back(
-      fmt::format("index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
-                  "tolerances are counted from it as published; share: of what the errors add to the mean square of the "
-                  "response over samples and poses, the quantity that a limit limits, at the size the study sets",
-                  100.0 * result.sensitivity.conf_level));
+  list.push_back(fmt::format(
+      "index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
+      "tolerances are counted from it as published; share: of what the errors add to the mean square of the "
+      "response over samples and poses, the quantity that a limit limits, at the size the study sets",
+      100.0 * result.sensitivity.conf_level));
   return list;
 }
 

@@ -1,11 +1,15 @@
-"""Checks that every exported table of a folder is plain CSV: one header, equal rows, numbers but for the first column.
+"""Checks that every exported table of a folder is plain CSV: one header, equal rows, numbers but for the first column and for units.
 
 usage: check_tables.py FOLDER
 """
 
 import csv
+import math
 import pathlib
 import sys
+
+UNITS = {"m", "rad", "1"}
+NO_NUMBERS = {"NaN", "inf", "-inf"}
 
 
 def main(folder):
@@ -19,8 +23,8 @@ def main(folder):
         assert rows, path
         for row in rows:
             assert len(row) == len(header), path
-            for cell in row[1:]:
-                float(cell)
+            for name, cell in zip(header[1:], row[1:]):
+                assert cell in UNITS if name == "unit" else math.isfinite(float(cell)) or cell in NO_NUMBERS, (path, name, cell)
 
 
 if __name__ == "__main__":

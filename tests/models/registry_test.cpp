@@ -248,7 +248,7 @@ TEST_P(EveryMechanism, BoundsErrorsAboveZero) {
   }
 }
 
-TEST_P(EveryMechanism, FindsNothingUnusualInThePublishedGeometry) { EXPECT_TRUE(model_->unusual_geometry().empty()); }
+TEST_P(EveryMechanism, FindsNothingUnusual) { EXPECT_TRUE(model_->unusual_geometry().empty()); }
 
 /// Parameters of the platform and of the base, 800 mm against 200 mm.
 TEST(UnusualGeometry, IsAPlatformLargerThanItsBase) {
@@ -307,7 +307,7 @@ std::vector<double> mean_squares_over_signs(Evaluator& evaluator, const ModelDes
 
 // Errors whose effect is of second order would make a sum of nothing, so each response must move by a tenth of the
 // errors at least.
-TEST_P(EveryMechanism, HasMeanSquaresThatAddAsItSays) {
+TEST_P(EveryMechanism, HasMeanSquaresThatAdd) {
   constexpr double kNoticeable = 1e-14;
   constexpr std::size_t kTogether = 6;
   const ModelDescription& model = description();
@@ -329,10 +329,18 @@ TEST_P(EveryMechanism, HasMeanSquaresThatAddAsItSays) {
       if (sum[r] > kNoticeable) largest[r] = std::max(largest[r], together[r] / sum[r]);
     }
   }
+  bool some_may_exceed = false;
+  double most = 0.0;  // of those that may
   for (std::size_t r = 0; r < largest.size(); ++r) {
     const Response& response = model.responses[r];
     EXPECT_LT(largest[r], response.mean_square_bound * (1.0 + 1e-3)) << response.name;
-    EXPECT_GT(largest[r], response.mean_square_bound == 1.0 ? 1.0 - 1e-3 : 1.01) << response.name;
+    EXPECT_GT(largest[r], 1.0 - 1e-3) << response.name;
+    if (response.mean_square_bound == 1.0) continue;
+    some_may_exceed = true;
+    most = std::max(most, largest[r]);
+  }
+  if (some_may_exceed) {
+    EXPECT_GT(most, 1.05);
   }
 }
 

@@ -157,7 +157,7 @@ class BadInput(ProgramTest):
         self.assertIn(b"nowhere", done.stderr)
 
     def test_command_lines(self):
-        for arguments in [[], ["fly"], ["run"], ["run", "a.toml", "--threads", "0"], ["run", "a.toml", "--threads", "x"],
+        for arguments in [["fly"], ["run"], ["run", "a.toml", "--threads", "0"], ["run", "a.toml", "--threads", "x"],
                           ["run", "a.toml", "--seed", "-1"], ["show"], ["models", "9upr"], ["template", "9upr"],
                           ["template", "2upr-rpu", "poetry"], ["template", "3-prs", "identification"],
                           ["template", "xy-3-prs", "identification"], ["template", "2upr-rpu", "coupling"]]:

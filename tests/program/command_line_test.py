@@ -38,7 +38,7 @@ class CommandLine(ProgramTest):
         self.write("study.toml", STUDY)
         for line, shown, told in ((("run", "study.toml", "--max-wall", ""), "--max-wall", "--max-wall TIME"),
                                   (("run", "study.toml", "-o", ""), "--output", "-o, --output RESULT.h5"),
-                                  (("show", "r.h5", "--response", ""), "--response", "--response NAME"),
+                                  (("show", "r.h5", "--response", ""), "--response", "--response RESPONSE"),
                                   (("run", ""), "STUDY.toml", "STUDY.toml"), (("export", "r.h5", "-d", ""), None, " DIR")):
             with self.subTest(line=line):
                 done = self.poesy(*line)

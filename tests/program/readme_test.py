@@ -12,7 +12,8 @@ MOST_WORDS = 1500
 
 def block(language, containing):
     """The one fenced block in this language with this text."""
-    found = [code for code in re.findall(rf"^```{language}\n(.*?)^```$", README, re.DOTALL | re.MULTILINE) if containing in code]
+    blocks = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+    found = [code for of, code in blocks if of == language and containing in code]
     assert len(found) == 1, f"{len(found)} blocks with {containing!r}"
     return found[0]
 

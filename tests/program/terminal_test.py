@@ -5,9 +5,11 @@ import re
 import subprocess
 from pathlib import Path
 
-from poesy_program import PROGRAM, STUDY, ProgramTest, main
+from poesy_program import PROGRAM, STUDY as WITH_BACKGROUND, ProgramTest, main
 from pseudo_terminal import PseudoTerminal
 
+# What a background holds is a line of its own before the progress (study_notes_test.py).
+STUDY = "".join(line for line in WITH_BACKGROUND.splitlines(True) if not line.startswith("background"))
 LONG = STUDY.replace("samples = 1500", "samples = 1000000000")
 ESCAPE = b"\x1b"
 SHARE = r"(?P<share>\d+\.\d) % "

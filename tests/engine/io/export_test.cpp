@@ -89,11 +89,13 @@ TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
   export_tables(folder_ / "s.h5", folder_.path());
   const auto table = read_table(folder_ / "global.csv");
   ASSERT_EQ(table.size(), 3U);
-  ASSERT_EQ(table[0].size(), 13U);
+  ASSERT_EQ(table[0].size(), 25U);
   EXPECT_EQ(table[0][0], "factor");
   EXPECT_EQ(table[0][1], "angular_deformation [rad per rad or m]");
   EXPECT_EQ(table[0][5], "angular_deformation_ci_low [deg per deg or mm]");
   EXPECT_EQ(table[0][12], "linear_deformation_ci_high [mm per deg or mm]");
+  EXPECT_EQ(table[0][13], "angular_deformation_corrected [rad per rad or m]");
+  EXPECT_EQ(table[0][24], "linear_deformation_corrected_ci_high [mm per deg or mm]");
   EXPECT_EQ(table[1][0], "epsilon_1");
   EXPECT_EQ(table[2][0], "delta_1");
   // global is array 5 of the example: 5000 + 100 r + 10 p.
@@ -104,6 +106,9 @@ TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
   EXPECT_EQ(table[1][7], "5100");
   EXPECT_DOUBLE_EQ(parse_number(table[1][10]).value(), 5100.0 * 1e3 * std::numbers::pi / 180.0);  // mm per deg
   EXPECT_EQ(table[2][7], "NaN");
+  // global_corrected is array 11.
+  EXPECT_EQ(table[1][13], "11000");
+  EXPECT_DOUBLE_EQ(parse_number(table[2][16]).value(), 11010.0 * 1e-3 * 180.0 / std::numbers::pi);  // deg per mm
 }
 
 TEST_F(Export, HistoryHasARowForEachNumberOfSamples) {

@@ -52,7 +52,7 @@ TEST(BackgroundSize, IsTheStandardDeviationOfOtherDistributions) {
 }
 
 TEST(BackgroundSize, IsWrittenInTheResolvedStudy) {
-  const Study study = held("{ factors = \"benign\" }", "linear = { distribution = \"normal\", sigma = \"20 um\" }\n");
+  const Study study = held("{ factors = \"benign\" }", "linear = { distribution = \"normal\", sigma = \"0.02 mm\" }\n");
   const std::string text = resolved_text(study);
   const std::string background = text.substr(text.find("[analysis.background]"));
   EXPECT_EQ(

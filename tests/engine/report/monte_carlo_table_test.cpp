@@ -49,8 +49,8 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
             "samples lie below it (quantiles to 0.195 % of their value)\n"
             "\n"
             "Pose by pose: the mean of the poses' means, and the worst poses\n"
-            "                          mean of  largest    at  largest    at              poses\n"
-            "response            unit    means     mean  pose   q_0.95  pose  low   high  like it\n"
+            "                          mean of  largest    at  largest    at                poses\n"
+            "response            unit    means     mean  pose   q_0.95  pose   low  high  like it\n"
             "linear_deformation  mm        2       4        1        9     0  6       12        1\n"
             "ratio               1         0.5     0.75     2        2     1  1.75   inf        0\n"
             "low, high: 95 % interval of the largest q_0.95, from order statistics; inf: too few samples for an\n"
@@ -105,10 +105,11 @@ TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
                  {.response = 1, .limit = 2.0, .value = 0.5, .passed = true, .tried = 1000, .within = 999}}};
   EXPECT_EQ(text_of(limits_table(result).value(), kUnlimitedWidth),
             "FAIL: 1 of 2 limits not kept\n"
-            "limit kept  response            unit  judged by  value  limit  within  where\n"
-            "                                                                   %\n"
-            "FAIL        linear_deformation  mm    rms         15.5   0.03     2.1  -\n"
-            "PASS        ratio               1     rms          0.5   2       99.9  -\n"
+            "limit                            judged\n"
+            "kept   response            unit  by      value  limit  within  where\n"
+            "                                                          [%]\n"
+            "FAIL   linear_deformation  mm    rms      15.5   0.03     2.1  -\n"
+            "PASS   ratio               1     rms       0.5   2       99.9  -\n"
             "rms: the root mean square over the draws of all poses; draws that were not solved are left out;\n"
             "within: the share of all draws that are within the limit\n");
 }

@@ -60,7 +60,7 @@ StoredResult corrected_result() {
   return result;
 }
 
-TEST(RankedTable, ShowsAndRanksByTheCorrectedIndexWithThePublishedOneBeside) {
+TEST(RankedTable, RanksByTheCorrectedIndex) {
   const StoredResult result = corrected_result();
   const Table table = ranked_table(result, ranked_errors(result, "x"));
   EXPECT_EQ(table.columns.back().name, "index_published");

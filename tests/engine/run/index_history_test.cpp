@@ -67,7 +67,7 @@ TEST_P(History, IsTheResultsOfShorterStudies) {
   }
 }
 
-TEST_P(History, OfAMechanismIsThatOfShorterStudies) {
+TEST_P(History, OfAMechanismIsOfShorterOnes) {
   Study study = bench::published_study(5, 2300);
   study.solver.method = SolverOptions::Method::gauss_newton;
   study.not_converged = GetParam();

@@ -90,7 +90,7 @@ class RanksOf : public testing::TestWithParam<std::tuple<Kind, std::size_t>> {
   static std::size_t size() { return std::get<1>(GetParam()); }
 };
 
-TEST_P(RanksOf, GiveTheBitsOfOneProcessOnEveryRank) {
+TEST_P(RanksOf, GiveTheBitsOfOneProcess) {
   for (const std::size_t samples : {7 * Plan::kUnitSamples, 2 * Plan::kUnitSamples + 300, std::size_t{1}}) {
     const Prepared prepared(study_of(kind(), samples));
     const Bits expected = run(prepared, {}).value();

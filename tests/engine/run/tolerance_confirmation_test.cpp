@@ -56,7 +56,7 @@ struct Found {
   std::vector<double> sigma;
 };
 
-TEST(ToleranceConfirmation, BackgroundIsTheResponseAlone) {
+TEST(ToleranceConfirmation, BackgroundActsAlone) {
   const Found found(study_with(2e-3));
   ASSERT_EQ(found.result.background.size(), 2 * kPoses);
   for (std::size_t m = 0; m < kPoses; ++m) {

@@ -135,7 +135,7 @@ TEST(GlobalIndexInterval, CoversAtLeastItsLevelWithoutSpread) {
   EXPECT_GE(z_of_global_coverage(std::vector<double>(20, 1.0), 1000, 4000, 32), -3.090);
 }
 
-TEST(GlobalIndexInterval, CoversWithoutSpreadAtPublishedPoses) {
+TEST(GlobalIndexInterval, CoversWithoutSpreadAt158Poses) {
   EXPECT_GE(z_of_global_coverage(std::vector<double>(158, 1.0), 1000, 1000, 33), -3.090);
 }
 
@@ -179,7 +179,7 @@ TEST(CorrectedGlobalIndex, HasNoBiasWherePosesDifferClearly) {
   }
 }
 
-TEST(CorrectedGlobalIndex, IsNearerToTheTruthWherePosesDifferByLittleMoreThanNoise) {
+TEST(CorrectedGlobalIndex, IsNearerToTheTruth) {
   for (const double half : {0.0, 0.03, 0.1}) {
     const Bias found = bias(scales_between(1.0 - half, 1.0 + half, 20), 200, 2000, 51);
     // What is left cannot be taken off: a spread is not negative, so its noise does not average out near zero.

@@ -11,7 +11,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSolver = 1e-15;  ///< m, as Model::rounding gives it
 
-TEST(IndexRounding, IsThatOfSolvesOverTheErrorButNeverLessThanThatOfDigits) {
+TEST(IndexRounding, IsThatOfSolvesOverTheErrorOrOfDigits) {
   EXPECT_DOUBLE_EQ(index_rounding(kSolver, 1e-7), 1e-8);
   EXPECT_EQ(index_rounding(kSolver, 1e-3), kIndexRounding);
   EXPECT_EQ(index_rounding(0.0, 1e-300), kIndexRounding);

@@ -155,7 +155,7 @@ std::vector<std::vector<LocalIndex>> lists_of_poses() {
   return lists;
 }
 
-TEST(CorrectedGlobalIndex, StandsWithinItsIntervalWhateverThePosesAre) {
+TEST(CorrectedGlobalIndex, IsWithinItsInterval) {
   for (const std::vector<LocalIndex>& poses : lists_of_poses()) {
     for (const double level : {0.01, 0.5, 0.95, 0.999}) {
       const Estimate index = corrected_global_index(poses, level);
@@ -166,7 +166,7 @@ TEST(CorrectedGlobalIndex, StandsWithinItsIntervalWhateverThePosesAre) {
   }
 }
 
-TEST(CorrectedGlobalIndex, HasTheIntervalOfThePublishedOneBeforeItIsExtended) {
+TEST(CorrectedGlobalIndex, HasThePublishedIntervalUnextended) {
   for (const std::vector<LocalIndex>& poses : lists_of_poses()) {
     const Estimate published = global_index(poses, 0.95);
     const Estimate corrected = corrected_global_index(poses, 0.95);
@@ -183,7 +183,7 @@ TEST(CorrectedGlobalIndex, IsMeanPlusSpreadWithoutNoise) {
   EXPECT_NEAR(corrected_global_index(noisy, 0.95).value, 1.50375 + std::sqrt(0.9975 * 0.9975 / 2.0 - 0.01), 1e-14);
 }
 
-TEST(CorrectedGlobalIndex, IsThePublishedOneWithoutIntervalWhereNoiseIsNotKnown) {
+TEST(CorrectedGlobalIndex, IsThePublishedOneIfNoiseIsUnknown) {
   const std::vector<LocalIndex> few{{1.0, kNaN}, {2.0, 0.1}};
   EXPECT_EQ(corrected_global_index(few, 0.95).value, global_index(few, 0.95).value);
   EXPECT_TRUE(std::isnan(corrected_global_index(few, 0.95).interval.low));

@@ -119,7 +119,7 @@ TEST_P(Lanes, DoNotRemember) {
   for (std::size_t b = 0; b < kCount; ++b) expect_same(whole_, b, again, b);
 }
 
-TEST_P(Lanes, IgnoreNeighbours) {
+TEST_P(Lanes, IgnoreOthers) {
   const double awful[] = {
       std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, -1e6, 3.0, -0.5};
   for (const double value : awful) {
