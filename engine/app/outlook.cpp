@@ -47,7 +47,7 @@ double least_share(const Plan& plan) {
   return static_cast<double>(least_samples(plan)) / static_cast<double>(plan.samples());
 }
 
-/// Runs pieces of a study for about a quarter of a second. run_piece(at) runs one that stands at this share of the
+/// Runs pieces of a study for about a quarter of a second. run_piece(at) runs one that begins at this share of the
 /// study, 0 <= at < 1, and gives the share of the whole that it was.
 template <class RunPiece>
 double measured_seconds(const RunPiece& run_piece) {

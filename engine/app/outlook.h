@@ -9,7 +9,7 @@
 
 namespace poesy::app {
 
-/// What a run has in memory at its peak, while it writes its result, besides the program itself; bytes.
+/// What a run has in memory at its peak, while it writes its result, without the program itself; bytes.
 struct MemoryOutlook {
   std::size_t accumulators = 0;  ///< of the run; the heap does not give all of them back before the result is written
   std::size_t state = 0;         ///< the run as a checkpoint has it (run/checkpoints.h), kept until the end

@@ -27,8 +27,8 @@ class OutputFolder {
   /// read.
   explicit OutputFolder(std::string path);
 
-  /// Throws InputError when something stands under this name that the command must not replace: a file that poesy did
-  /// not write, or that was changed since, or something that is no plain file (a folder, a symbolic link).
+  /// Throws InputError when the command must not replace what has this name: a file that poesy did not write, or that
+  /// was changed since, or something other than a plain file (a folder, a symbolic link).
   void claim(const std::string& name);
 
   /// Makes the folder if it is missing, and notes there that the claimed files are being written. Throws FileError.

@@ -60,7 +60,7 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   const Title title(cell.text);
   const auto found = std::ranges::find(known.numbers, title.name, &KnownColumn::name);
   if (found != known.numbers.end()) {
-    return {number, found->stands, cell.text, found->dimension, size_of(cell, title, found->dimension)};
+    return {number, found->meant, cell.text, found->dimension, size_of(cell, title, found->dimension)};
   }
   if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
   if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};

@@ -76,7 +76,7 @@ std::size_t header_of(std::span<const std::string_view> columns,
                    "name every pose coordinate of the model in the first line" + possible);
 }
 
-/// What stands below a header.
+/// The cells below a header.
 struct Rows {
   std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
   std::vector<std::string> labels;  ///< of each row; empty without a column of labels
@@ -152,9 +152,9 @@ std::vector<std::string_view> names_of_numbers(std::span<const TableColumn> colu
 /// and their condition numbers besides.
 KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   KnownColumns known{.numbers = {}, .facts = {"pose", "condition"}, .what = "pose coordinate"};
-  const auto add = [&](std::string_view name, Dimension dimension, std::string_view stands) {
+  const auto add = [&](std::string_view name, Dimension dimension, std::string_view meant) {
     if (std::ranges::find(known.numbers, name, &KnownColumn::name) != known.numbers.end()) return;
-    known.numbers.push_back({name, dimension, stands});
+    known.numbers.push_back({name, dimension, meant});
   };
   if (timed == Timed::yes) add(kTime, Dimension::time, kTime);
   for (const PoseCoordinate& own : model.pose_coordinates) add(own.name, own.dimension, own.name);

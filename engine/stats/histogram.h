@@ -18,7 +18,7 @@ struct Histogram {
 /// A histogram of exactly `bins` bins of what a sketch holds, of which `buckets` are. All but the first and the last
 /// bin, which hold the outermost 0.05 % of the values, are about equally wide. Edges are edges of buckets, so every
 /// count is exact; where buckets are wider than bins, fewer bins are filled, and those left over have no width and
-/// stand at the end. Precondition: bins >= 3, and there is a bucket.
+/// come last. Precondition: bins >= 3, and there is a bucket.
 Histogram histogram(std::span<const Bucket> buckets, std::size_t bins);
 
 }  // namespace poesy

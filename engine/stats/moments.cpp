@@ -126,10 +126,13 @@ Moments Moments::read(ByteReader& from) {
   return moments;
 }
 
+double sample_mean_square(double mean, double standard_deviation, double count) {
+  return mean * mean + standard_deviation * standard_deviation * (count - 1.0) / count;
+}
+
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count) {
   const double spread = count < 2 ? 0.0 : standard_deviation;  // a single value has none
-  const auto n = static_cast<double>(count);
-  return std::sqrt(mean * mean + spread * spread * (n - 1.0) / n);
+  return std::sqrt(sample_mean_square(mean, spread, static_cast<double>(count)));
 }
 
 }  // namespace poesy

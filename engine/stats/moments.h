@@ -42,6 +42,9 @@ class Moments {
   double m4_ = 0.0;  ///< sum of (x - mean)^4
 };
 
+/// The mean square of `count` values with this mean and sample standard deviation; NaN where that is.
+double sample_mean_square(double mean, double standard_deviation, double count);
+
 /// The root mean square of `count` values with this mean and sample standard deviation; NaN without values.
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count);
 

@@ -8,7 +8,7 @@
 
 namespace poesy {
 
-/// Ranks of two of n order statistics, from 1 to n; 0 and n + 1 stand for none.
+/// Ranks of two of n order statistics, from 1 to n; 0 and n + 1 mean that there is none.
 struct RankInterval {
   std::uint64_t low;   ///< of the lower end
   std::uint64_t high;  ///< of the upper end

@@ -10,7 +10,7 @@
 
 namespace poesy {
 
-/// The rank of the order statistic of n values that stands for the quantile q: the smallest k >= 1 with k / n >= q.
+/// The rank of the order statistic of n values that is taken as the quantile q: the smallest k >= 1 with k / n >= q.
 /// Precondition: n > 0.
 std::uint64_t quantile_rank(double q, std::uint64_t n);
 

@@ -36,7 +36,7 @@ LocalIndex local_index_with_error(const Moments& response, double error_sigma);
 Estimate global_index(std::span<const LocalIndex> poses, double conf_level);
 
 /// The same without what sampling adds to it: mean + spread of the indices, each without the bias of a sample standard
-/// deviation, the spread without that part of it which is sampling noise. The value stands within its interval, which
+/// deviation, the spread without that part of it which is sampling noise. The value lies within its interval, which
 /// is that of global_index but for the extension. Where a pose has no standard error nothing can be taken off: the
 /// value then is that of global_index, NaN at both ends.
 Estimate corrected_global_index(std::span<const LocalIndex> poses, double conf_level);

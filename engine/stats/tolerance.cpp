@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
@@ -20,11 +21,6 @@ double mean_of_squares(std::span<const double> values) {
   double sum = 0.0;
   for (const double value : values) sum += square(value);
   return sum / static_cast<double>(values.size());
-}
-
-/// The samples' mean square at one pose.
-double sample_mean_square(double mean, double std, double count) {
-  return square(mean) + square(std) * (count - 1.0) / count;
 }
 
 /// 1 / mu_p; infinity without effect.

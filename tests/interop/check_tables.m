@@ -19,7 +19,7 @@ function check_table(path)
   end
   last = strsplit(lines{end}, ',');
   expected = str2double(last{end});
-  assert(isnan(t.data(end, end)), isnan(expected));  % a unit is no number
+  assert(isnan(t.data(end, end)), isnan(expected));  % a unit is not a number
   if (!isnan(expected))
     assert(t.data(end, end), expected);
   end

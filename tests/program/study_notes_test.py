@@ -1,4 +1,4 @@
-"""What the program says of a study besides its results: what it holds constant, what looks like a slip, and what may
+"""What the program says of a study apart from its results: what it holds constant, what looks like a slip, and what may
 help where samples did not converge."""
 
 from poesy_program import STUDY, ProgramTest, main
