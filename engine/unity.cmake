@@ -1,19 +1,10 @@
 # Files of a target that are compiled together (POESY_UNITY): headers and templates are then read once for many files.
 #
-# Files share a group when none of them uses a name, for whatever, that another one defines in its namespace without a
-# name; the same alias of the same type may stand in several. So nobody needs to mind which files are compiled
-# together. Compiled alone are files with options of their own (kernels and what must have the same bits everywhere),
-# generated files, and those with `using namespace`.
-set(POESY_UNITY_FILES 12)  # of a group, at most: more save little and take memory
-
-# Words of a source, between spaces; without comments and texts.
-function(poesy_words out text)
-  string(REGEX REPLACE "//[^\n]*|\"[^\"\n]*\"" " " text "${text}")
-  string(REGEX MATCHALL "[A-Za-z_][A-Za-z_0-9]*" words "${text}")
-  list(REMOVE_DUPLICATES words)
-  list(JOIN words " " words)
-  set(${out} " ${words} " PARENT_SCOPE)
-endfunction()
+# Files share a group when no two of them define the same name in their namespaces without a name; the same alias of the
+# same type may be in several. So nobody needs to mind which files are compiled together. Compiled alone are files with
+# options of their own (kernels and what must have the same bits everywhere), generated files, and those with
+# `using namespace`.
+set(POESY_UNITY_FILES 20)  # of a group, at most: more save little and take memory
 
 # List of the names that a source defines for itself: in namespaces without a name, and as macros.
 function(poesy_internal_names out text)
@@ -56,13 +47,11 @@ function(poesy_other_aliases out aliases known)
   set(${out} "${aliases}" PARENT_SCOPE)
 endfunction()
 
-# Whether any of the names is one of the words.
-function(poesy_uses out words names)
+# Whether two lists have a name in common.
+function(poesy_share out one two)
   set(${out} FALSE PARENT_SCOPE)
-  list(REMOVE_ITEM names "")
-  foreach(name IN LISTS names)
-    string(FIND "${words}" " ${name} " at)
-    if(NOT at EQUAL -1)
+  foreach(name IN LISTS one)
+    if(name AND name IN_LIST two)
       set(${out} TRUE PARENT_SCOPE)
       return()
     endif()
@@ -98,7 +87,6 @@ function(poesy_unity target)
     if(alone)
       continue()
     endif()
-    poesy_words(words "${text}")
     poesy_internal_names(names "${text}")
     poesy_aliases(aliases "${text}")
     foreach(number RANGE 1 99)
@@ -108,14 +96,12 @@ function(poesy_unity target)
       endif()
       poesy_other_aliases(own "${aliases}" "${aliases_${group}}")
       poesy_other_aliases(others "${aliases_${group}}" "${aliases}")
-      poesy_uses(clash_here "${words_${group}}" "${names};${own}")
-      poesy_uses(clash_there "${words}" "${names_${group}};${others}")
-      if(files_${group} LESS POESY_UNITY_FILES AND NOT clash_here AND NOT clash_there)
+      poesy_share(clash "${names};${own}" "${names_${group}};${others}")
+      if(files_${group} LESS POESY_UNITY_FILES AND NOT clash)
         break()
       endif()
     endforeach()
     math(EXPR files_${group} "${files_${group}} + 1")
-    string(APPEND words_${group} "${words}")
     list(APPEND names_${group} ${names})
     list(APPEND aliases_${group} ${aliases})
     set_source_files_properties(${path} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP group_${group})

@@ -11,13 +11,10 @@
 #include "engine/app/message.h"
 #include "engine/io/version.h"
 
+namespace poesy::app {
 namespace {
 
-using namespace poesy::app;
-
-std::string version_text() {
-  return "poesy " + std::string(poesy::poesy_version()) + " (" + std::string(poesy::git_commit()) + ")";
-}
+std::string version_text() { return "poesy " + std::string(poesy_version()) + " (" + std::string(git_commit()) + ")"; }
 
 void describe_program(CLI::App& program) {
   program.formatter_fn(
@@ -79,8 +76,9 @@ int flushed(int code) {
 }
 
 }  // namespace
+}  // namespace poesy::app
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error of its write, as is a full disk
-  return flushed(exit_code_of([=] { return parse_and_run(argc, argv); }));
+  return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

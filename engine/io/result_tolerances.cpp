@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/base/nan.h"
 #include "engine/io/result_parts.h"
 #include "engine/run/sensitivity.h"
 
 namespace poesy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Tolerances of all responses, side by side.
 struct Columns {

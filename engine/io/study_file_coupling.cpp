@@ -87,12 +87,12 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
 /// The literature's sources. Throws at the section where the model has none.
 std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
                                        const ErrorPattern& pattern) {
-  constexpr std::string_view kRemedy =
+  constexpr std::string_view kNameThem =
       "write 2 to 8 [[analysis.sources]], each with name and factors (a factor set or a list of names)";
   if (model.sources.empty()) {
     throw InputError(analysis.place(),
                      "kind = \"coupling\" needs sources of errors, and model \"" + model.name + "\" suggests none",
-                     std::string(kRemedy));
+                     std::string(kNameThem));
   }
   std::vector<ErrorSource> sources;
   for (const CouplingSource& usual : model.sources) {
@@ -101,7 +101,7 @@ std::vector<ErrorSource> usual_sources(const StudySection& analysis, const Model
     if (!error_blocks(source, pattern, model).empty()) continue;
     throw InputError(analysis.place(),
                      "source '" + source.name + "' has no factor of the limbs and components that the study asks for",
-                     std::string(kRemedy));
+                     std::string(kNameThem));
   }
   return sources;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
@@ -105,7 +105,6 @@ struct WorstPoses {
 };
 
 WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   WorstPoses poses{highest_at_poses(found, found.quantiles, r), 0, kNaN, kNaN, {}};
   poses.worst = worst_pose(poses.quantile);
   const std::vector<double> low = highest_at_poses(found, found.quantiles_ci_low, r);

@@ -75,7 +75,7 @@ void set_heading(const std::string& heading, TextColumn& column) {
   for (const std::string& line : column.heading) column.width = std::max(column.width, width_of(line));
 }
 
-TextColumn text_column(const Table& table, std::size_t c) {
+TextColumn column_text(const Table& table, std::size_t c) {
   const Column& column = table.columns[c];
   TextColumn made{{}, column.unit.empty() ? "" : "[" + column.unit + "]", {}, 0, column.kind};
   std::size_t tail = 0;
@@ -162,7 +162,7 @@ std::string text_of(const Table& table, std::size_t width, std::string_view reme
   std::vector<std::string> left_out;
   if (!table.rows.empty()) {
     std::vector<TextColumn> columns;
-    for (std::size_t c = 0; c < table.columns.size(); ++c) columns.push_back(text_column(table, c));
+    for (std::size_t c = 0; c < table.columns.size(); ++c) columns.push_back(column_text(table, c));
     const std::vector<std::size_t> shown = fitting(table, columns, width, left_out);
     add_headings(text, columns, shown);
     for (std::size_t n = 0; n < table.rows.size(); ++n) {

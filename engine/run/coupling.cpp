@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/run/counts.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// What a subset does at one pose. A NaN among the effects makes NaN of all that rests on it.
 struct Combination {

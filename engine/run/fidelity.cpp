@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// A spread that solvers leave where there is none, SI; with errors of 1e-3, of kIndexRounding.
 constexpr double kSpreadRounding = 1e-13;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/run/verdict.h"
 #include "engine/stats/histogram.h"
 #include "engine/stats/mean_interval.h"
@@ -15,8 +16,6 @@ namespace {
 constexpr std::uint64_t kKind = 2;  ///< no other state begins with this number
 
 constexpr std::size_t kHistogramBins = 128;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// NaN where nothing counts.
 double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }

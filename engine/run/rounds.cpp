@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/study/milestones.h"
 
 namespace poesy {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double half_width(const Estimate& estimate) {

@@ -1,18 +1,16 @@
 #include "engine/run/sensitivity.h"
 
 #include <array>
-#include <limits>
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/run/counts.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/sensitivity_index.h"
 
 namespace poesy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void append(const Estimate& estimate, std::vector<double>& value, std::vector<double>& low, std::vector<double>& high) {
   value.push_back(estimate.value);

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// 1 - residual / effect, at least zero; NaN where that is not finite.
 double removable_part(double residual, double effect) {

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/run/counts.h"
 
 namespace poesy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Samples whose magnitude is within a limit; a bucket that the limit divides counts as its middle lies.
 std::uint64_t count_within(const QuantileSketch& samples, double limit) {

@@ -2,14 +2,12 @@
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 
 namespace poesy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// What a standard error is multiplied by on either side.
 double student_quantile(double freedom, double conf_level) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 
 namespace poesy {
 namespace {
@@ -34,7 +35,6 @@ RankInterval quantile_ranks(std::uint64_t n, double q, double conf_level) {
 }
 
 Interval quantile_interval(std::span<const Bucket> buckets, const RankInterval& ranks) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (buckets.empty()) return {kNaN, kNaN};
   const std::uint64_t n = buckets.back().up_to;

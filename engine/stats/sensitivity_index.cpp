@@ -4,16 +4,15 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 
 namespace poesy {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Interval kUnknown{kNaN, kNaN};
 
 /// Fewer samples say too little about a kurtosis (Bonett's own trimmed mean needs more than four).

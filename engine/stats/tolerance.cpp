@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double square(double x) { return x * x; }

@@ -137,7 +137,7 @@ def add_extremes(page):
 def add_apart(page):
     """Two series a hundredfold apart, one of them 0 once, as bars and as dots; and poses in the order of |beta|."""
     first = np.array([2.0, 1.0, 0.5, 0.2])
-    second = first / [150, 80, 120, np.inf]
+    second = first / [150, 50, 120, np.inf]
     quantity = {"label": "effect", "units": ["mm"], "value": page.array([first, second]), "low": None, "high": None}
     page.figures["bars"] = {"type": "bars", "quantities": [quantity], "items": errors(4), "series": ["A", "B"]}
     page.figures["dots"] = {

@@ -264,7 +264,7 @@ class Reports(PageTest):
 
     def test_monte_carlo(self):
         template = self.poesy("template", "3-prs", "monte-carlo")
-        limited = template.replace("[solver]", '[analysis.limits]\nposition = "5 mm"\nrotation = "5 deg"\n[solver]')
+        limited = template.replace("[solver]", '[analysis.limits]\nposition = "30 mm"\nrotation = "8 deg"\n[solver]')
         self.check_page(self.report("monte-carlo", self.result("monte-carlo", limited)))
         marked = self.browser.run(
             """return [...document.querySelectorAll("[data-figure^=distribution] svg")].map((svg) =>

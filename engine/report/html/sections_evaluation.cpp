@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <limits>
-
+#include "engine/base/nan.h"
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/sections.h"
@@ -9,8 +8,6 @@
 
 namespace poesy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// One response to one row of errors at all poses, [M]; NaN where it was not solved.
 std::vector<double> response_to(const EvaluationResult& found, std::size_t r, std::size_t sample) {
