@@ -27,10 +27,12 @@ FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave"
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
 LEFT = ("build/2upr-rpu-sensitivity.h5", "build/2upr-rpu-sensitivity.html")  # result and report
 HOSTS = "127.0.0.1 localhost\n::1 localhost\n"
+CERTIFICATES = "usr/local/share/ca-certificates"  # that this machine trusts besides Debian's, to reach npm
 # A mount namespace and a process namespace of its own: mounts and processes end with the command.
 ENTER = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c",
          'mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" && mount -t sysfs sysfs "$1/sys" && '
-         'root=$1 && shift && exec chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"', "enter"]
+         'root=$1 && shift && exec chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin '
+         'NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt "$@"', "enter"]
 
 
 class Fault(Exception):
@@ -164,6 +166,9 @@ def make_root(root, work):
     run(["mmdebstrap", "--quiet", "--variant=minbase", "--include=ca-certificates,git", codename[1], root, *sources])
     shutil.copyfile("/etc/resolv.conf", root / "etc/resolv.conf")
     (root / "etc/hosts").write_text(HOSTS, encoding="utf-8")
+    for certificate in Path("/", CERTIFICATES).glob("*.crt"):
+        shutil.copy(certificate, root / CERTIFICATES)
+    run([*ENTER, root, "update-ca-certificates"], stdout=subprocess.DEVNULL)
 
 
 def clone(root, work):
