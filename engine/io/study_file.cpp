@@ -78,8 +78,9 @@ SolverOptions::Method read_method(const StudyValue& value) {
   return kMethods[value.word(std::array{name(kMethods[0]), name(kMethods[1])})];
 }
 
-SolverOptions read_solver(const StudySection& section) {
+SolverOptions read_solver(const StudySection& section, const ModelDescription& model) {
   SolverOptions solver;
+  if (model.metric == "platform") solver.tolerance = kToleranceByPlatform;
   if (const auto value = section.find("method")) solver.method = read_method(*value);
   if (const auto value = section.find("tolerance")) {
     solver.tolerance = value->number();
@@ -193,7 +194,7 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
   study.analysis = read_analysis(root, study.model(), use);
   const StudySection solver = root.section("solver");
   solver.allow();
-  study.solver = read_solver(solver);
+  study.solver = read_solver(solver, study.model());
   read_not_converged(solver, study);
   const StudySection run = root.section("run");
   run.allow();

@@ -46,6 +46,44 @@ void read_fidelity(const StudySection& section, const ModelDescription& model, M
   }
 }
 
+/// A point of the platform: three lengths.
+PlatformPoint read_point(const StudyValue& value) {
+  const std::vector<StudyValue> coordinates = value.list();
+  if (coordinates.size() != 3) {
+    value.fail("has " + std::to_string(coordinates.size()) + " values",
+               "a point has three, [\"60 mm\", \"0 mm\", \"0 mm\"]");
+  }
+  PlatformPoint point{};
+  for (std::size_t c = 0; c < point.size(); ++c) point[c] = coordinates[c].quantity(Dimension::length);
+  return point;
+}
+
+/// Takes the entry of the mechanism by its platform's metric where the study asks for it, and its points.
+void read_metric(const StudySection& solver, MechanismChoice& choice) {
+  const ModelDescription& model = choice.entry->description;
+  if (model.metric.empty()) {
+    const std::string why = "model \"" + model.name + "\", whose responses weigh no angles against lengths";
+    solver.refuse("metric", why);
+    solver.refuse("points", why);
+    return;
+  }
+  const auto value = solver.find("metric");
+  const bool by_platform = value && value->word(std::array<std::string_view, 2>{"platform", "published"}) == 0;
+  if (!by_platform) {
+    solver.refuse("points", "the published metric; write metric = \"platform\" too");
+    return;
+  }
+  choice.entry = choice.entry->by_platform.get();
+  const auto points = solver.find("points");
+  if (!points) return;
+  choice.points_place = points->place();
+  for (const StudyValue& point : points->list()) choice.points.push_back(read_point(point));
+  if (choice.points.size() < 3) {
+    points->fail("has " + std::to_string(choice.points.size()) + " points",
+                 "name three or more that are not on a line");
+  }
+}
+
 Range read_range(const StudyValue& value, Dimension dimension) {
   const std::vector<StudyValue> ends = value.list();
   if (ends.size() != 2) {
@@ -159,6 +197,7 @@ MechanismChoice read_mechanism(const StudySection& root, const Catalog& catalog)
   const auto geometry = section.find("geometry");
   choice.place = geometry ? geometry->place() : section.place();
   choice.geometry = read_geometry(section.section("geometry"), choice.entry->description);
+  read_metric(root.section("solver"), choice);
   read_fidelity(section, choice.entry->description, choice);
   return choice;
 }

@@ -266,9 +266,19 @@ std::string analysis_section(const ModelDescription& model, Analysis::Kind kind)
   return text + coupling_keys(model);
 }
 
-std::string solver_and_run_sections() {
-  return "\n[solver]\n" + explained("solver", "method", "method = \"newton\"") +
-         explained("solver", "tolerance", "tolerance = 1e-15") +
+std::string metric_keys(const ModelDescription& model) {
+  if (model.metric.empty()) return {};
+  return explained("solver", "metric", "metric = " + in_quotes(model.metric)) +
+         explained(
+             "solver", "points",
+             "# points = [[\"60 mm\", \"0 mm\", \"0 mm\"], [\"-60 mm\", \"0 mm\", \"0 mm\"], [\"0 mm\", \"60 mm\", "
+             "\"0 mm\"]]");
+}
+
+std::string solver_and_run_sections(const ModelDescription& model) {
+  const double tolerance = model.metric == "platform" ? kToleranceByPlatform : SolverOptions().tolerance;
+  return "\n[solver]\n" + metric_keys(model) + explained("solver", "method", "method = \"newton\"") +
+         explained("solver", "tolerance", "tolerance = " + shortest(tolerance)) +
          explained("solver", "max_iterations", "max_iterations = 50") +
          explained("solver", "not_converged", "not_converged = \"exclude\"") +
          explained("solver", "max_not_converged", "max_not_converged = 1") + "\n[run]\n" +
@@ -278,10 +288,10 @@ std::string solver_and_run_sections() {
 }  // namespace
 
 std::string template_text(const CatalogEntry& entry, Analysis::Kind kind) {
-  const ModelDescription& model = entry.description;
+  const ModelDescription& model = entry.by_platform ? entry.by_platform->description : entry.description;
   POESY_EXPECTS(kind != Analysis::Kind::coupling || !model.sources.empty());
   return head(model, kind) + mechanism_section(model, kind) + poses_section(model) + errors_section(model) +
-         analysis_section(model, kind) + solver_and_run_sections();
+         analysis_section(model, kind) + solver_and_run_sections(model);
 }
 
 }  // namespace poesy

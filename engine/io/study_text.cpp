@@ -69,6 +69,20 @@ std::string mechanism_text(const Study& study) {
   return text;
 }
 
+std::string point_text(const PlatformPoint& point) {
+  return fmt::format("[{}, {}, {}]", exact_value(point[0], Dimension::length), exact_value(point[1], Dimension::length),
+                     exact_value(point[2], Dimension::length));
+}
+
+std::string metric_text(const Study& study) {
+  if (study.model().metric.empty()) return {};
+  std::string text = "metric = " + in_quotes(study.model().metric) + "\n";
+  if (study.mechanism.points.empty()) return text;
+  text += "points = [";
+  for (const PlatformPoint& point : study.mechanism.points) text += "\n  " + point_text(point) + ",";
+  return text + "\n]\n";
+}
+
 std::string grid_text(const PoseSelection& poses, const ModelDescription& model) {
   std::string text;
   for (std::size_t c = 0; c < poses.grid_counts.size(); ++c) {
@@ -296,10 +310,11 @@ std::string set_name(std::span<const FactorIndex> factors, const ModelDescriptio
 
 std::string resolved_text(const Study& study) {
   const SolverOptions& solver = study.solver;
-  const std::string solver_text = fmt::format(
-      "[solver]\nmethod = {}\ntolerance = {}\nmax_iterations = {}\nnot_converged = {}\nmax_not_converged = {}\n",
-      in_quotes(name(solver.method)), shortest(solver.tolerance), solver.max_iterations,
-      in_quotes(name(study.not_converged)), shortest(study.max_not_converged));
+  const std::string solver_text =
+      "[solver]\n" + metric_text(study) +
+      fmt::format("method = {}\ntolerance = {}\nmax_iterations = {}\nnot_converged = {}\nmax_not_converged = {}\n",
+                  in_quotes(name(solver.method)), shortest(solver.tolerance), solver.max_iterations,
+                  in_quotes(name(study.not_converged)), shortest(study.max_not_converged));
   return fmt::format("format = \"poesy-study\"\nversion = 1\ntitle = {}\n\n{}\n{}\n{}\n{}\n{}\n[run]\nseed = {}\n",
                      in_quotes(study.title), mechanism_text(study), poses_text(study), errors_text(study),
                      analysis_text(study), solver_text, study.seed);

@@ -36,6 +36,8 @@ double Model::rounding(std::size_t /*response*/) const { return 0.0; }
 
 ErrorBound Model::error_bound(FactorIndex /*factor*/) const { return {}; }
 
+std::vector<PlatformPoint> Model::metric_points() const { return {}; }
+
 std::vector<std::string> Model::unusual_geometry() const { return {}; }
 
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {

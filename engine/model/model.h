@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -100,6 +101,9 @@ struct DeformationMeasure {
   double rounding;       ///< a value up to this cannot be told from zero, SI
 };
 
+/// A point of the platform in its frame: x, y, z in m.
+using PlatformPoint = std::array<double, 3>;
+
 /// What the actuators have to do with each error's effect, to first order at one pose. Lengths by which the platform
 /// moves, m per SI unit of the error.
 struct Separation {
@@ -130,12 +134,16 @@ struct SolverOptions {
   };
 
   Method method = Method::newton;  ///< a model with one iteration takes it for both
-  /// A solve has converged once the largest component of the change of the residual is below this (rad, m).
+  /// A solve has converged once the largest component of the change of the residual is below this (rad, m); by the
+  /// platform's metric, once the change's length is below this share of the mechanism's reach (kToleranceByPlatform).
   /// Default 1e-15, Du et al. 2022, Section 5.1.
   double tolerance = 1e-15;
   /// Default 50, Du et al. 2022, Section 5.1.
   int max_iterations = 50;
 };
+
+/// The tolerance where a study by the platform's metric names none: some fifty times what solves round to.
+inline constexpr double kToleranceByPlatform = 1e-14;
 
 /// A factor set that the literature judges as one source of errors.
 struct CouplingSource {
@@ -160,6 +168,9 @@ struct ModelDescription {
   std::string workspace_note;                     ///< where that workspace comes from
   /// What a study may choose between, from "exact" to "first-order"; the first is the default. Empty: no choice.
   std::vector<std::string> fidelities;
+  /// How mismatch of angle is weighed against mismatch of position: "platform", by the displacement of its points, or
+  /// "published", radians against metres at the base's origin. Empty: nothing is weighed.
+  std::string metric = {};
   std::vector<PoseChart> charts;                    ///< other coordinates of poses
   std::vector<NamedCurve> curves;                   ///< trajectories of the literature
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
@@ -262,6 +273,9 @@ class Model {
 
   /// Infinite unless a model says otherwise.
   virtual ErrorBound error_bound(FactorIndex factor) const;
+
+  /// Points of the platform by which its limbs' mismatch is weighed, in its frame; empty where none are.
+  virtual std::vector<PlatformPoint> metric_points() const;
 
   /// What of the geometry is possible, but so unusual that it may be a slip; clauses for people: "the platform (l_A =
   /// 800 mm) is larger than the base (l_B = 200 mm)". None unless a model says otherwise.

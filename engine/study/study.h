@@ -24,6 +24,9 @@ struct MechanismChoice {
   Place place;                          ///< of the section, for messages about the geometry as a whole
   /// A second fidelity, solved on the same draws as the first and compared with it.
   std::optional<std::size_t> compared = std::nullopt;
+  /// Of the platform's metric; empty: the model's own.
+  std::vector<PlatformPoint> points = {};
+  Place points_place = {};  ///< for messages about the points
 };
 
 /// How each error source is distributed.

@@ -1,18 +1,38 @@
 #pragma once
 
+#include "models/chain/block_kernel_metric.h"
 #include "models/chain/block_kernel_passes.h"
 
 namespace poesy::chain {
 
-/// Solves a block with the kernel that fits the chain best.
+/// Calls work(kernel class) with the one that fits the chain best.
+template <class T, class Work>
+void with_kernel(const KernelChain& chain, Work work) {
+  const bool is_fixed = ThreeLimbs<3>::fits(chain);
+  if (chain.metric == nullptr) {
+    is_fixed ? work(KernelClass<BlockKernel<T, ThreeLimbs<3>, Published>>())
+             : work(KernelClass<BlockKernel<T, AnyShape, Published>>());
+  } else {
+    is_fixed ? work(KernelClass<BlockKernel<T, ThreeLimbs<3>, Weighted>>())
+             : work(KernelClass<BlockKernel<T, AnyShape, Weighted>>());
+  }
+}
+
+/// Solves a block.
 template <class T>
 void solve_block(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
                  const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
-  if (ThreeLimbs<3>::fits(chain)) {
-    BlockKernel<T, ThreeLimbs<3>>(chain, samples, start, options, outcome, scratch).solve();
-  } else {
-    BlockKernel<T, AnyShape>(chain, samples, start, options, outcome, scratch).solve();
-  }
+  with_kernel<T>(chain, [&](auto kernel) {
+    typename decltype(kernel)::Type(chain, samples, start, options, outcome, scratch).solve();
+  });
+}
+
+/// Maps a block to first order.
+template <class T>
+void map_block(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
+               const KernelOutcome& outcome, double* scratch) {
+  with_kernel<T>(
+      chain, [&](auto kernel) { typename decltype(kernel)::Type(chain, samples, {}, {}, outcome, scratch).map(map); });
 }
 
 }  // namespace poesy::chain

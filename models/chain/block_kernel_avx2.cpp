@@ -9,4 +9,9 @@ void solve_block_avx2(const KernelChain& chain, const KernelSamples& samples, co
   solve_block<simd::HWY_NAMESPACE::Pack>(chain, samples, start, options, outcome, scratch);
 }
 
+void map_block_avx2(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
+                    const KernelOutcome& outcome, double* scratch) {
+  map_block<simd::HWY_NAMESPACE::Pack>(chain, samples, map, outcome, scratch);
+}
+
 }  // namespace poesy::chain

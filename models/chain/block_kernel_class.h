@@ -17,26 +17,6 @@ enum class KernelPass {
   rescue      ///< Newton wherever its matrix is positive, else half a Gauss-Newton step
 };
 
-/// Solves blocks of samples of a parallel chain for J(q)^T delta_mu(q) = 0 (Du et al. 2022, Eqs. 40-44), T::kLanes
-/// samples at a time, T being simd::Number or a SIMD batch. Samples are independent: each is iterated until it is done,
-/// those that are not done close ranks after every round, and no operation mixes lanes.
-///
-/// published: x = N^-1 f with f = J^T delta_mu and N = J^T J, stopping rule as in DeformationSolver.
-///
-/// Newton: x = M^-1 f with M the negative derivative of f, exact to fourth order in the residual's angle. Beyond N it
-/// holds how the columns of J turn (the bracket of an earlier column with a later one) and how the logarithm bends
-/// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-5 of the diagonal of N, and
-/// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
-/// methods mean the same root. A sample goes through up to three passes:
-///   direct   Newton from the start; refused at a step that is not safe or larger than the options allow;
-///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
-///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds. Given up
-///            where the displacements come back to those of an earlier iteration;
-///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
-///            max_iterations: a root with positive derivative where Gauss-Newton finds none. Roots more than 0.5
-///            (rad, m) away from nominal displacements are other ways to assemble the chain, and do not count.
-/// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
-/// is carried along it to first order instead of being evaluated again.
 /// Three limbs, each paired with each other one, of equally many passive joints: known when the kernel is compiled, so
 /// that its loops unroll.
 template <std::size_t joints_per_limb>
@@ -63,6 +43,21 @@ struct ThreeLimbs {
   }
 };
 
+/// How residuals are weighed: as published, W = 1 in radians and metres at the base's origin.
+struct Published {
+  static constexpr bool kWeighted = false;  ///< W is not looked at
+};
+/// By the chain's metric.
+struct Weighted {
+  static constexpr bool kWeighted = true;  ///< W is the chain's
+};
+
+/// Carries a type.
+template <class Kernel>
+struct KernelClass {
+  using Type = Kernel;  ///< the kernel
+};
+
 /// Any number of limbs, joints and pairs.
 struct AnyShape {
   /// Nothing is known when the kernel is compiled.
@@ -72,8 +67,33 @@ struct AnyShape {
   /// @}
 };
 
-/// Solves a block in batches of T (models/simd), for chains of a Shape.
-template <class T, class Shape>
+/// Solves blocks of samples of a parallel chain for J(q)^T delta_mu(q) = 0 (Du et al. 2022, Eqs. 40-44), T::kLanes
+/// samples at a time, T being simd::Number or a SIMD batch
+/// (models/simd), for chains of a Shape and by a Measure. Samples are independent: each is iterated until it is done,
+/// those that are not done close ranks after every round, and no operation mixes lanes.
+///
+/// published: x = N^-1 f with f = J^T delta_mu and N = J^T J, stopping rule as in DeformationSolver.
+///
+/// Newton: x = M^-1 f with M the negative derivative of f, exact to fourth order in the residual's angle. Beyond N it
+/// holds how the columns of J turn (the bracket of an earlier column with a later one) and how the logarithm bends
+/// (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe when the pivots of M are at least 1e-5 of the diagonal of N, and
+/// 2 N - M is positive definite too: then Gauss-Newton contracts to the root that Newton is about to find, and both
+/// methods mean the same root. A sample goes through up to three passes:
+///   direct   Newton from the start; refused at a step that is not safe or larger than the options allow;
+///   follow   Gauss-Newton from nominal displacements, up to 8 max_iterations, and Newton as soon as its step is
+///            safe and below 1e-3, Gauss-Newton's below 2e-3: the root, if any, that Gauss-Newton finds. Given up
+///            where the displacements come back to those of an earlier iteration;
+///   rescue   Newton from nominal displacements with positive pivots, else half a Gauss-Newton step, up to
+///            max_iterations: a root with positive derivative where Gauss-Newton finds none. Roots more than 0.5
+///            (rad, m) away from nominal displacements are other ways to assemble the chain, and do not count.
+/// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
+/// is carried along it to first order instead of being evaluated again.
+///
+/// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. Radians and metres do
+/// not meet, so that Newton needs no passes: each batch is iterated until its last lane is done, from a start in
+/// proportion to the errors, with Gauss-Newton's step where Newton's is not safe. The length of a step is the largest
+/// distance that one joint's part of it moves the platform's points, over the reach.
+template <class T, class Shape, class Measure>
 class BlockKernel {
  public:
   /// Refers to all of it. scratch: as the kernel's caller provides it.
@@ -82,6 +102,8 @@ class BlockKernel {
 
   /// All samples of the block.
   void solve();
+  /// All samples to first order.
+  void map(const KernelMap& map);
 
  private:
   static constexpr std::size_t kLanes = T::kLanes;
@@ -161,6 +183,18 @@ class BlockKernel {
   template <KernelPass pass>
   void move(std::size_t from, std::size_t to);
 
+  // block_kernel_metric.h: solves by a metric.
+  template <bool newton>
+  void solve_by_metric();
+  template <bool newton>
+  void iterate(std::size_t at);
+  Verdict newton_by_metric(std::size_t at);
+  Verdict gauss_newton_by_metric(std::size_t at, std::uint32_t round);
+  void judge_by_metric(std::size_t at);
+  Screw weighted(const Screw& screw) const;
+  void weigh();
+  T step_length() const;
+
   // block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;
   void vary_segments(std::size_t at);
@@ -199,6 +233,7 @@ class BlockKernel {
   Motion* segment_;
   Motion* pose_;
   Screw* column_;
+  Screw* row_;  ///< W times each column, which as published is the column itself
   Screw* mu_;
   Screw* pull_;
   T* joint_;

@@ -4,9 +4,9 @@
 
 namespace poesy::chain {
 
-/// f = J^T delta_mu, from each limb's signed sum of the residuals it takes part in.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::gradient() {
+/// f = J^T W delta_mu, from each limb's signed sum of the residuals it takes part in.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::gradient() {
   for (std::size_t i = 0; i < limbs(); ++i) {
     for (int k = 0; k < 3; ++k) pull_[i].w[k] = pull_[i].v[k] = T(0.0);
   }
@@ -20,6 +20,9 @@ void BlockKernel<T, Shape>::gradient() {
       minus.v[k] = minus.v[k] - mu_[n].v[k];
     }
   }
+  if constexpr (Measure::kWeighted) {
+    for (std::size_t i = 0; i < limbs(); ++i) pull_[i] = weighted(pull_[i]);
+  }
   for (std::size_t i = 0; i < limbs(); ++i) {
     for (std::size_t a = first_joint(i); a < first_joint(i + 1); ++a) {
       f_[a] = kernel::dot(column_[a], pull_[i]);
@@ -27,12 +30,13 @@ void BlockKernel<T, Shape>::gradient() {
   }
 }
 
-/// N = J^T J, all of it.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::gauss_newton_matrix() {
+/// N = J^T W J, all of it.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
   const std::size_t size = joints();
   T* __restrict matrix = n_;
-  const Screw* __restrict column = column_;
+  const Screw* column = column_;
+  const Screw* row = row_;
   if constexpr (!Shape::kEveryPairOnce) {
     for (std::size_t n = 0; n < size * size; ++n) matrix[n] = T(0.0);
   }
@@ -41,7 +45,7 @@ void BlockKernel<T, Shape>::gauss_newton_matrix() {
     const std::size_t first = first_joint(i);
     for (std::size_t a = first; a < first_joint(i + 1); ++a) {
       for (std::size_t b = first; b <= a; ++b) {
-        matrix[a * size + b] = matrix[b * size + a] = meetings * kernel::dot(column[a], column[b]);
+        matrix[a * size + b] = matrix[b * size + a] = meetings * kernel::dot(row[a], column[b]);
       }
     }
   }
@@ -49,7 +53,7 @@ void BlockKernel<T, Shape>::gauss_newton_matrix() {
     const std::size_t i = chain_.pair[n].i, k = chain_.pair[n].k;
     for (std::size_t a = first_joint(i); a < first_joint(i + 1); ++a) {
       for (std::size_t b = first_joint(k); b < first_joint(k + 1); ++b) {
-        T product = -kernel::dot(column[a], column[b]);
+        T product = -kernel::dot(row[a], column[b]);
         if constexpr (!Shape::kEveryPairOnce) product = product + matrix[a * size + b];
         matrix[a * size + b] = matrix[b * size + a] = product;
       }
@@ -58,12 +62,13 @@ void BlockKernel<T, Shape>::gauss_newton_matrix() {
 }
 
 /// M = N + how the logarithm bends - how the columns turn.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::newton_matrix() {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::newton_matrix() {
   const std::size_t size = joints();
   T* __restrict matrix = m_;
   const T* __restrict symmetric = n_;
-  const Screw* __restrict column = column_;
+  const Screw* column = column_;
+  const Screw* row = row_;
   const Screw* __restrict mu = mu_;
   // Where each entry is changed once, it is read from N and written to M; else M starts as a copy.
   const T* __restrict source = symmetric;
@@ -95,11 +100,11 @@ void BlockKernel<T, Shape>::newton_matrix() {
         }
         const std::size_t other = is_i ? chain_.pair[n].k : chain_.pair[n].i;
         for (std::size_t a = first_joint(other); a < first_joint(other + 1); ++a) {
-          matrix[a * size + b] = source[a * size + b] - kernel::dot(column[a], bend);
+          matrix[a * size + b] = source[a * size + b] - kernel::dot(row[a], bend);
         }
       }
       for (std::size_t a = first_joint(b_limb); a < first_joint(b_limb + 1); ++a) {
-        T entry = source[a * size + b] + kernel::dot(column[a], own);
+        T entry = source[a * size + b] + kernel::dot(row[a], own);
         if (a > b) entry = entry - kernel::dot(kernel::bracket(column[b], column[a]), pull_[b_limb]);
         matrix[a * size + b] = entry;
       }
@@ -109,9 +114,9 @@ void BlockKernel<T, Shape>::newton_matrix() {
 
 /// L D L^T of a symmetric matrix whose entry (a, b), b <= a, is entry(a, b). Leaves L D below the diagonal of work_,
 /// L^T above it and 1 / D behind it; returns the smallest of pivot - ratio x diagonal entry.
-template <class T, class Shape>
+template <class T, class Shape, class Measure>
 template <class Entry>
-T BlockKernel<T, Shape>::factor(Entry entry, double ratio) {
+T BlockKernel<T, Shape, Measure>::factor(Entry entry, double ratio) {
   const std::size_t size = joints();
   T* __restrict l = work_;
   T* __restrict inverse = work_ + size * size;
@@ -140,8 +145,8 @@ T BlockKernel<T, Shape>::factor(Entry entry, double ratio) {
 }
 
 /// Where 2 N - M is positive definite, so that Gauss-Newton contracts here.
-template <class T, class Shape>
-typename T::MaskType BlockKernel<T, Shape>::contracts() {
+template <class T, class Shape, class Measure>
+typename T::MaskType BlockKernel<T, Shape, Measure>::contracts() {
   const std::size_t size = joints();
   const auto entry = [&](std::size_t a, std::size_t b) {
     return nmadd(T(0.5), m_[a * size + b] + m_[b * size + a], n_[a * size + b] + n_[a * size + b]);
@@ -150,8 +155,8 @@ typename T::MaskType BlockKernel<T, Shape>::contracts() {
 }
 
 /// Solves N x = f; lanes are true where no pivot falls to rounding.
-template <class T, class Shape>
-typename T::MaskType BlockKernel<T, Shape>::gauss_newton_step(T* __restrict x) {
+template <class T, class Shape, class Measure>
+typename T::MaskType BlockKernel<T, Shape, Measure>::gauss_newton_step(T* __restrict x) {
   const std::size_t size = joints();
   const double rounding = 4.0 * static_cast<double>(size) * 2.220446049250313e-16;
   const T margin = factor([&](std::size_t a, std::size_t b) { return n_[a * size + b]; }, rounding);
@@ -171,8 +176,8 @@ typename T::MaskType BlockKernel<T, Shape>::gauss_newton_step(T* __restrict x) {
 }
 
 /// Solves M x = f by elimination without pivoting; M is destroyed. Lanes are true where all pivots are safely positive.
-template <class T, class Shape>
-typename T::MaskType BlockKernel<T, Shape>::newton_step(T* __restrict x) {
+template <class T, class Shape, class Measure>
+typename T::MaskType BlockKernel<T, Shape, Measure>::newton_step(T* __restrict x) {
   const std::size_t size = joints();
   T* __restrict m = m_;
   T* __restrict inverse = work_;
@@ -201,8 +206,8 @@ typename T::MaskType BlockKernel<T, Shape>::newton_step(T* __restrict x) {
 
 /// The residual of these lanes after the step x, to first order: V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k - V_i),
 /// with V the limbs' motions.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::carry_residual(const T* x, typename T::MaskType lanes) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::carry_residual(const T* x, typename T::MaskType lanes) {
   for (std::size_t i = 0; i < limbs(); ++i) {
     Screw motion;
     for (int k = 0; k < 3; ++k) motion.w[k] = motion.v[k] = T(0.0);

@@ -60,8 +60,8 @@ inline Motion divide(const Motion& a, const Motion& b) {
 }  // namespace kernel
 
 /// Delta g of Eq. 26, or its inverse.
-template <class T, class Shape>
-auto BlockKernel<T, Shape>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
+template <class T, class Shape, class Measure>
+auto BlockKernel<T, Shape, Measure>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
   T e[6];
   for (int n = 0; n < 6; ++n) {
     const int row = piece.varied_row[n];
@@ -78,8 +78,8 @@ auto BlockKernel<T, Shape>::error_motion(const KernelPiece& piece, std::size_t a
   return g;
 }
 
-template <class T, class Shape>
-void BlockKernel<T, Shape>::vary_segments(std::size_t at) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::vary_segments(std::size_t at) {
   for (std::size_t s = 0; s < chain_.segments; ++s) {
     const KernelSegment& segment = chain_.segment[s];
     if (segment.pieces == 1 && !chain_.piece[segment.first_piece].is_error) continue;
@@ -104,8 +104,8 @@ void BlockKernel<T, Shape>::vary_segments(std::size_t at) {
 }
 
 /// Eq. 28, with the spatial Jacobian columns of Eqs. 32-39 on the way. A joint touches two columns of R, or p.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::limb_pose(std::size_t i, Motion& pose) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::limb_pose(std::size_t i, Motion& pose) {
   // Each limb before this one has a segment more than joints.
   const Motion* segment = segment_ + i;
   Motion g = segment[first_joint(i)];
@@ -134,16 +134,16 @@ void BlockKernel<T, Shape>::limb_pose(std::size_t i, Motion& pose) {
   pose = g;
 }
 
-template <class T, class Shape>
-void BlockKernel<T, Shape>::residuals() {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::residuals() {
   for (std::size_t i = 0; i < limbs(); ++i) limb_pose(i, pose_[i]);
   for (std::size_t n = 0; n < pairs(); ++n) {
     mu_[n] = log(kernel::divide(pose_[chain_.pair[n].k], pose_[chain_.pair[n].i]));
   }
 }
 
-template <class T, class Shape>
-auto BlockKernel<T, Shape>::log(const Motion& g) -> Screw {
+template <class T, class Shape, class Measure>
+auto BlockKernel<T, Shape, Measure>::log(const Motion& g) -> Screw {
   const auto turn = simd::rotation_log(g.r);
   Screw screw;
   for (int k = 0; k < 3; ++k) screw.w[k] = turn.w[k];

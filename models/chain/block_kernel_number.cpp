@@ -9,4 +9,9 @@ void solve_block_plain(const KernelChain& chain, const KernelSamples& samples, c
   solve_block<simd::Number>(chain, samples, start, options, outcome, scratch);
 }
 
+void map_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
+                     const KernelOutcome& outcome, double* scratch) {
+  map_block<simd::Number>(chain, samples, map, outcome, scratch);
+}
+
 }  // namespace poesy::chain

@@ -4,9 +4,10 @@
 
 namespace poesy::chain {
 
-template <class T, class Shape>
-BlockKernel<T, Shape>::BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
-                                   const KernelOptions& options, const KernelOutcome& outcome, double* scratch)
+template <class T, class Shape, class Measure>
+BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const KernelSamples& samples,
+                                            const KernelStart& start, const KernelOptions& options,
+                                            const KernelOutcome& outcome, double* scratch)
     : chain_(chain),
       samples_(samples),
       start_(start),
@@ -22,6 +23,7 @@ BlockKernel<T, Shape>::BlockKernel(const KernelChain& chain, const KernelSamples
   segment_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.segments));
   pose_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.limbs));
   column_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
+  row_ = Measure::kWeighted ? reinterpret_cast<Screw*>(take_lanes(6 * chain.joints)) : column_;
   mu_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.pairs));
   pull_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.limbs));
   joint_ = reinterpret_cast<T*>(take_lanes(chain.joints));
@@ -40,8 +42,8 @@ BlockKernel<T, Shape>::BlockKernel(const KernelChain& chain, const KernelSamples
   left_ = index_ + capacity_;
 }
 
-template <class T, class Shape>
-void BlockKernel<T, Shape>::solve() {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::solve() {
   for (std::size_t s = 0; s < chain_.segments; ++s) {
     const KernelPiece& piece = chain_.piece[chain_.segment[s].first_piece];
     if (chain_.segment[s].pieces != 1 || piece.is_error) continue;
@@ -50,7 +52,9 @@ void BlockKernel<T, Shape>::solve() {
   }
   for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
   const std::uint32_t cap = options_.max_iterations;
-  if (options_.method == KernelMethod::gauss_newton) {
+  if constexpr (Measure::kWeighted) {
+    options_.method == KernelMethod::gauss_newton ? solve_by_metric<false>() : solve_by_metric<true>();
+  } else if (options_.method == KernelMethod::gauss_newton) {
     run<KernelPass::published>(samples_.count, cap);
   } else {
     std::size_t left = run<KernelPass::direct>(samples_.count, cap < kDirectIterations ? cap : kDirectIterations);
@@ -62,9 +66,36 @@ void BlockKernel<T, Shape>::solve() {
   for (std::size_t at = 0; at < samples_.count; at += kLanes) judge(at);
 }
 
-/// Eqs. 45-50: mean of the angular and of the linear norms over the pairs, and the largest norm of both together.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::judge(std::size_t at) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
+  const std::size_t rows = 6 * pairs();
+  for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
+  begin(samples_.count, false);
+  pad(samples_.count);
+  for (std::size_t at = 0; at < samples_.count; at += kLanes) {
+    T* mu = reinterpret_cast<T*>(mu_);
+    for (std::size_t n = 0; n < rows; ++n) mu[n] = T(map.constant[n]);
+    for (std::size_t v = 0; v < samples_.varied; ++v) {
+      const T value = T::load(value_ + v * capacity_ + at);
+      const double* effects = map.effects + v * rows;
+      for (std::size_t n = 0; n < rows; ++n) mu[n] = madd(T(effects[n]), value, mu[n]);
+    }
+    const unsigned finite = bits(finite_residual());
+    for (std::size_t n = 0; n < rows; ++n) mu[n].store(outcome_.delta_mu + n * outcome_.stride + at);
+    for (std::size_t lane = 0; lane < kLanes && at + lane < samples_.count; ++lane) {
+      const bool is_finite = (finite >> lane & 1u) != 0;
+      outcome_.status[at + lane] = is_finite ? SolveStatus::converged : SolveStatus::non_finite;
+      outcome_.iterations[at + lane] = 1;
+    }
+    judge(at);
+  }
+}
+
+/// By a metric see judge_by_metric(). As published Eqs. 45-50: mean of the angular and of the linear norms over the
+/// pairs, and the largest norm of both together.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::judge(std::size_t at) {
+  if constexpr (Measure::kWeighted) return judge_by_metric(at);
   T angular(0.0), linear(0.0), largest(0.0);
   for (std::size_t n = 0; n < pairs(); ++n) {
     T mu[6];
@@ -82,9 +113,9 @@ void BlockKernel<T, Shape>::judge(std::size_t at) {
 }
 
 /// Solves the samples named in left_[0 .. count); leaves there those that it did not solve, and says how many.
-template <class T, class Shape>
+template <class T, class Shape, class Measure>
 template <KernelPass pass>
-std::size_t BlockKernel<T, Shape>::run(std::size_t count, std::uint32_t rounds) {
+std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t rounds) {
   constexpr bool published = pass == KernelPass::published;
   constexpr bool last_pass = published || pass == KernelPass::rescue;
   if (count == 0) return 0;
@@ -121,8 +152,8 @@ std::size_t BlockKernel<T, Shape>::run(std::size_t count, std::uint32_t rounds) 
   return left;
 }
 
-template <class T, class Shape>
-void BlockKernel<T, Shape>::begin(std::size_t count, bool predicted) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
   for (std::size_t b = 0; b < count; ++b) {
     index_[b] = left_[b];
     for (std::size_t v = 0; v < samples_.varied; ++v) {
@@ -131,7 +162,7 @@ void BlockKernel<T, Shape>::begin(std::size_t count, bool predicted) {
     smallest_[b] = 1e308;
     flat_[b] = 0.0;
   }
-  if (predicted && start_.fits > 0) {
+  if (predicted && (start_.fits > 0 || start_.slopes != nullptr)) {
     pad(count);
     for (std::size_t at = 0; at < count; at += kLanes) predict(at);
     return;
@@ -141,11 +172,17 @@ void BlockKernel<T, Shape>::begin(std::size_t count, bool predicted) {
   }
 }
 
-/// The Chebyshev series of the fit that a sample lies in, summed by Clenshaw's recurrence.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::predict(std::size_t at) {
-  const T value = T::load(value_ + at);
+/// In proportion to the errors where slopes are known; the Chebyshev series of the fit that a sample lies in, summed by
+/// Clenshaw's recurrence.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::predict(std::size_t at) {
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T(chain_.joint[j].nominal);
+  for (std::size_t v = 0; start_.slopes != nullptr && v < samples_.varied; ++v) {
+    const T own = T::load(value_ + v * capacity_ + at);
+    const double* slope = start_.slopes + v * joints();
+    for (std::size_t j = 0; j < joints(); ++j) joint_[j] = madd(T(slope[j]), own, joint_[j]);
+  }
+  const T value = T::load(value_ + at);
   for (std::size_t n = 0; n < start_.fits; ++n) {
     const KernelFit& fit = start_.fit[n];
     const T x = (value - T(fit.center)) * T(1.0 / fit.half_width);
@@ -168,8 +205,8 @@ void BlockKernel<T, Shape>::predict(std::size_t at) {
 }
 
 /// Fills the lanes behind the last sample with copies of it: they are solved and forgotten.
-template <class T, class Shape>
-void BlockKernel<T, Shape>::pad(std::size_t count) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::pad(std::size_t count) {
   const std::size_t rows = samples_.varied + joints() + kernel_memory(chain_) + 2;
   for (std::size_t b = count; b % kLanes != 0; ++b) {
     // value_, q_, memory_, smallest_ and flat_ lie behind each other.
@@ -177,8 +214,8 @@ void BlockKernel<T, Shape>::pad(std::size_t count) {
   }
 }
 
-template <class T, class Shape>
-void BlockKernel<T, Shape>::evaluate(std::size_t at) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::evaluate(std::size_t at) {
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(q_ + j * capacity_ + at);
   vary_segments(at);
   residuals();
@@ -186,8 +223,8 @@ void BlockKernel<T, Shape>::evaluate(std::size_t at) {
   gauss_newton_matrix();
 }
 
-template <class T, class Shape>
-typename T::MaskType BlockKernel<T, Shape>::finite_residual() const {
+template <class T, class Shape, class Measure>
+typename T::MaskType BlockKernel<T, Shape, Measure>::finite_residual() const {
   T sum(0.0);
   for (std::size_t n = 0; n < pairs(); ++n) {
     for (int k = 0; k < 3; ++k) sum = sum + abs(mu_[n].w[k]) + abs(mu_[n].v[k]);
@@ -195,20 +232,20 @@ typename T::MaskType BlockKernel<T, Shape>::finite_residual() const {
   return sum < T(1e300);
 }
 
-template <class T, class Shape>
-T BlockKernel<T, Shape>::largest(const T* x) const {
+template <class T, class Shape, class Measure>
+T BlockKernel<T, Shape, Measure>::largest(const T* x) const {
   T size(0.0);
   for (std::size_t j = 0; j < joints(); ++j) size = max(size, abs(x[j]));
   return size;
 }
 
-template <class T, class Shape>
-void BlockKernel<T, Shape>::take_step(std::size_t at, const T* x) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::take_step(std::size_t at, const T* x) {
   for (std::size_t j = 0; j < joints(); ++j) (joint_[j] + x[j]).store(q_ + j * capacity_ + at);
 }
 
-template <class T, class Shape>
-auto BlockKernel<T, Shape>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
+template <class T, class Shape, class Measure>
+auto BlockKernel<T, Shape, Measure>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
   evaluate(at);
   T change(0.0);
   for (std::size_t n = 0; n < pairs(); ++n) {
@@ -236,9 +273,9 @@ auto BlockKernel<T, Shape>::published_round(std::size_t at, std::uint32_t round,
   return verdict;
 }
 
-template <class T, class Shape>
+template <class T, class Shape, class Measure>
 template <KernelPass pass>
-auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) -> Verdict {
+auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t round) -> Verdict {
   evaluate(at);
   const auto finite = finite_residual();
   Verdict verdict;
@@ -292,8 +329,8 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
 }
 
 /// Lanes that are back where they were at the last power of two of rounds: Gauss-Newton goes round for ever.
-template <class T, class Shape>
-typename T::MaskType BlockKernel<T, Shape>::cycles(std::size_t at, std::uint32_t round) {
+template <class T, class Shape, class Measure>
+typename T::MaskType BlockKernel<T, Shape, Measure>::cycles(std::size_t at, std::uint32_t round) {
   const bool remember = (round & (round - 1)) == 0;
   T distance(0.0);
   for (std::size_t j = 0; j < joints(); ++j) {
@@ -305,8 +342,9 @@ typename T::MaskType BlockKernel<T, Shape>::cycles(std::size_t at, std::uint32_t
   return distance < T(kSamePlace);
 }
 
-template <class T, class Shape>
-void BlockKernel<T, Shape>::finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations) {
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::finish(std::size_t at, std::size_t lane, SolveStatus status,
+                                            std::uint32_t iterations) {
   const std::size_t sample = index_[at + lane];
   const double* mu = reinterpret_cast<const double*>(mu_);
   for (std::size_t n = 0; n < 6 * pairs(); ++n) outcome_.delta_mu[n * outcome_.stride + sample] = mu[n * kLanes + lane];
@@ -320,9 +358,9 @@ void BlockKernel<T, Shape>::finish(std::size_t at, std::size_t lane, SolveStatus
 }
 
 /// Samples that go on close ranks.
-template <class T, class Shape>
+template <class T, class Shape, class Measure>
 template <KernelPass pass>
-void BlockKernel<T, Shape>::move(std::size_t from, std::size_t to) {
+void BlockKernel<T, Shape, Measure>::move(std::size_t from, std::size_t to) {
   if (from == to) return;
   index_[to] = index_[from];
   const std::size_t needed = samples_.varied + joints();

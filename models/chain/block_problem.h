@@ -56,6 +56,9 @@ struct KernelChain {
   const KernelSegment* segment;  ///< [joints + limbs], limb by limb
   std::size_t segments;          ///< how many
   const KernelPiece* piece;      ///< of all segments
+  const double* metric;          ///< [36] W by rows, see Metric; null: as published
+  double origin[3];              ///< of the platform (m), by a metric
+  double reach;                  ///< m, by a metric
 };
 
 /// Samples in rows: entry (v, b) at v * stride + b.
@@ -66,7 +69,7 @@ struct KernelSamples {
   std::size_t count;     ///< B
 };
 
-/// /// Where solves start whose one varied error lies within half_width of center: a Chebyshev series of each passive
+/// Where solves start whose one varied error lies within half_width of center: a Chebyshev series of each passive
 /// joint's displacement in (value - center) / half_width, [joints x kStartTerms].
 struct KernelFit {
   double center;               ///< of the error's range, SI
@@ -75,10 +78,17 @@ struct KernelFit {
 };
 inline constexpr std::size_t kStartTerms = 16;
 
-/// Fits for ranges of the error. Outside of all of them solves start from nominal displacements.
+/// Fits for ranges of the error. Outside of all of them solves start from nominal displacements, or in proportion.
 struct KernelStart {
   const KernelFit* fit;  ///< [fits], with ranges that do not overlap
   std::size_t fits;      ///< how many
+  const double* slopes;  ///< [varied x joints] by how much joints give way to an error, to first order; or null
+};
+
+/// Residuals to first order: constant + sum over v of effects[v] x value v.
+struct KernelMap {
+  const double* constant;  ///< [6 pairs]
+  const double* effects;   ///< [varied x 6 pairs]
 };
 
 enum class KernelMethod {
@@ -90,10 +100,10 @@ enum class KernelMethod {
 /// How a kernel iterates; see SolverOptions.
 struct KernelOptions {
   KernelMethod method;           ///< which iteration
-  double tolerance;              ///< on the change of the residual
+  double tolerance;              ///< on the change of the residual; by a metric relative to the reach, as all below
   double rounding_level;         ///< below which a change may be rounding
   double last_step;              ///< a safe Newton step below this is the last one
-  double largest_step;           ///< that Newton may take from a start
+  double largest_step;           ///< that Newton may take from a start; not used by a metric
   std::uint32_t max_iterations;  ///< after which a sample is given up
 };
 
@@ -101,7 +111,7 @@ struct KernelOptions {
 /// sample are overwritten.
 struct KernelOutcome {
   double* delta_mu;           ///< [6 pairs x stride]
-  double* responses;          ///< [3 x stride]: angular, linear, max
+  double* responses;          ///< [3 x stride]: angular, linear, max; by a metric gap, angular, linear
   double* displacements;      ///< [joints x stride], of passive joints; or null
   SolveStatus* status;        ///< [stride]
   std::uint32_t* iterations;  ///< [stride]
@@ -114,7 +124,7 @@ inline constexpr std::size_t kMostLanes = 8;
 /// Samples that fit into rows of scratch, with room for the lanes behind the last one.
 static constexpr std::size_t kernel_capacity(std::size_t count) { return (count / kMostLanes + 2) * kMostLanes; }
 
-/// /// Rows that a pass may keep of earlier rounds: residuals, or displacements.
+/// Rows that a pass may keep of earlier rounds: residuals, or displacements.
 static constexpr std::size_t kernel_memory(const KernelChain& chain) {
   return 6 * chain.pairs > chain.joints ? 6 * chain.pairs : chain.joints;
 }
@@ -123,10 +133,14 @@ static constexpr std::size_t kernel_memory(const KernelChain& chain) {
 static constexpr std::size_t kernel_scratch(const KernelChain& chain, const KernelSamples& samples) {
   const std::size_t rows = samples.varied + chain.joints + kernel_memory(chain) + 2 + 1;
   const std::size_t motions = 12 * (chain.segments + chain.limbs);
-  const std::size_t screws = 6 * (chain.joints + chain.pairs + chain.limbs);
+  const std::size_t screws = 6 * (2 * chain.joints + chain.pairs + chain.limbs);
   const std::size_t equations = 3 * chain.joints * chain.joints + 5 * chain.joints;
   return rows * kernel_capacity(samples.count) + (motions + screws + equations) * kMostLanes;
 }
+
+/// Maps a block to first order. scratch: as for a solve.
+using KernelMapBlock = void (*)(const KernelChain&, const KernelSamples&, const KernelMap&, const KernelOutcome&,
+                                double* scratch);
 
 /// Solves a block. scratch: aligned to 64 bytes.
 using KernelSolve = void (*)(const KernelChain&, const KernelSamples&, const KernelStart&, const KernelOptions&,

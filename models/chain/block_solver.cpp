@@ -27,20 +27,20 @@ constexpr double kTrustedTail = 1e-4;
 constexpr int kSplits = 2;
 constexpr std::size_t kMostFits = (std::size_t{2} << kSplits) - 1;
 
-KernelSolve best_kernel() {
+Kernels best_kernels() {
   switch (simd::selected_isa()) {
 #ifdef POESY_KERNELS_X86
     case simd::Isa::avx512:
-      return solve_block_avx512;
+      return {solve_block_avx512, map_block_avx512};
     case simd::Isa::avx2:
-      return solve_block_avx2;
+      return {solve_block_avx2, map_block_avx2};
 #endif
 #ifdef POESY_KERNELS_ARM
     case simd::Isa::neon:
-      return solve_block_neon;
+      return {solve_block_neon, map_block_neon};
 #endif
     default:
-      return solve_block_plain;
+      return {solve_block_plain, map_block_plain};
   }
 }
 
@@ -69,14 +69,16 @@ double* aligned(std::vector<double>& memory) {
 
 }  // namespace
 
-BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& options)
+BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& options, Fidelity fidelity)
     : chain_(&chain),
+      fidelity_(fidelity),
       options_{options.method == SolverOptions::Method::newton ? KernelMethod::newton : KernelMethod::gauss_newton,
                options.tolerance, rounding_level(chain),
                // Newton's error falls with the square of its steps. Rounding alone makes steps of about 1e-14.
                std::max(std::sqrt(options.tolerance / 10.0), 1e-10), kLargestStep,
                static_cast<std::uint32_t>(options.max_iterations)},
-      kernel_(best_kernel()) {
+      kernels_(best_kernels()),
+      first_order_(chain) {
   std::size_t joint = 0;
   for (const Limb& limb : chain.limbs) {
     limbs_.push_back({joint, limb.passive_joints(), 0.0});
@@ -98,7 +100,7 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
 }
 
 void BlockSolver::prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
-                          std::span<const VariedEntry> varied, double range) {
+                          std::span<const FrameEntry> varied, double range, const Metric* metric) {
   POESY_EXPECTS(displacements.size() == chain_->joints() && errors.size() == chain_->frames());
   joints_.clear();
   segments_.clear();
@@ -125,8 +127,12 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
     ++frame;
     close_segment();
   }
+  metric_ = metric;
+  options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
   fits_.clear();
   fits_made_ = 0;
+  if (metric != nullptr || fidelity_ == Fidelity::first_order) find_slopes(displacements, errors, varied);
+  if (fidelity_ == Fidelity::first_order) return;
   if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) {
     predict_starts(0.0, range, kSplits);
   }
@@ -146,7 +152,7 @@ void BlockSolver::add_piece(const lie::Transform<double>& motion) {
 }
 
 void BlockSolver::add_frame(const Limb& limb, std::size_t j, std::size_t frame, const FrameError<double>& error,
-                            std::span<const VariedEntry> varied) {
+                            std::span<const FrameEntry> varied) {
   KernelPiece piece{};
   piece.is_error = true;
   piece.inverted = j + 1 == limb.frames();
@@ -174,6 +180,35 @@ void BlockSolver::add_frame(const Limb& limb, std::size_t j, std::size_t frame, 
 void BlockSolver::close_segment() {
   segments_.push_back({first_piece_, pieces_.size() - first_piece_});
   first_piece_ = pieces_.size();
+}
+
+/// What each varied entry does to first order, and what all constant errors do together. By a metric solves start so.
+void BlockSolver::find_slopes(std::span<const double> displacements, std::span<const FrameError<double>> errors,
+                              std::span<const FrameEntry> varied) {
+  const std::size_t rows = 6 * pairs_.size();
+  slopes_.assign(varied.size() * joints_.size(), 0.0);
+  effects_.assign(varied.size() * rows, 0.0);
+  constant_.assign(rows, 0.0);
+  is_singular_ = !first_order_.prepare(displacements, metric_ == nullptr ? nullptr : &metric_->W);
+  if (is_singular_) return;
+  for (std::size_t v = 0; v < varied.size(); ++v) {
+    first_order_.effect(varied[v], std::span(effects_).subspan(v * rows, rows),
+                        std::span(slopes_).subspan(v * joints_.size(), joints_.size()));
+  }
+  std::vector<double> effect(rows);
+  std::vector<double> slope(joints_.size());
+  for (std::size_t frame = 0; frame < errors.size(); ++frame) {
+    for (std::size_t component = 0; component < 6; ++component) {
+      const double error = errors[frame][static_cast<Eigen::Index>(component)];
+      const bool varies = std::ranges::any_of(
+          varied, [&](const FrameEntry& entry) { return entry.frame == frame && entry.component == component; });
+      if (error == 0.0 || varies) continue;
+      first_order_.effect({frame, component}, effect, slope);
+      for (std::size_t n = 0; n < rows; ++n) constant_[n] += error * effect[n];
+      if (metric_ == nullptr) continue;
+      for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].nominal += error * slope[j];
+    }
+  }
 }
 
 /// Fits a range of the varied error; where the fit is not as good as it should be, fits its halves.
@@ -214,35 +249,73 @@ double BlockSolver::fit_starts(double center, double half_width) {
         sum += node_displacements_[j * stride + k] * cosines_[n * kStartTerms + k];
       }
       coefficients[j * kStartTerms + n] = (n == 0 ? 1.0 : 2.0) / kStartTerms * sum;
-      if (n + 3 >= kStartTerms) tail = std::max(tail, std::abs(coefficients[j * kStartTerms + n]));
+      const double unit = metric_ == nullptr || joints_[j].revolute ? 1.0 : metric_->reach;
+      if (n + 3 >= kStartTerms) tail = std::max(tail, std::abs(coefficients[j * kStartTerms + n]) / unit);
     }
   }
   return tail;
 }
 
-void BlockSolver::solve(std::span<const double> values, std::size_t count) { run(values, count, options_, nullptr); }
+void BlockSolver::solve(std::span<const double> values, std::size_t count) {
+  if (fidelity_ == Fidelity::first_order) return map(values, count);
+  run(values, count, options_, nullptr);
+}
+
+void BlockSolver::map(std::span<const double> values, std::size_t count) {
+  const KernelChain chain = kernel_chain();
+  POESY_EXPECTS(values.size() == varied_ * count);
+  const KernelSamples samples{values.data(), varied_, count, count};
+  double* scratch = make_room(chain, samples);
+  kernels_.map(chain, samples, {constant_.data(), effects_.data()}, outcome(nullptr), scratch);
+  if (is_singular_) std::ranges::fill(status_, SolveStatus::singular);
+}
 
 void BlockSolver::run(std::span<const double> values, std::size_t count, const KernelOptions& options,
                       double* displacements) {
   POESY_EXPECTS(values.size() == varied_ * count);
   const KernelChain chain = kernel_chain();
   const KernelSamples samples{values.data(), varied_, count, count};
-  const std::size_t stride = kernel_capacity(count);
+  double* scratch = make_room(chain, samples);
+  const double* slopes = metric_ == nullptr || is_singular_ ? nullptr : slopes_.data();
+  kernels_.solve(chain, samples, {fits_.data(), fits_.size(), slopes}, options, outcome(displacements), scratch);
+}
+
+/// For these samples; returns scratch.
+double* BlockSolver::make_room(const KernelChain& chain, const KernelSamples& samples) {
+  const std::size_t stride = kernel_capacity(samples.count);
   // One alignment's worth more than needed, so that an aligned start fits.
   scratch_.resize(std::max(scratch_.size(), kernel_scratch(chain, samples) + kMostLanes));
   delta_mu_.resize(6 * chain.pairs * stride);
   responses_.resize(3 * stride);
   status_.resize(stride);
   iterations_.resize(stride);
-  count_ = count;
-  kernel_(chain, samples, {fits_.data(), fits_.size()}, options,
-          {delta_mu_.data(), responses_.data(), displacements, status_.data(), iterations_.data(), stride},
-          aligned(scratch_));
+  count_ = samples.count;
+  return aligned(scratch_);
+}
+
+KernelOutcome BlockSolver::outcome(double* displacements) {
+  return {delta_mu_.data(), responses_.data(),  displacements,
+          status_.data(),   iterations_.data(), kernel_capacity(count_)};
 }
 
 KernelChain BlockSolver::kernel_chain() const {
-  return {limbs_.data(),  limbs_.size(),    pairs_.data(),    pairs_.size(), joints_.data(),
-          joints_.size(), segments_.data(), segments_.size(), pieces_.data()};
+  KernelChain chain{limbs_.data(),
+                    limbs_.size(),
+                    pairs_.data(),
+                    pairs_.size(),
+                    joints_.data(),
+                    joints_.size(),
+                    segments_.data(),
+                    segments_.size(),
+                    pieces_.data(),
+                    nullptr,
+                    {},
+                    0.0};
+  if (metric_ == nullptr) return chain;
+  chain.metric = metric_->W.data();  // symmetric: by columns is by rows
+  std::copy_n(metric_->origin.data(), 3, chain.origin);
+  chain.reach = metric_->reach;
+  return chain;
 }
 
 }  // namespace poesy::chain

@@ -5,34 +5,44 @@
 
 #include "engine/model/model.h"
 #include "models/chain/block_problem.h"
+#include "models/chain/first_order.h"
 #include "models/chain/limb.h"
+#include "models/chain/metric.h"
 
 namespace poesy::chain {
 
-/// An entry of a fixed frame's error that varies from sample to sample.
-struct VariedEntry {
-  std::size_t frame;      ///< among all frames, limb by limb
-  std::size_t component;  ///< of [omega; v]
+/// In the order of ModelDescription::fidelities.
+enum class Fidelity : std::size_t {
+  exact,       ///< solved
+  first_order  ///< linear in the errors, in closed form; see FirstOrder
+};
+
+/// What there is for an instruction set.
+struct Kernels {
+  KernelSolve solve;   ///< of a block
+  KernelMapBlock map;  ///< of a block
 };
 
 /// Solves blocks of samples with the fastest kernel this machine has. Owns the scratch of one thread.
-/// The methods and their guarantees are those of BlockKernel; gauss_newton is Scheme I as DeformationSolver states it.
+/// The methods and their guarantees are those of BlockKernel; gauss_newton is Scheme I as DeformationSolver states it,
+/// by a metric or as published.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.
-  BlockSolver(const ParallelChain& chain, const SolverOptions& options);
+  BlockSolver(const ParallelChain& chain, const SolverOptions& options, Fidelity fidelity = Fidelity::exact);
 
   /// Fixes what the samples of the next calls have in common: nominal displacements of all joints (rad, m), constant
-  /// errors [frames], and the entries that vary. With one varied entry and a range, Newton's starts are predicted.
+  /// errors [frames], the entries that vary, and by which metric (null: as published; it must outlive the solves).
+  /// Newton's starts are predicted with one varied entry and a range, and by a metric always.
   void prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
-               std::span<const VariedEntry> varied, double range);
+               std::span<const FrameEntry> varied, double range, const Metric* metric = nullptr);
 
-  /// values: [varied x count], row-major.
+  /// values: [varied x count], row-major. To first order (FirstOrder) a singular pose makes every sample singular.
   void solve(std::span<const double> values, std::size_t count);
 
-  /// Row n of the last solve's residuals, [6 x pairs], or of its responses (angular, linear, max); each [count].
+  /// Row n of the last block's residuals, [6 x pairs], of [count].
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
-  /// A row of the last block's responses: angular, linear, max.
+  /// A row of the last block's responses: angular, linear, max; by a metric gap, angular, linear.
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
   /// Of the last block, for each sample.
   std::span<const SolveStatus> status() const { return std::span(status_).first(count_); }
@@ -45,16 +55,28 @@ class BlockSolver {
   }
   void add_piece(const lie::Transform<double>& motion);
   void add_frame(const Limb& limb, std::size_t j, std::size_t frame, const FrameError<double>& error,
-                 std::span<const VariedEntry> varied);
+                 std::span<const FrameEntry> varied);
   void close_segment();
+  void find_slopes(std::span<const double> displacements, std::span<const FrameError<double>> errors,
+                   std::span<const FrameEntry> varied);
   void predict_starts(double center, double half_width, int splits_left);
   double fit_starts(double center, double half_width);
   void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);
+  void map(std::span<const double> values, std::size_t count);
+  double* make_room(const KernelChain& chain, const KernelSamples& samples);
+  KernelOutcome outcome(double* displacements);
   KernelChain kernel_chain() const;
 
   const ParallelChain* chain_;
+  Fidelity fidelity_;
   KernelOptions options_;
-  KernelSolve kernel_;
+  Kernels kernels_;
+  FirstOrder first_order_;
+  const Metric* metric_ = nullptr;
+  bool is_singular_ = false;      ///< the first order does not exist
+  std::vector<double> slopes_;    ///< [varied x joints]
+  std::vector<double> effects_;   ///< [varied x 6 pairs]
+  std::vector<double> constant_;  ///< [6 pairs], of constant errors
   std::vector<KernelLimb> limbs_;
   std::vector<KernelPair> pairs_;
   std::vector<KernelJoint> joints_;

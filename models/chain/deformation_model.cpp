@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "engine/base/contract.h"
-#include "models/chain/block_solver.h"
 #include "models/chain/deformation_solver.h"
 
 namespace poesy::chain {
@@ -14,8 +13,8 @@ constexpr std::size_t kResponses = 3;
 
 class DeformationEvaluator final : public Evaluator {
  public:
-  DeformationEvaluator(const DeformationModel& model, const SolverOptions& options)
-      : model_(&model), solver_(model.chain, options), errors_(model.chain.frames()) {
+  DeformationEvaluator(const DeformationModel& model, const SolverOptions& options, Fidelity fidelity)
+      : model_(&model), solver_(model.chain, options, fidelity), errors_(model.chain.frames()) {
     std::size_t frame = 0;
     for (const Limb& limb : model.chain.limbs) {
       first_frame_.push_back(frame);
@@ -50,14 +49,17 @@ class DeformationEvaluator final : public Evaluator {
       const ErrorSlot& slot = model_->slots[factor.value];
       varied_.push_back({first_frame_[slot.limb] + slot.frame, slot.component});
     }
-    solver_.prepare(model_->joint_displacements(samples.pose), errors_, varied_, samples.range);
+    const std::vector<double> displacements = model_->joint_displacements(samples.pose);
+    metric_ = model_->metric(displacements);
+    solver_.prepare(displacements, errors_, varied_, samples.range, metric_ ? &*metric_ : nullptr);
   }
 
   const DeformationModel* model_;
   BlockSolver solver_;
+  std::optional<Metric> metric_;          ///< at the last block's pose
   std::vector<std::size_t> first_frame_;  ///< per limb
   std::vector<FrameError<double>> errors_;
-  std::vector<VariedEntry> varied_;
+  std::vector<FrameEntry> varied_;
 };
 
 }  // namespace
@@ -84,10 +86,32 @@ std::vector<Response> deformation_responses() {
        kLargestSide}};
 }
 
-DeformationMeasure deformation_measure(const ParallelChain& chain) { return {kResponses - 1, rounding_level(chain)}; }
+std::vector<Response> responses_by_metric() {
+  return {{"gap", Dimension::length,
+           "how far apart the limbs hold the platform's points: root mean square over the points and the pairs of "
+           "limbs, whose errors keep them from holding one rigid platform"},
+          {"angular_deformation", Dimension::angle,
+           "mismatch of angle between pairs of limbs, root mean square over the pairs"},
+          {"linear_deformation", Dimension::length,
+           "mismatch of position at the platform's origin between pairs of limbs, root mean square over the pairs"}};
+}
 
-double effect_rounding(const ParallelChain& chain) {
-  return 4.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, chain.reach());
+std::optional<Metric> DeformationModel::metric(std::span<const double> displacements) const {
+  if (points.empty()) return std::nullopt;
+  return platform_metric(chain, points, displacements);
+}
+
+DeformationMeasure deformation_measure(const DeformationModel& model) {
+  if (model.points.empty()) return {kResponses - 1, rounding_level(model.chain)};
+  return {0, kRelativeRounding * model.chain.reach()};
+}
+
+double effect_rounding(const DeformationModel& model, std::size_t response) {
+  constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+  const double reach = model.chain.reach();
+  if (model.points.empty()) return kRounding * std::max(1.0, reach);
+  if (responses_by_metric()[response].dimension == Dimension::length) return kRounding * reach;
+  return kRounding * reach / radius_of(model.points);
 }
 
 std::vector<Detail> deformation_details(const ParallelChain& chain) {
@@ -116,8 +140,9 @@ std::vector<JointDisplacement> joint_displacement_names(const ParallelChain& cha
   return list;
 }
 
-std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options) {
-  return std::make_unique<DeformationEvaluator>(model, options);
+std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options,
+                                                 Fidelity fidelity) {
+  return std::make_unique<DeformationEvaluator>(model, options, fidelity);
 }
 
 }  // namespace poesy::chain

@@ -2,11 +2,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/model/model.h"
+#include "models/chain/block_solver.h"
 #include "models/chain/limb.h"
+#include "models/chain/metric.h"
 
 namespace poesy::chain {
 
@@ -23,20 +26,31 @@ struct DeformationModel {
   std::vector<ErrorSlot> slots;  ///< [F], one per factor
   /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
+  /// Points of the platform, in its frame (m), by whose displacement mismatch is judged; none: as published.
+  std::vector<lie::Vector3<double>> points = {};
+
+  /// At nominal displacements [all joints]; none: as published.
+  std::optional<Metric> metric(std::span<const double> displacements) const;
 };
 
-/// The responses of every deformation model, in the order in which they are evaluated:
+/// The responses of every deformation model as published, in the order in which they are evaluated:
 /// angular_deformation (Du et al. 2022, Eq. 49), linear_deformation (Eq. 50), deformation_max (Eq. 45). For three
 /// limbs, whose pairs go round: to first order delta_mu_21 + delta_mu_32 + delta_mu_13 = 0, so their norms n are the
 /// sides of a triangle.
 std::vector<Response> deformation_responses();
 
-/// deformation_max, and the rounding of its solves (see rounding_level()).
-DeformationMeasure deformation_measure(const ParallelChain& chain);
+/// The responses by a metric, root mean squares over the pairs of limbs: gap of |delta_mu|_W, angular_deformation of
+/// |omega|, linear_deformation of |v + omega x o| with o the platform's nominal origin. Each is the norm of something
+/// that is linear in small errors, so that their mean squares add.
+std::vector<Response> responses_by_metric();
 
-/// Up to which an error may seem to have an effect on any response, as a standard deviation (rad, m): 4 eps x max(1,
-/// reach in m). Errors that deform nothing leave a sixteenth of it at the most, whatever their size.
-double effect_rounding(const ParallelChain& chain);
+/// deformation_max or, by a metric, the gap; and the rounding of its solves (see rounding_level()).
+DeformationMeasure deformation_measure(const DeformationModel& model);
+
+/// Up to which an error may seem to have an effect on a response, as a standard deviation (rad, m): 4 eps x max(1,
+/// reach in m); by a metric 4 eps x reach for lengths, and that over the points' distance from their middle for angles.
+/// Errors that deform nothing leave a sixteenth of it at the most, whatever their size.
+double effect_rounding(const DeformationModel& model, std::size_t response);
 
 /// One detail per pair of limbs, delta_mu_ki = [omega; v] (Eqs. 30, 46), named with limbs counted from 1.
 std::vector<Detail> deformation_details(const ParallelChain& chain);
@@ -44,7 +58,8 @@ std::vector<Detail> deformation_details(const ParallelChain& chain);
 /// The displacements q_i_j of all joints, limb by limb, limbs and joints counted from 1.
 std::vector<JointDisplacement> joint_displacement_names(const ParallelChain& chain);
 
-/// Solves blocks of samples. The model must outlive the evaluator.
-std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options);
+/// Solves blocks of samples, or maps them to first order. The model must outlive the evaluator.
+std::unique_ptr<Evaluator> deformation_evaluator(const DeformationModel& model, const SolverOptions& options,
+                                                 Fidelity fidelity = Fidelity::exact);
 
 }  // namespace poesy::chain

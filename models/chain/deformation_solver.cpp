@@ -33,6 +33,15 @@ double rounding_level(const ParallelChain& chain) {
   return 64.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, chain.reach());
 }
 
+double gap(const Metric& metric, std::span<const double> delta_mu) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < delta_mu.size(); n += 6) {
+    const Eigen::Map<const lie::Screw<double>> screw(delta_mu.data() + n);
+    sum += screw.dot(metric.W * screw);
+  }
+  return std::sqrt(6.0 * sum / static_cast<double>(delta_mu.size()));
+}
+
 DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOptions& options)
     : chain_(&chain),
       options_(options),
@@ -44,7 +53,8 @@ DeformationSolver::DeformationSolver(const ParallelChain& chain, const SolverOpt
       equations_(chain) {}
 
 Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
-                                     std::span<double> delta_mu, const DeformationObserver& observe) {
+                                     std::span<double> delta_mu, const Metric* metric,
+                                     const DeformationObserver& observe) {
   POESY_EXPECTS(frames.size() == chain_->frames());
   POESY_EXPECTS(displacements.size() == chain_->joints());
   POESY_EXPECTS(delta_mu.size() == previous_.size());
@@ -54,13 +64,18 @@ Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> fra
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
     const auto done = static_cast<std::uint32_t>(iteration);
     if (!all_finite(delta_mu)) return {SolveStatus::non_finite, done - 1};
-    if (!equations_.solve(columns_, delta_mu)) return {SolveStatus::singular, done - 1};
+    if (!equations_.solve(columns_, delta_mu, metric == nullptr ? nullptr : &metric->W))
+      return {SolveStatus::singular, done - 1};
     for (std::size_t k = 0; k < passive_.size(); ++k) displacements[passive_[k]] += equations_.solution()[k];
     std::copy(delta_mu.begin(), delta_mu.end(), previous_.begin());
     evaluate(frames, displacements, delta_mu);
-    const double change = largest_change(delta_mu);
+    const double change = metric == nullptr ? largest_change(delta_mu) : relative_change(*metric, delta_mu);
     if (observe) observe({equations_.solution(), delta_mu, change});
     if (change < options_.tolerance) return {SolveStatus::converged, done};
+    if (metric != nullptr) {
+      if (change <= kRelativeRounding) return {SolveStatus::stagnated, done};
+      continue;
+    }
     flat = change < smallest ? 0 : flat + 1;
     smallest = std::min(smallest, change);
     if (change <= rounding_level_ && flat >= kFlatIterations) return {SolveStatus::stagnated, done};
@@ -98,6 +113,12 @@ double DeformationSolver::largest_change(std::span<const double> delta_mu) const
     if (!(change <= largest)) largest = change;
   }
   return largest;
+}
+
+/// Overwrites what is kept of the last iterate.
+double DeformationSolver::relative_change(const Metric& metric, std::span<const double> delta_mu) {
+  for (std::size_t k = 0; k < delta_mu.size(); ++k) previous_[k] = delta_mu[k] - previous_[k];
+  return gap(metric, previous_) / metric.reach;
 }
 
 }  // namespace poesy::chain

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "engine/model/model.h"
 #include "models/chain/limb.h"
+#include "models/chain/metric.h"
 #include "models/chain/normal_equations.h"
 
 namespace poesy::chain {
@@ -21,7 +23,7 @@ struct Deformation {
 struct DeformationIteration {
   std::span<const double> step;      ///< [passive joints] that the displacements moved (rad, m)
   std::span<const double> delta_mu;  ///< [6 x pairs] the residual after the step
-  double change;                     ///< c_j of the stopping rule
+  double change;                     ///< c_j of the stopping rule (rad and m, or 1 by a metric)
 };
 /// Called after each iteration.
 using DeformationObserver = std::function<void(const DeformationIteration&)>;
@@ -29,6 +31,12 @@ using DeformationObserver = std::function<void(const DeformationIteration&)>;
 /// Changes of the residual below this may be rounding: 64 eps x max(1, reach in m): rounding errors of positions scale
 /// with the reach.
 double rounding_level(const ParallelChain& chain);
+
+/// By a metric, changes relative to the reach below this may be rounding.
+inline constexpr double kRelativeRounding = 64.0 * std::numeric_limits<double>::epsilon();
+
+/// Root mean square over the pairs of |delta_mu|_W (m). delta_mu: [6 x pairs].
+double gap(const Metric& metric, std::span<const double> delta_mu);
 
 /// Scheme I of Du et al. 2022 (Eqs. 40-44): moves the passive joints so that the poses of the limbs agree as well as
 /// they can, by Gauss-Newton on J(q)^T delta_mu(q) = 0. What disagreement is left is the limbs' deformation.
@@ -40,6 +48,8 @@ double rounding_level(const ParallelChain& chain);
 ///   iteration_cap  when j is the allowed number of iterations;
 ///   singular       when a pivot of J^T J falls to rounding relative to its diagonal entry;
 ///   non_finite     when delta_mu^j is not finite.
+/// By a metric the equation is J^T W delta_mu = 0, c_j is the gap() of delta_mu^j - delta_mu^(j-1) over the reach, and
+/// a c_j up to kRelativeRounding ends the solve as stagnated where it is not below the tolerance.
 ///
 /// Plain double arithmetic, one sample at a time: the reference for BlockSolver. Owns the scratch of one thread.
 class DeformationSolver {
@@ -49,14 +59,17 @@ class DeformationSolver {
 
   /// frames [chain.frames()]: fixed frames with errors, limb by limb. displacements [chain.joints()] (rad, m): the
   /// start on entry, the last iterate on return; actuated entries stay. delta_mu [6 x pairs]: the residual at the last
-  /// iterate, [omega; v] in the base frame (rad, m), Eq. 41. observe: may be empty.
+  /// iterate, [omega; v] in the base frame (rad, m), Eq. 41. metric: null for the published equation, W = 1 in rad and
+  /// m. observe: may be empty.
   Deformation solve(std::span<const lie::Transform<double>> frames, std::span<double> displacements,
-                    std::span<double> delta_mu, const DeformationObserver& observe = {});
+                    std::span<double> delta_mu, const Metric* metric = nullptr,
+                    const DeformationObserver& observe = {});
 
  private:
   void evaluate(std::span<const lie::Transform<double>> frames, std::span<const double> displacements,
                 std::span<double> delta_mu);
   double largest_change(std::span<const double> delta_mu) const;
+  double relative_change(const Metric& metric, std::span<const double> delta_mu);
 
   const ParallelChain* chain_;
   SolverOptions options_;

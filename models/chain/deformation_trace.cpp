@@ -57,6 +57,18 @@ double condition(const ParallelChain& chain, std::span<const double> displacemen
   return is_finite ? passive_condition(chain, displacements) : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// By a metric: gap, angular and linear deformation.
+std::vector<double> responses_by(const Metric& metric, std::span<const double> delta_mu) {
+  double angular = 0.0, linear = 0.0;
+  for (std::size_t n = 0; n < delta_mu.size(); n += 6) {
+    const Eigen::Map<const lie::Screw<double>> screw(delta_mu.data() + n);
+    angular += screw.head<3>().squaredNorm();
+    linear += (screw.tail<3>() + screw.head<3>().cross(metric.origin)).squaredNorm();
+  }
+  const double pairs = static_cast<double>(delta_mu.size()) / 6.0;
+  return {gap(metric, delta_mu), std::sqrt(angular / pairs), std::sqrt(linear / pairs)};
+}
+
 /// Eqs. 49, 50 and 45.
 std::vector<double> responses_of(std::span<const double> delta_mu) {
   const std::size_t pairs = delta_mu.size() / 6;
@@ -79,9 +91,14 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
   std::vector<double> delta_mu(6 * model.chain.pairs.size());
   const std::vector<JointType> types = passive_types(model.chain);
   SolveTrace trace;
-  trace.solver = "Gauss-Newton as published, in plain double precision, from nominal displacements";
-  trace.columns = {
-      {"change", "rad, m"}, {"residual", "rad, m"}, {"step_angle", "rad"}, {"step_length", "m"}, {"condition", "1"}};
+  const std::optional<Metric> metric = model.metric(displacements);
+  trace.solver = metric ? "Gauss-Newton by the platform's metric, in plain double precision, from nominal displacements"
+                        : "Gauss-Newton as published, in plain double precision, from nominal displacements";
+  trace.columns = {{"change", metric ? "1" : "rad, m"},
+                   {"residual", "rad, m"},
+                   {"step_angle", "rad"},
+                   {"step_length", "m"},
+                   {"condition", "1"}};
   const auto observe = [&](const DeformationIteration& iteration) {
     trace.rows.insert(
         trace.rows.end(),
@@ -89,10 +106,11 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
          largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements)});
   };
   DeformationSolver solver(model.chain, options);
-  const Deformation end = solver.solve(frames_with(model, errors), displacements, delta_mu, observe);
+  const Deformation end =
+      solver.solve(frames_with(model, errors), displacements, delta_mu, metric ? &*metric : nullptr, observe);
   trace.status = end.status;
   trace.iterations = end.iterations;
-  trace.responses = responses_of(delta_mu);
+  trace.responses = metric ? responses_by(*metric, delta_mu) : responses_of(delta_mu);
   return trace;
 }
 

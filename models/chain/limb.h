@@ -57,6 +57,12 @@ struct ParallelChain {
 template <class T>
 using FrameError = lie::Screw<T>;
 
+/// An entry of a fixed frame's error.
+struct FrameEntry {
+  std::size_t frame;      ///< among all frames, limb by limb
+  std::size_t component;  ///< of [omega; v]
+};
+
 /// Delta g of Eq. 26: rotation exp(omega) and translation v as they stand, which is not the exponential of a screw.
 template <class T>
 lie::Transform<T> error_transform(const FrameError<T>& error) {

@@ -21,28 +21,44 @@ NormalEquations::NormalEquations(const ParallelChain& chain)
   solution_.assign(size_, 0.0);
 }
 
-bool NormalEquations::solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu) {
-  assemble(columns, delta_mu);
+bool NormalEquations::solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu,
+                            const lie::Matrix6<double>* W) {
+  weigh(columns, W);
+  assemble_matrix(columns);
+  assemble_right_side(delta_mu);
   if (!factor()) return false;
   substitute();
   return true;
 }
 
-void NormalEquations::assemble(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu) {
+void NormalEquations::solve_again(std::span<const double> delta_mu) {
+  assemble_right_side(delta_mu);
+  substitute();
+}
+
+void NormalEquations::weigh(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W) {
+  weighted_.assign(columns.begin(), columns.end());
+  if (W == nullptr) return;
+  for (auto& column : weighted_) column = *W * column;
+}
+
+void NormalEquations::assemble_matrix(std::span<const lie::Screw<double>> columns) {
+  for (std::size_t row = 0; row < size_; ++row) {
+    const double* coupling = coupling_.data() + limb_of_[row] * limbs_;
+    for (std::size_t column = 0; column <= row; ++column) {
+      matrix_[row * size_ + column] = coupling[limb_of_[column]] * weighted_[row].dot(columns[column]);
+    }
+  }
+}
+
+void NormalEquations::assemble_right_side(std::span<const double> delta_mu) {
   for (auto& pull : pull_) pull.setZero();
   for (std::size_t n = 0; n < pairs_.size(); ++n) {
     const Eigen::Map<const lie::Screw<double>> residual(delta_mu.data() + 6 * n);
     pull_[pairs_[n].i] += residual;
     pull_[pairs_[n].k] -= residual;
   }
-  for (std::size_t row = 0; row < size_; ++row) {
-    const lie::Screw<double>& a = columns[row];
-    const double* coupling = coupling_.data() + limb_of_[row] * limbs_;
-    solution_[row] = a.dot(pull_[limb_of_[row]]);
-    for (std::size_t column = 0; column <= row; ++column) {
-      matrix_[row * size_ + column] = coupling[limb_of_[column]] * a.dot(columns[column]);
-    }
-  }
+  for (std::size_t row = 0; row < size_; ++row) solution_[row] = weighted_[row].dot(pull_[limb_of_[row]]);
 }
 
 // L D L^T without pivoting, row by row: the matrix is positive semidefinite by construction.

@@ -8,22 +8,29 @@
 
 namespace poesy::chain {
 
-/// The normal equations J^T J x = J^T delta_mu of Eq. 44, built from the limbs' own columns: J of Eq. 43 holds each of
-/// them twice with opposite signs and is never formed.
+/// The normal equations J^T W J x = J^T W delta_mu, with W = 1 those of Eq. 44, built from the limbs' own columns: J of
+/// Eq. 43 holds each of them twice with opposite signs and is never formed.
 class NormalEquations {
  public:
   /// Scratch for chains of this shape.
   explicit NormalEquations(const ParallelChain& chain);
 
-  /// Solves for the motion deviations of the passive joints. columns: [passive joints]; delta_mu: [6 x pairs].
-  /// Returns false when a pivot falls to rounding relative to its diagonal entry; the solution is then undefined.
-  bool solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu);
+  /// Solves for the motion deviations of the passive joints. columns: [passive joints]; delta_mu: [6 x pairs]; W: null
+  /// for W = 1. Returns false when a pivot falls to rounding relative to its diagonal entry; the solution is then
+  /// undefined.
+  bool solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu,
+             const lie::Matrix6<double>* W = nullptr);
+
+  /// Solves once more for another delta_mu, after a solve that returned true.
+  void solve_again(std::span<const double> delta_mu);
 
   /// [passive joints], Eq. 42.
   std::span<const double> solution() const { return solution_; }
 
  private:
-  void assemble(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu);
+  void weigh(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
+  void assemble_matrix(std::span<const lie::Screw<double>> columns);
+  void assemble_right_side(std::span<const double> delta_mu);
   bool factor();
   void substitute();
 
@@ -33,7 +40,8 @@ class NormalEquations {
   std::size_t limbs_;
   std::size_t size_;
   std::vector<double> matrix_;  ///< [size x size], lower triangle; after factor(): L below, 1 / D on the diagonal
-  std::vector<lie::Screw<double>> pull_;  ///< per limb, the signed sum of the residuals it takes part in
+  std::vector<lie::Screw<double>> pull_;      ///< per limb, the signed sum of the residuals it takes part in
+  std::vector<lie::Screw<double>> weighted_;  ///< W times each column
   std::vector<double> solution_;
 };
 

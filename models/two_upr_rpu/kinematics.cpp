@@ -87,6 +87,11 @@ std::array<double, 12> joint_displacements(const Geometry& geometry, const Pose&
   return displacements;
 }
 
+std::vector<Vector3> platform_joints(const Geometry& geometry) {
+  const double l = geometry.l_A;
+  return {{l, 0.0, 0.0}, {-l, 0.0, 0.0}, {0.0, l, 0.0}};
+}
+
 chain::ParallelChain parallel_chain(const Geometry& geometry) {
   const std::array<double, 12> home = home_variables(geometry);
   return {{upr_limb(geometry, 1.0, home[1], home[2]), upr_limb(geometry, -1.0, home[5], home[6]),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "models/chain/limb.h"
 
@@ -29,6 +30,9 @@ lie::Transform<double> base_T_platform(const Pose& pose);
 /// Angles are taken by atan2 about the joint's axis: equal to the printed arccos where that holds, without its loss of
 /// digits near 0 and pi, and continued past pi, where a leg swings past the line of the platform.
 std::array<double, 12> joint_displacements(const Geometry& geometry, const Pose& pose);
+
+/// A1, A2, A3, where the limbs hold the platform, in its frame (m).
+std::vector<lie::Vector3<double>> platform_joints(const Geometry& geometry);
 
 /// The mechanism as limbs in local product-of-exponentials form (Eqs. 13-23): RRPR, RRPR, RPRR, P actuated, and
 /// the pairs (2,1), (3,2), (1,3) of Eq. 41.

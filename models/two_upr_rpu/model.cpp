@@ -18,7 +18,23 @@ namespace {
 /// How far a limb's platform pose may be from the wanted one, in m and rad, before its loop counts as open.
 constexpr double kClosure = 1e-9;
 
-ModelDescription describe(const Geometry& geometry) {
+using Vector3 = lie::Vector3<double>;
+
+Pose pose_from(std::span<const double> pose) {
+  POESY_EXPECTS(pose.size() == 3);
+  return {pose[0], pose[1], pose[2]};
+}
+
+/// The chain by the metric of these points, or as published where there are none.
+chain::DeformationModel deformation_model(const Geometry& geometry, std::vector<Vector3> points) {
+  const auto displacements = [geometry](std::span<const double> pose) {
+    const auto q = two_upr_rpu::joint_displacements(geometry, pose_from(pose));
+    return std::vector<double>(q.begin(), q.end());
+  };
+  return {parallel_chain(geometry), error_slots(), displacements, std::move(points)};
+}
+
+ModelDescription describe(const chain::DeformationModel& deformation) {
   const Geometry published;
   ModelDescription description;
   description.name = "2upr-rpu";
@@ -34,22 +50,19 @@ ModelDescription describe(const Geometry& geometry) {
                                   {"gamma", Dimension::angle, "rotation of the platform about its own v axis"}};
   description.factors = factors();
   description.factor_sets = factor_sets();
-  description.responses = chain::deformation_responses();
-  description.deformation = chain::deformation_measure(parallel_chain(geometry));
-  const chain::ParallelChain chain = parallel_chain(published);
-  description.details = chain::deformation_details(chain);
-  description.joints = chain::joint_displacement_names(chain);
+  const bool by_platform = !deformation.points.empty();
+  description.metric = by_platform ? "platform" : "published";
+  description.responses = by_platform ? chain::responses_by_metric() : chain::deformation_responses();
+  description.deformation = chain::deformation_measure(deformation);
+  description.details = chain::deformation_details(deformation.chain);
+  description.joints = chain::joint_displacement_names(deformation.chain);
+  if (by_platform) description.fidelities = {"exact", "first-order"};
   description.pose_lower = {-0.30, -0.5, -0.6};
   description.pose_upper = {-0.18, 0.5, 0.6};
   description.workspace_note =
       "The paper draws its workspace but prints no limits. This box is inferred: it reproduces the published angular "
       "figures of Tables 9 and 11 within 2 %.";
   return description;
-}
-
-Pose pose_from(std::span<const double> pose) {
-  POESY_EXPECTS(pose.size() == 3);
-  return {pose[0], pose[1], pose[2]};
 }
 
 /// Distance between two poses: the larger of the translation (m) and the rotation angle (rad).
@@ -60,13 +73,12 @@ double distance(const lie::Transform<double>& a, const lie::Transform<double>& b
 
 class TwoUprRpu final : public Model {
  public:
-  explicit TwoUprRpu(const Geometry& geometry)
+  /// points: of the platform's metric; none: as published.
+  TwoUprRpu(const Geometry& geometry, std::vector<Vector3> points, chain::Fidelity fidelity)
       : geometry_(geometry),
-        description_(describe(geometry)),
-        deformation_{parallel_chain(geometry), error_slots(), [geometry](std::span<const double> pose) {
-                       const auto q = two_upr_rpu::joint_displacements(geometry, pose_from(pose));
-                       return std::vector<double>(q.begin(), q.end());
-                     }} {
+        deformation_(deformation_model(geometry, std::move(points))),
+        description_(describe(deformation_)),
+        fidelity_(fidelity) {
     if (auto problem = open_loop({geometry.z_0, 0.0, 0.0})) {
       throw std::invalid_argument("the home configuration does not assemble: " + *problem);
     }
@@ -91,15 +103,22 @@ class TwoUprRpu final : public Model {
   }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return chain::deformation_evaluator(deformation_, options);
+    return chain::deformation_evaluator(deformation_, options, fidelity_);
   }
 
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
+    if (fidelity_ == chain::Fidelity::first_order) return std::nullopt;
     return chain::deformation_trace(deformation_, pose, errors, options);
   }
 
-  double rounding(std::size_t /*response*/) const override { return chain::effect_rounding(deformation_.chain); }
+  double rounding(std::size_t response) const override { return chain::effect_rounding(deformation_, response); }
+
+  std::vector<PlatformPoint> metric_points() const override {
+    std::vector<PlatformPoint> points;
+    for (const Vector3& point : deformation_.points) points.push_back({point.x(), point.y(), point.z()});
+    return points;
+  }
 
   /// The smaller of the platform and the base, which every limb joins; the offsets c and d are no links and may be 0.
   ErrorBound error_bound(FactorIndex factor) const override {
@@ -131,15 +150,16 @@ class TwoUprRpu final : public Model {
   }
 
   Geometry geometry_;
-  ModelDescription description_;
   chain::DeformationModel deformation_;
+  ModelDescription description_;
+  chain::Fidelity fidelity_;
 };
 
 void require(bool holds, const char* rule) {
   if (!holds) throw std::invalid_argument(rule);
 }
 
-std::unique_ptr<Model> build(std::span<const double> values, std::size_t /*fidelity*/) {
+Geometry checked_geometry(std::span<const double> values) {
   POESY_EXPECTS(values.size() == 5);
   const Geometry geometry{values[0], values[1], values[2], values[3], values[4]};
   require(geometry.l_A > 0.0, "l_A must be positive");
@@ -147,11 +167,34 @@ std::unique_ptr<Model> build(std::span<const double> values, std::size_t /*fidel
   require(geometry.c >= 0.0, "c must not be negative");
   require(geometry.d >= 0.0, "d must not be negative");
   require(geometry.z_0 < 0.0, "z_0 must be negative: the platform hangs below the base");
-  return std::make_unique<TwoUprRpu>(geometry);
+  return geometry;
+}
+
+std::unique_ptr<Model> build_as_published(std::span<const double> values, std::size_t /*fidelity*/) {
+  return std::make_unique<TwoUprRpu>(checked_geometry(values), std::vector<Vector3>(), chain::Fidelity::exact);
+}
+
+std::unique_ptr<Model> build_by_platform(std::span<const double> values, std::size_t fidelity) {
+  const Geometry geometry = checked_geometry(values);
+  return std::make_unique<TwoUprRpu>(geometry, platform_joints(geometry), static_cast<chain::Fidelity>(fidelity));
+}
+
+std::unique_ptr<Model> build_with_points(std::span<const double> values, std::size_t fidelity,
+                                         std::span<const PlatformPoint> points) {
+  std::vector<Vector3> own;
+  for (const PlatformPoint& point : points) own.emplace_back(point[0], point[1], point[2]);
+  require(!chain::are_on_a_line(own), "the points are on one line, about which the platform may turn unseen");
+  return std::make_unique<TwoUprRpu>(checked_geometry(values), own, static_cast<chain::Fidelity>(fidelity));
 }
 
 }  // namespace
 
-CatalogEntry catalog_entry() { return {describe({}), build}; }
+CatalogEntry catalog_entry() {
+  const Geometry published;
+  CatalogEntry by_platform{describe(deformation_model(published, platform_joints(published))), build_by_platform};
+  by_platform.build_with_points = build_with_points;
+  return {describe(deformation_model(published, {})), build_as_published,
+          std::make_shared<const CatalogEntry>(std::move(by_platform))};
+}
 
 }  // namespace poesy::two_upr_rpu

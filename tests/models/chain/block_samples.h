@@ -18,7 +18,7 @@ struct BlockSamples {
   ParallelChain chain;
   std::vector<double> displacements;       ///< [all joints], nominal
   std::vector<FrameError<double>> errors;  ///< [frames], constant
-  std::vector<VariedEntry> varied;
+  std::vector<FrameEntry> varied;
   double range = 0.0;
   std::size_t count = 0;
   std::vector<double> values;  ///< [varied x count]
@@ -37,8 +37,8 @@ struct BlockOutcome {
 inline constexpr double kDegree = 3.14159265358979323846 / 180.0;
 inline constexpr double kMillimetre = 1e-3;
 
-inline std::vector<VariedEntry> factor_entries() {
-  std::vector<VariedEntry> entries;
+inline std::vector<FrameEntry> factor_entries() {
+  std::vector<FrameEntry> entries;
   for (const ErrorSlot& slot : two_upr_rpu::error_slots()) {
     entries.push_back({5 * slot.limb + slot.frame, slot.component});
   }
@@ -46,13 +46,13 @@ inline std::vector<VariedEntry> factor_entries() {
 }
 
 /// 1 mm or 1 deg.
-inline double unit_of(const VariedEntry& entry) { return entry.component < 3 ? kDegree : kMillimetre; }
+inline double unit_of(const FrameEntry& entry) { return entry.component < 3 ? kDegree : kMillimetre; }
 
 inline void fill_normal(BlockSamples& samples, double size, std::size_t count, std::mt19937_64& engine) {
   std::normal_distribution<double> normal(0.0, size);
   samples.count = count;
   samples.values.clear();
-  for (const VariedEntry& entry : samples.varied) {
+  for (const FrameEntry& entry : samples.varied) {
     for (std::size_t b = 0; b < count; ++b) samples.values.push_back(unit_of(entry) * normal(engine));
   }
 }
@@ -70,7 +70,7 @@ inline BlockSamples robot_samples(const two_upr_rpu::Pose& pose, std::span<const
   const auto q = two_upr_rpu::joint_displacements({}, pose);
   samples.displacements.assign(q.begin(), q.end());
   samples.errors.assign(samples.chain.frames(), FrameError<double>::Zero());
-  const std::vector<VariedEntry> entries = factor_entries();
+  const std::vector<FrameEntry> entries = factor_entries();
   for (const std::size_t factor : factors) samples.varied.push_back(entries[factor]);
   fill_normal(samples, size, count, engine);
   return samples;
@@ -81,7 +81,7 @@ inline BlockSamples single_error_samples(const two_upr_rpu::Pose& pose, std::siz
                                          std::size_t count, std::mt19937_64& engine) {
   BlockSamples samples = robot_samples(pose, std::vector<std::size_t>{factor}, 1.0, count, engine);
   std::normal_distribution<double> normal(0.0, background);
-  for (const VariedEntry& entry : factor_entries()) {
+  for (const FrameEntry& entry : factor_entries()) {
     samples.errors[entry.frame][static_cast<Eigen::Index>(entry.component)] = unit_of(entry) * normal(engine);
   }
   return samples;
@@ -124,7 +124,7 @@ inline BlockSamples picked(const BlockSamples& samples, std::span<const std::siz
 inline std::vector<lie::Transform<double>> frames_of(const BlockSamples& samples, std::size_t b) {
   std::vector<FrameError<double>> errors = samples.errors;
   for (std::size_t v = 0; v < samples.varied.size(); ++v) {
-    const VariedEntry& entry = samples.varied[v];
+    const FrameEntry& entry = samples.varied[v];
     errors[entry.frame][static_cast<Eigen::Index>(entry.component)] = samples.value(v, b);
   }
   std::vector<lie::Transform<double>> frames;

@@ -1,0 +1,59 @@
+#include "models/chain/first_order.h"
+
+#include <algorithm>
+
+#include "engine/base/contract.h"
+
+namespace poesy::chain {
+
+FirstOrder::FirstOrder(const ParallelChain& chain) : chain_(&chain), equations_(chain) {
+  for (std::size_t i = 0; i < chain.limbs.size(); ++i) {
+    limb_of_frame_.insert(limb_of_frame_.end(), chain.limbs[i].frames(), i);
+    limb_of_joint_.insert(limb_of_joint_.end(), chain.limbs[i].passive_joints(), i);
+  }
+  from_error_.resize(limb_of_frame_.size());
+  columns_.resize(limb_of_joint_.size());
+}
+
+bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matrix6<double>* W) {
+  POESY_EXPECTS(displacements.size() == chain_->joints());
+  std::size_t frame = 0;
+  std::size_t joint = 0;
+  std::size_t column = 0;
+  for (const Limb& limb : chain_->limbs) {
+    lie::Transform<double> g;
+    for (std::size_t j = 0; j < limb.joints.size(); ++j, ++joint) {
+      from_error_[frame++] = lie::adjoint(g);
+      g = g * limb.home[j];
+      if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j].type, g);
+      move_joint(limb.joints[j].type, displacements[joint], g);
+    }
+    // The last frame's error is inverted and multiplies from the right.
+    from_error_[frame++] = -lie::adjoint(g * limb.home.back());
+  }
+  const std::vector<double> none(6 * chain_->pairs.size(), 0.0);
+  return equations_.solve(columns_, none, W);
+}
+
+void FirstOrder::effect(const FrameEntry& entry, std::span<double> delta_mu, std::span<double> displacements) {
+  POESY_EXPECTS(delta_mu.size() == 6 * chain_->pairs.size() && displacements.size() == columns_.size());
+  std::ranges::fill(delta_mu, 0.0);
+  add_motion(limb_of_frame_[entry.frame], from_error_[entry.frame].col(static_cast<Eigen::Index>(entry.component)),
+             delta_mu);
+  equations_.solve_again(delta_mu);
+  std::ranges::copy(equations_.solution(), displacements.begin());
+  for (std::size_t a = 0; a < columns_.size(); ++a) {
+    add_motion(limb_of_joint_[a], displacements[a] * columns_[a], delta_mu);
+  }
+}
+
+/// A limb's platform moves: so much more in the pairs where it is compared, so much less where it is compared with.
+void FirstOrder::add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const {
+  for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
+    Eigen::Map<lie::Screw<double>> mu(delta_mu.data() + 6 * n);
+    if (chain_->pairs[n].k == limb) mu += motion;
+    if (chain_->pairs[n].i == limb) mu -= motion;
+  }
+}
+
+}  // namespace poesy::chain

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "models/chain/limb.h"
+#include "models/chain/normal_equations.h"
+
+namespace poesy::chain {
+
+/// What small errors do, in closed form: delta_mu = (1 - J (J^T W J)^-1 J^T W) G eps, with G eps the mismatch that
+/// errors make where no joint gives way, and (J^T W J)^-1 J^T W G eps by how much the passive joints give way. All at
+/// nominal displacements.
+class FirstOrder {
+ public:
+  /// Scratch for the chain, which must outlive it.
+  explicit FirstOrder(const ParallelChain& chain);
+
+  /// At these nominal displacements [all joints] (rad, m); W: null for W = 1. Returns false where the passive joints'
+  /// motion is singular; there is no first order then.
+  bool prepare(std::span<const double> displacements, const lie::Matrix6<double>* W);
+
+  /// Of a unit of one entry of a frame's error: delta_mu [6 x pairs] and what the passive joints [passive joints] give
+  /// way, SI per rad or m. Precondition: prepare() returned true.
+  void effect(const FrameEntry& entry, std::span<double> delta_mu, std::span<double> displacements);
+
+ private:
+  void add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const;
+
+  const ParallelChain* chain_;
+  std::vector<std::size_t> limb_of_frame_;
+  std::vector<std::size_t> limb_of_joint_;        ///< of each passive joint
+  std::vector<lie::Matrix6<double>> from_error_;  ///< per frame: [omega; v] to the motion of the limb's platform
+  std::vector<lie::Screw<double>> columns_;       ///< of each passive joint
+  NormalEquations equations_;
+};
+
+}  // namespace poesy::chain
