@@ -73,9 +73,10 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
     : chain_(&chain),
       fidelity_(fidelity),
       options_{options.method == SolverOptions::Method::newton ? KernelMethod::newton : KernelMethod::gauss_newton,
-               options.tolerance, rounding_level(chain),
-               // Newton's error falls with the square of its steps. Rounding alone makes steps of about 1e-14.
-               std::max(std::sqrt(options.tolerance / 10.0), 1e-10), kLargestStep,
+               options.tolerance,
+               rounding_level(chain),
+               0.0,
+               kLargestStep,
                static_cast<std::uint32_t>(options.max_iterations)},
       kernels_(best_kernels()),
       first_order_(chain) {
@@ -129,6 +130,10 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
   metric_ = metric;
   options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
+  // Newton's error falls with the square of its steps, of which rounding alone makes about 1e-14. By a metric nothing
+  // else tells how near to a singular pose a chain is, where it falls a thousandfold less: hence the hundredth.
+  const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
+  options_.last_step = std::max(last, 1e-10);
   fits_.clear();
   fits_made_ = 0;
   if (metric != nullptr || fidelity_ == Fidelity::first_order) find_slopes(displacements, errors, varied);
@@ -278,6 +283,10 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   double* scratch = make_room(chain, samples);
   const double* slopes = metric_ == nullptr || is_singular_ ? nullptr : slopes_.data();
   kernels_.solve(chain, samples, {fits_.data(), fits_.size(), slopes}, options, outcome(displacements), scratch);
+  if (metric_ == nullptr || !is_singular_) return;
+  // Errors make an equation that is singular without them regular, but not meaningful.
+  std::ranges::replace_if(
+      status_, [](SolveStatus status) { return status != SolveStatus::non_finite; }, SolveStatus::singular);
 }
 
 /// For these samples; returns scratch.
