@@ -16,13 +16,17 @@ constexpr const char* kExamples = "Examples:";
 constexpr const char* kIndent = "  ";
 constexpr const char* kDeeper = "      ";
 
-/// Names of the responses of all mechanisms, each once.
+/// Names of the responses of all mechanisms by all metrics, each once.
 std::vector<std::string> known_responses() {
   std::vector<std::string> names;
-  for (const CatalogEntry& entry : registry()) {
+  const auto add = [&](const CatalogEntry& entry) {
     for (const Response& response : entry.description.responses) {
       if (std::ranges::find(names, response.name) == names.end()) names.push_back(response.name);
     }
+  };
+  for (const CatalogEntry& entry : registry()) {
+    add(entry);
+    if (entry.by_platform) add(*entry.by_platform);
   }
   return names;
 }

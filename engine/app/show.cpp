@@ -19,9 +19,11 @@
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
 #include "engine/io/wording.h"
+#include "engine/report/display.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
+#include "engine/report/two_rankings.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -32,7 +34,7 @@ constexpr std::string_view kRemedy = "a wider terminal, --response NAME or --jso
 constexpr std::size_t kMostNumber = 1'000'000;
 
 struct ShowOptions {
-  std::string result;
+  std::vector<std::string> results;  ///< one, or two to be compared
   std::string response;
   std::optional<std::string> sort;
   std::optional<std::size_t> top;
@@ -40,16 +42,13 @@ struct ShowOptions {
   bool json = false;
 };
 
-std::string response_of(const ShowOptions& options, const StoredResult& result) {
-  if (options.response.empty()) return default_ranking(result);
-  std::string known;
-  for (const NamedUnit& response : result.responses) {
-    if (response.name == options.response) return response.name;
-    known += (known.empty() ? "" : ", ") + response.name;
-  }
-  throw InputError({options.result},
-                   fmt::format("--response: no response '{}' in this result", printable(options.response)),
-                   "it has " + known);
+/// wanted: empty for the one by which the result is ranked unless asked otherwise.
+std::string response_of(const std::string& wanted, const std::string& path, const StoredResult& result) {
+  if (wanted.empty()) return default_ranking(result);
+  const std::vector<std::string> known = names_of(result.responses);
+  if (std::ranges::find(known, wanted) != known.end()) return wanted;
+  throw InputError({path}, fmt::format("--response: no response '{}' in this result", printable(wanted)),
+                   fmt::format("it has {}", fmt::join(known, ", ")));
 }
 
 RowOrder order_of(const ShowOptions& options) {
@@ -61,12 +60,12 @@ RowOrder order_of(const ShowOptions& options) {
 }
 
 /// ShowOptions that speak of ranked errors need some.
-void check_ranks(const ShowOptions& options, const StoredResult& result) {
+void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result) {
   if (result.kind == "sensitivity") return;
   for (const auto& [given, option] :
        {std::pair(options.sort.has_value(), "--sort"), {options.top.has_value(), "--top"}}) {
     if (!given) continue;
-    throw InputError({options.result},
+    throw InputError({path},
                      fmt::format("{}: this is a result of kind '{}', and only those of kind 'sensitivity' rank errors",
                                  option, result.kind),
                      fmt::format("leave out {}", option));
@@ -92,20 +91,58 @@ std::string held_errors_line(const StoredResult& result, std::size_t width) {
   }
 }
 
-int show(const ShowOptions& options) {
+void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+std::size_t width_of(const ShowOptions& options) { return options.width.value_or(output_width()); }
+
+int show_one(const ShowOptions& options) {
+  const std::string& path = options.results.front();
   const RowOrder order = order_of(options);
-  StoredResult result = read_result_warily(options.result);
-  check_ranks(options, result);
-  const std::string response = response_of(options, result);
+  StoredResult result = read_result_warily(path);
+  check_ranks(options, path, result);
+  const std::string response = response_of(options.response, path, result);
   if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
   std::vector<Table> tables = result_tables(result, response, order);
   if (options.top) keep_first(*options.top, tables);
-  const std::size_t width = options.width.value_or(output_width());
-  const std::string text = options.json ? json_of(result, tables)
-                                        : summary_text(result, width) + held_errors_line(result, width) +
-                                              failures_text(result, options.result, width) + "\n" +
-                                              text_of(tables, width, kRemedy);
-  std::fputs(text.c_str(), stdout);
+  const std::size_t width = width_of(options);
+  print(options.json ? json_of(result, tables)
+                     : summary_text(result, width) + held_errors_line(result, width) +
+                           failures_text(result, path, width) + "\n" + text_of(tables, width, kRemedy));
+  return kDone;
+}
+
+void check_sensitivity(const std::string& path, const StoredResult& result) {
+  if (result.kind == "sensitivity") return;
+  throw InputError(
+      {path}, fmt::format("is a result of kind '{}', and only those of kind 'sensitivity' rank errors", result.kind),
+      "show each result alone, or compare both with poesy report");
+}
+
+/// The rankings of two results beside each other.
+int show_both(const ShowOptions& options) {
+  const RowOrder order = order_of(options);
+  const std::string& path_a = options.results.front();
+  const std::string& path_b = options.results.back();
+  const StoredResult a = read_result_warily(path_a);
+  const StoredResult b = read_result_warily(path_b);
+  check_sensitivity(path_a, a);
+  check_sensitivity(path_b, b);
+  const std::size_t comma = options.response.find(',');
+  const std::string of_a = options.response.substr(0, comma);
+  const std::string of_b = comma == std::string::npos ? of_a : options.response.substr(comma + 1);
+  const RankedResult ranked_a{a, path_a, response_of(of_a, path_a, a)};
+  const RankedResult ranked_b{b, path_b, response_of(of_b, path_b, b)};
+  TwoRankings rankings = two_rankings(ranked_a, ranked_b, order);
+  if (options.top) keep_first(*options.top, {&rankings.table, 1});
+  if (options.json) {
+    print(json_of(ranked_a, ranked_b, rankings));
+    return kDone;
+  }
+  const std::size_t width = width_of(options);
+  std::string text = prose_of(ranked_text('A', ranked_a), width) + prose_of(ranked_text('B', ranked_b), width) + "\n" +
+                     text_of(rankings.table, width, kRemedy);
+  for (const std::string& remark : rankings.remarks) text += prose_of(remark, width);
+  print(text);
   return kDone;
 }
 
@@ -113,9 +150,17 @@ int show(const ShowOptions& options) {
 
 void add_show(CLI::App& program, Action& action) {
   auto options = std::make_shared<ShowOptions>();
-  CLI::App* command = program.add_subcommand("show", "print a result as tables");
-  command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
-  command->add_option("--response", options->response, "response to rank by, or to show alone where nothing is ranked")
+  CLI::App* command =
+      program.add_subcommand("show", "print a result as tables, or the rankings of two beside each other");
+  command
+      ->add_option("results", options->results,
+                   "result file, or two sensitivity results whose rankings are shown beside each other")
+      ->required()
+      ->expected(1, 2)
+      ->type_name("RESULT.h5");
+  command
+      ->add_option("--response", options->response,
+                   "response to rank by, or to show alone where nothing is ranked; A,B for one of each of two results")
       ->type_name("RESPONSE");
   command
       ->add_option("--sort", options->sort,
@@ -130,10 +175,14 @@ void add_show(CLI::App& program, Action& action) {
                    "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostNumber)
       ->type_name("N");
   command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
-  command->footer(footer("", {{"the tables of a result", "poesy show result.h5"},
-                              {"the ten errors that matter most to another response",
-                               "poesy show result.h5 --response angular_deformation --top 10"}}));
-  command->callback([options, &action] { action = [options] { return show(*options); }; });
+  command->footer(
+      footer("", {{"the tables of a result", "poesy show result.h5"},
+                  {"the ten errors that matter most to another response",
+                   "poesy show result.h5 --response angular_deformation --top 10"},
+                  {"the rankings of two studies beside each other", "poesy show platform.h5 published.h5"}}));
+  command->callback([options, &action] {
+    action = [options] { return options->results.size() == 1 ? show_one(*options) : show_both(*options); };
+  });
 }
 
 }  // namespace poesy::app

@@ -78,13 +78,15 @@ struct StoredResult {
   std::string git_commit;      ///< of that program
   std::string content_sha256;  ///< as the file states it
   bool changed = false;        ///< whether the content no longer has that hash
-  std::vector<NamedUnit> pose_coordinates;  ///< names of a pose's columns
-  PoseSet poses;                            ///< [M]
-  std::vector<double> condition;            ///< [M] of each pose; empty in files of older versions
-  std::vector<double> time;                 ///< [M] s, ascending, of poses along a trajectory; else empty
-  std::vector<NamedUnit> factors;           ///< [P] errors that vary or are tried
-  std::vector<double> factor_sigma;         ///< [P] standard deviations, SI
-  std::vector<NamedUnit> responses;         ///< [R]
+  std::string metric;  ///< ModelDescription::metric; empty where nothing is weighed, and in files of older versions
+  std::vector<PlatformPoint> metric_points;  ///< of the platform's metric, in its frame, m
+  std::vector<NamedUnit> pose_coordinates;   ///< names of a pose's columns
+  PoseSet poses;                             ///< [M]
+  std::vector<double> condition;             ///< [M] of each pose; empty in files of older versions
+  std::vector<double> time;                  ///< [M] s, ascending, of poses along a trajectory; else empty
+  std::vector<NamedUnit> factors;            ///< [P] errors that vary or are tried
+  std::vector<double> factor_sigma;          ///< [P] standard deviations, SI
+  std::vector<NamedUnit> responses;          ///< [R]
   std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows: all, unless the model chose
   std::vector<std::size_t> signed_headline;      ///< that a summary of coupled sources shows
   SensitivityResult sensitivity;                 ///< `background` is empty in files of older versions

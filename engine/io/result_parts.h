@@ -53,6 +53,11 @@ void check_names(const std::vector<std::string>& names, const std::string& path)
 
 /// The poses with all that was found when they were chosen: /poses.
 void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected);
+/// By what the mechanism weighs angles against lengths, where it does: /metric.
+void add_metric(ResultBuilder& result, const Study& study);
+/// Fills in `metric` and `metric_points`.
+void read_metric(const h5::File& file, StoredResult& result);
+
 /// The coordinates' names and units.
 std::vector<NamedUnit> read_pose_coordinates(const h5::File& file);
 /// The poses, with what is stored beside them.

@@ -59,6 +59,7 @@ StoredResult read_all(const h5::File& file) {
   result.time = std::move(poses.time);
   result.factors = read_named(file, "/factors", "factor");
   read_responses(file, result);
+  read_metric(file, result);
   result.facts = read_facts(file);
   if (result.kind == result_format::kSensitivity) {
     read_sensitivity(file, result);

@@ -119,6 +119,7 @@ template <class Compose>
 void compose_result(const std::string& path, std::string_view kind, const Study& study, const SelectedPoses& poses,
                     std::span<const FactorIndex> factors, const RunFacts& facts, const Compose& compose) {
   compose_and_write(path, result_format::kFileType, kind, study, poses, facts, [&](ResultBuilder& result) {
+    add_metric(result, study);
     add_factors(result, chosen(study.model(), factors));
     add_responses(result, study.model());
     compose(result);

@@ -53,6 +53,20 @@ std::string unit_text(const NamedUnit& named) {
   return std::string(name == "1" ? "" : name);
 }
 
+std::vector<std::string> names_of(const std::vector<NamedUnit>& things) {
+  std::vector<std::string> list;
+  for (const NamedUnit& thing : things) list.push_back(thing.name);
+  return list;
+}
+
+std::string metric_text(const StoredResult& result) {
+  if (result.metric == "platform") {
+    return fmt::format("platform, by displacement of {}", counted(result.metric_points.size(), "point", "points"));
+  }
+  if (result.metric == "published") return "published, radians against metres at the base's origin";
+  return result.metric;
+}
+
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
   if (pose >= result.poses.size()) return {};  // a stranger's file may name any number
   std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));

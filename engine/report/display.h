@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/io/result_file.h"
 #include "engine/report/table.h"
@@ -26,6 +27,13 @@ std::string percent_number(double share);
 std::string percent_text(double share);
 /// The unit in which people read it, "mm"; empty for a pure number.
 std::string unit_text(const NamedUnit& named);
+
+/// The names, in order.
+std::vector<std::string> names_of(const std::vector<NamedUnit>& things);
+
+/// By what mismatch of angle was weighed against mismatch of position: "platform, by displacement of 3 points". Empty
+/// where nothing is weighed, and for results of older versions.
+std::string metric_text(const StoredResult& result);
 
 /// Where a pose is, in the units shown: "z -190 mm, beta 20 deg, gamma -30 deg"; on a trajectory with its time before,
 /// "t 1.18 s, ...". To three digits. Empty for a number that is no pose of the result.

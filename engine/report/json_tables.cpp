@@ -1,9 +1,11 @@
 #include "engine/report/json_tables.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "engine/base/units.h"
+#include "engine/report/display.h"
 #include "engine/report/tables.h"
 
 namespace poesy {
@@ -69,28 +71,54 @@ Json named_json(const std::vector<NamedUnit>& things) {
   return list;
 }
 
+Json tables_json(std::span<const Table> tables) {
+  Json list = Json::array();
+  for (const Table& table : tables) list.push_back(table_json(table));
+  return list;
+}
+
+/// A result without its tables.
+Json summary_json(const StoredResult& result) {
+  const std::string metric = metric_text(result);
+  return {{"kind", result.kind},
+          {"model", result.model},
+          {"metric", metric.empty() ? Json(nullptr) : Json(metric)},
+          {"title", result.title},
+          {"poesy_version", result.poesy_version},
+          {"git_commit", result.git_commit},
+          {"content_sha256", result.content_sha256},
+          {"seed", seed_of(result.study_text)},
+          {"poses", result.poses.size()},
+          {"errors", named_json(result.factors)},
+          {"responses", named_json(result.responses)},
+          {"solves", solves_json(solves_of(result))},
+          {"run",
+           {{"created", result.facts.created},
+            {"threads", result.facts.threads},
+            {"wall_seconds", result.facts.wall_seconds}}}};
+}
+
+Json ranked_json(const RankedResult& ranked) {
+  Json all{{"path", ranked.path}, {"response", ranked.response}};
+  all.update(summary_json(ranked.result));
+  return all;
+}
+
+std::string text_of(const Json& all) { return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 }  // namespace
 
 std::string json_of(const StoredResult& result, std::span<const Table> tables) {
-  Json list = Json::array();
-  for (const Table& table : tables) list.push_back(table_json(table));
-  const Json all{{"kind", result.kind},
-                 {"model", result.model},
-                 {"title", result.title},
-                 {"poesy_version", result.poesy_version},
-                 {"git_commit", result.git_commit},
-                 {"content_sha256", result.content_sha256},
-                 {"seed", seed_of(result.study_text)},
-                 {"poses", result.poses.size()},
-                 {"errors", named_json(result.factors)},
-                 {"responses", named_json(result.responses)},
-                 {"solves", solves_json(solves_of(result))},
-                 {"run",
-                  {{"created", result.facts.created},
-                   {"threads", result.facts.threads},
-                   {"wall_seconds", result.facts.wall_seconds}}},
-                 {"tables", std::move(list)}};
-  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json all = summary_json(result);
+  all["tables"] = tables_json(tables);
+  return text_of(all);
+}
+
+std::string json_of(const RankedResult& a, const RankedResult& b, const TwoRankings& rankings) {
+  return text_of({{"results", Json::array({ranked_json(a), ranked_json(b)})},
+                  {"kendall_tau", std::isnan(rankings.tau) ? Json(nullptr) : Json(rankings.tau)},
+                  {"remarks", rankings.remarks},
+                  {"tables", tables_json({&rankings.table, 1})}});
 }
 
 }  // namespace poesy

@@ -62,6 +62,10 @@ double index_rounding(const StoredResult& result, std::size_t response, std::siz
   return index_rounding(result.sensitivity, response, result.factor_sigma[factor]);
 }
 
+double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor) {
+  return told_from_rounding(index, index_rounding(result, response, factor));
+}
+
 bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor) {
   return has_effect(shown_indices(result).value[response * result.sensitivity.factors + factor],
                     index_rounding(result, response, factor));

@@ -52,6 +52,10 @@ GlobalIndices shown_indices(const StoredResult& result);
 /// Below which a (global or local) index of the response and the error is rounding.
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
 
+/// An index, global or local, or an end of its interval, in SI, as far as it can be told from rounding: 0 where the
+/// error has no effect, NaN where it is too small to tell.
+double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor);
+
 /// Whether the index shown is more than rounding.
 bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor);
 

@@ -66,6 +66,7 @@ std::string summary_text(const StoredResult& result, std::size_t width) {
   text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
                                counted(result.poses.size(), "pose", "poses"), result.poesy_version),
                    width);
+  if (!result.metric.empty()) text += prose_of("metric: " + metric_text(result), width);
   text += prose_of(fmt::format("{}{} in {:.2f} s on {}: {} solves/s", counted(facts.solves, "solve", "solves"), each,
                                facts.wall_seconds, counted(facts.threads, "thread", "threads"),
                                count_text(static_cast<std::uint64_t>(std::llround(per_second)))),
@@ -98,7 +99,7 @@ std::vector<Table> result_tables(const StoredResult& result, std::string_view ra
   return tables;
 }
 
-void keep_first(std::size_t most, std::vector<Table>& tables) {
+void keep_first(std::size_t most, std::span<Table> tables) {
   for (Table& table : tables) {
     if (!table.ranked || table.rows.size() <= most) continue;
     table.notes.push_back(fmt::format("{} of {} errors shown", most, table.rows.size()));

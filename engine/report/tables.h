@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,7 +74,7 @@ std::vector<Table> result_tables(const StoredResult& result, std::string_view ra
                                  RowOrder order = RowOrder::effect);
 
 /// Leaves the first rows of the tables that are ranked; where that takes some away, a note says how many there are.
-void keep_first(std::size_t most, std::vector<Table>& tables);
+void keep_first(std::size_t most, std::span<Table> tables);
 
 /// All mechanisms, a line each.
 std::string models_text(const Catalog& catalog);

@@ -40,19 +40,49 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / std::sqrt(xx * yy);
 }
 
+/// What of x and y is known in both.
+struct Known {
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+Known known(std::span<const double> x, std::span<const double> y) {
+  POESY_EXPECTS(x.size() == y.size());
+  Known both;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    if (std::isnan(x[n]) || std::isnan(y[n])) continue;
+    both.x.push_back(x[n]);
+    both.y.push_back(y[n]);
+  }
+  return both;
+}
+
+/// 1, 0 or -1.
+int order(double a, double b) { return (a > b) - (a < b); }
+
 }  // namespace
 
 double rank_correlation(std::span<const double> x, std::span<const double> y) {
-  POESY_EXPECTS(x.size() == y.size());
-  std::vector<double> known_x;
-  std::vector<double> known_y;
-  for (std::size_t n = 0; n < x.size(); ++n) {
-    if (std::isnan(x[n]) || std::isnan(y[n])) continue;
-    known_x.push_back(x[n]);
-    known_y.push_back(y[n]);
+  const Known both = known(x, y);
+  if (both.x.size() < 3) return std::numeric_limits<double>::quiet_NaN();
+  return correlation(mean_ranks(both.x), mean_ranks(both.y));
+}
+
+double kendall_tau(std::span<const double> x, std::span<const double> y) {
+  const Known both = known(x, y);
+  int agree = 0;
+  int ordered_x = 0;
+  int ordered_y = 0;
+  for (std::size_t n = 0; n < both.x.size(); ++n) {
+    for (std::size_t m = 0; m < n; ++m) {
+      const int of_x = order(both.x[n], both.x[m]);
+      const int of_y = order(both.y[n], both.y[m]);
+      agree += of_x * of_y;
+      ordered_x += of_x * of_x;
+      ordered_y += of_y * of_y;
+    }
   }
-  if (known_x.size() < 3) return std::numeric_limits<double>::quiet_NaN();
-  return correlation(mean_ranks(known_x), mean_ranks(known_y));
+  return agree / std::sqrt(static_cast<double>(ordered_x) * static_cast<double>(ordered_y));
 }
 
 }  // namespace poesy

@@ -69,7 +69,7 @@ class CommandLine(ProgramTest):
         self.refuses("replay r.h5 all one", "POSE is 'one'; give a whole number from 0 to 9223372036854775807")
 
     def test_arguments(self):
-        self.refuses("show", "poesy show needs RESULT.h5; write poesy show RESULT.h5 [options], see poesy show --help")
+        self.refuses("show", "poesy show needs RESULT.h5; write poesy show RESULT.h5 ... [options], see poesy show --help")
         self.refuses("evaluate s.toml --errors e.csv", "poesy evaluate needs --poses P.csv; write poesy evaluate STUDY.toml "
                      "--poses P.csv --errors E.csv [options], see poesy evaluate --help")
         self.refuses("check a.toml b.toml", "'b.toml' is one too many; write poesy check STUDY.toml [options], see poesy check --help")

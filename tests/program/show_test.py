@@ -12,6 +12,7 @@ import unittest
 import h5py
 from poesy_program import PROGRAM, STUDY, ProgramTest, main
 
+BY_PLATFORM = STUDY.replace("[solver]\n", '[solver]\nmetric = "platform"\n')
 MONTE_CARLO = STUDY.replace('"sensitivity"', '"monte-carlo"')
 
 
@@ -161,6 +162,138 @@ class Show(ProgramTest):
         self.assertEqual(text.count("did not converge"), 1)
         self.assertNotIn("failed", text)
         self.assertIn("replay it: poesy replay out.h5", text)
+
+
+class Metric(ProgramTest):
+    """A result says by what its mechanism weighs angles against lengths, and file, terminal, JSON and report agree."""
+
+    PUBLISHED = "published, radians against metres at the base's origin"
+    PLATFORM = "platform, by displacement of {} points"
+
+    def words(self, study):
+        self.write("study.toml", study)
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+        self.succeeds("report", "r.h5", "-o", "r.html")
+        words = json.loads(self.succeeds("show", "r.h5", "--json"))["metric"]
+        self.assertIn(f"\nmetric: {words}\n", self.succeeds("show", "r.h5"))
+        self.assertEqual((self.folder / "r.html").read_text().replace("&#39;", "'").count(words), 2)
+        with h5py.File(self.folder / "r.h5") as file:
+            points = file["metric/points"][:].tolist() if "points" in file["metric"] else []
+            self.assertEqual(file["metric"].attrs["name"], words.split(",")[0])
+        return words, points
+
+    def test_published(self):
+        self.assertEqual(self.words(STUDY), (self.PUBLISHED, []))
+
+    def test_platform(self):
+        words, points = self.words(BY_PLATFORM)
+        self.assertEqual(words, self.PLATFORM.format(3))
+        self.assertEqual(sorted(points), [[-0.06, 0, 0], [0, 0.06, 0], [0.06, 0, 0]])
+
+    def test_points_of_the_study_in_every_kind(self):
+        own = [[0.1, 0, 0], [0, 0.1, 0], [-0.1, 0, 0], [0, 0, 0.02]]
+        text = ", ".join("[" + ", ".join(f'"{x} m"' for x in point) + "]" for point in own)
+        for kind in ("sensitivity", "monte-carlo"):
+            study = BY_PLATFORM.replace("[run]", f"points = [{text}]\n[run]").replace('"sensitivity"', f'"{kind}"')
+            self.assertEqual(self.words(study), (self.PLATFORM.format(4), own))
+
+    def test_models_that_weigh_nothing_have_none(self):
+        template = self.succeeds("template", "3-prs").replace("count = 158", "count = 2")
+        self.write("study.toml", template.replace("samples = 1000", "samples = 100"))
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+        self.assertNotIn("metric:", self.succeeds("show", "r.h5"))
+        self.assertIsNone(json.loads(self.succeeds("show", "r.h5", "--json"))["metric"])
+        with h5py.File(self.folder / "r.h5") as file:
+            self.assertNotIn("metric", file)
+
+
+class TwoRankings(ProgramTest):
+    """`poesy show A B`: what both files say, beside each other."""
+
+    ERRORS = '["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y", "epsilon_3_3_x", "epsilon_1_4_x", "delta_1_0_z"]'
+
+    def setUp(self):
+        super().setUp()
+        for name, study in (("published", STUDY), ("platform", BY_PLATFORM)):
+            study = study.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', self.ERRORS)
+            self.write(f"{name}.toml", study.replace('"gauss-newton"', '"newton"'))
+            self.succeeds("run", f"{name}.toml", "--quiet")
+
+    def effects(self, name, response):
+        """By error, in the unit shown; below rounding there is none."""
+        with h5py.File(self.folder / f"{name}.h5") as file:
+            at = list(file["response"].asstr()).index(response)
+            unit = {"m": 1e-3, "rad": 3.141592653589793 / 180.0, "1": 1.0}[file["responses/unit"].asstr()[at]]
+            index = file["sensitivity/global_corrected"][at]
+            effects = [float(one * sigma / unit) if one > 1e-10 else 0.0 for one, sigma in zip(index, file["factors/sigma"])]
+            return dict(zip(file["factor"].asstr(), effects))
+
+    def compare(self, response_a, response_b, *options):
+        both = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json", *options))
+        self.assertEqual([one["response"] for one in both["results"]], [response_a, response_b])
+        a, b = self.effects("published", response_a), self.effects("platform", response_b)
+        rows = both["tables"][0]["rows"]
+        self.assertEqual({row["error"] for row in rows}, set(a))
+        for row in rows:
+            for key, effects in (("a", a), ("b", b)):
+                effect = effects[row["error"]]
+                self.assertAlmostEqual(row[f"effect_{key}"], effect, delta=1e-12)
+                self.assertEqual(row[f"rank_{key}"], 1 + sum(other > effect for other in effects.values()))
+        pairs = [(one, other) for one in a for other in a if one < other]
+
+        def sign(effects, pair):
+            one, other = (effects[error] for error in pair)
+            return (one > other) - (one < other)
+
+        agree = sum(sign(a, pair) * sign(b, pair) for pair in pairs)
+        ordered = [sum(abs(sign(effects, pair)) for pair in pairs) for effects in (a, b)]
+        self.assertAlmostEqual(both["kendall_tau"], agree / (ordered[0] * ordered[1]) ** 0.5, places=12)
+        return both
+
+    def test_each_by_its_own_response(self):
+        both = self.compare("linear_deformation", "gap")
+        self.assertLess(both["kendall_tau"], 0.9)
+        self.assertTrue(both["results"][0]["metric"].startswith("published, "))
+        self.assertEqual(both["tables"][0]["rows"][-1]["error"], "epsilon_3_3_x")  # no effect as published
+        text = self.succeeds("show", "published.h5", "platform.h5")
+        for words in ("A: ", "(published.h5); metric: published, radians", "(platform.h5); metric: platform, by",
+                      f"Kendall's tau of the two rankings is {both['kendall_tau']:.2g}, over 6 errors", "unit of length"):
+            self.assertIn(words, " ".join(text.split()))
+        lines = [line.split() for line in text.splitlines()]
+        for shown in both["tables"][0]["shown"]:
+            self.assertIn(shown, lines)
+        self.succeeds("report", "published.h5", "platform.h5", "-o", "both.html")
+        page = (self.folder / "both.html").read_text().replace("&#39;", "'")
+        self.assertIn(both["remarks"][0], page)
+
+    def test_by_responses_asked_for(self):
+        self.compare("angular_deformation", "angular_deformation", "--response", "angular_deformation")
+        self.compare("deformation_max", "linear_deformation", "--response", "deformation_max,linear_deformation")
+        self.compare("linear_deformation", "angular_deformation", "--response", ",angular_deformation")
+
+    def test_order_and_number_of_rows(self):
+        options = ("--sort", "name", "--top", "2")
+        both = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json", *options))
+        self.assertEqual([row["error"] for row in both["tables"][0]["rows"]], ["delta_1_0_z", "delta_1_1_y"])
+        whole = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json"))
+        self.assertEqual(both["kendall_tau"], whole["kendall_tau"])  # of all errors, shown or not
+
+    def refused(self, *arguments):
+        done = self.poesy("show", *arguments)
+        self.assertEqual((done.returncode, done.stdout), (2, b""))
+        return done.stderr.decode()
+
+    def test_what_cannot_be_compared(self):
+        message = self.refused("published.h5", "platform.h5", "--response", "gap")
+        self.assertIn("published.h5", message)
+        self.assertIn("it has angular_deformation, linear_deformation, deformation_max", message)
+        self.write("mc.toml", MONTE_CARLO)
+        self.succeeds("run", "mc.toml", "--quiet")
+        self.assertIn("'monte-carlo'", self.refused("published.h5", "mc.h5"))
+        template = self.succeeds("template", "3-prs").replace("count = 158", "count = 2")
+        self.write("3prs.toml", template.replace("samples = 1000", "samples = 100"))
+        self.succeeds("run", "3prs.toml", "--quiet")
+        self.assertIn("mechanism is '3-prs', not '2upr-rpu'", self.refused("published.h5", "3prs.h5"))
 
 
 if __name__ == "__main__":

@@ -148,23 +148,6 @@ std::string order_of(const Comparison& compared) {
 
 }  // namespace
 
-Common common(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-  Common both;
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    const auto at = std::ranges::find(b, a[n]);
-    if (at != b.end()) both.emplace_back(n, static_cast<std::size_t>(at - b.begin()));
-  }
-  return both;
-}
-
-std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others) {
-  std::vector<std::string> list;
-  for (const std::string& name : these) {
-    if (std::ranges::find(others, name) == others.end()) list.push_back(name);
-  }
-  return list;
-}
-
 void add_comparison(const Comparison& compared, Page& page) {
   ArrayPool& pool = page.figures.pool;
   Section section("differences", "What differs");

@@ -2,22 +2,13 @@
 
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "engine/report/html/page.h"
 #include "engine/report/html/report.h"
+#include "engine/report/in_common.h"
 
 namespace poesy {
-
-/// Positions in both of what A and B have in common, in the order of A.
-using Common = std::vector<std::pair<std::size_t, std::size_t>>;
-
-/// Names that both have, and those of one alone.
-Common common(const std::vector<std::string>& a, const std::vector<std::string>& b);
-
-/// The names that `these` has and `others` has not.
-std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others);
 
 /// The numbers of one result, [R x P] in the units shown; without intervals low and high are empty.
 struct ComparedValues {

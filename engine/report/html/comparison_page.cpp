@@ -15,21 +15,11 @@
 #include "engine/report/html/what_was_run.h"
 #include "engine/report/ranking.h"
 #include "engine/report/tables.h"
+#include "engine/report/two_rankings.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
-
-void check_kinds(const ReportedResult& a, const ReportedResult& b) {
-  const auto check = [&](std::string_view what, const std::string& of_a, const std::string& of_b) {
-    if (of_a == of_b) return;
-    throw InputError({.file = b.path},
-                     fmt::format("cannot be compared with {}: its {} is '{}', not '{}'", a.path, what, of_b, of_a),
-                     "compare two results of one kind and mechanism, or report each alone");
-  };
-  check("kind", a.stored.kind, b.stored.kind);
-  check("mechanism", a.stored.model, b.stored.model);
-}
 
 bool same_poses(const StoredResult& a, const StoredResult& b) {
   if (a.poses.size() != b.poses.size() || a.poses.coordinates() != b.poses.coordinates()) return false;
@@ -99,6 +89,22 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
   page.sections.push_back(std::move(section));
 }
 
+/// Their rankings beside each other.
+void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) {
+  const RankedResult ranked_a{a.stored, a.path, default_ranking(a.stored)};
+  const RankedResult ranked_b{b.stored, b.path, default_ranking(b.stored)};
+  const TwoRankings rankings = two_rankings(ranked_a, ranked_b);
+  Section section("rankings", "The two rankings");
+  section.paragraph(ranked_text('A', ranked_a) + ".");
+  section.paragraph(ranked_text('B', ranked_b) + ".");
+  for (const std::string& remark : rankings.remarks) section.paragraph(remark);
+  if (a.stored.metric != b.stored.metric) {
+    section.paragraph("Below, responses of the same name are compared. Two metrics do not mean the same by them.");
+  }
+  section.table(rankings.table);
+  page.sections.push_back(std::move(section));
+}
+
 /// How the solves of both ended.
 void add_unsolved(const ReportedResult& a, const ReportedResult& b, Page& page) {
   const SolveCounts of_a = sum_of(tally_of(a.stored).cells);
@@ -165,7 +171,7 @@ std::string name_of(const ReportedResult& result) {
 Page comparison_page(std::span<const ReportedResult> results) {
   const ReportedResult& a = results[0];
   const ReportedResult& b = results[1];
-  check_kinds(a, b);
+  check_comparable(a.stored, a.path, b.stored, b.path);
   Page page;
   page.title = fmt::format("Two results of {} compared", a.stored.model);
   page.subtitle = fmt::format("A: {}; B: {}", name_of(a), name_of(b));
@@ -175,7 +181,9 @@ Page comparison_page(std::span<const ReportedResult> results) {
   }
   add_studies(a.stored, b.stored, page);
   add_responses(a.stored, page);
-  add_comparison(comparison(a, b), page);
+  const Comparison compared = comparison(a, b);
+  if (a.stored.kind == "sensitivity") add_rankings(a, b, page);
+  add_comparison(compared, page);
   if (a.stored.kind == "sensitivity") add_where(a.stored, b.stored, page);
   add_glossary(a.stored, page);
   add_unsolved(a, b, page);

@@ -9,7 +9,6 @@
 #include "engine/base/units.h"
 #include "engine/report/ranking.h"
 #include "engine/report/tables.h"
-#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
@@ -34,12 +33,6 @@ std::size_t rows_of_cells(const StoredResult& result) {
 }
 
 }  // namespace
-
-std::vector<std::string> names_of(const std::vector<NamedUnit>& things) {
-  std::vector<std::string> list;
-  for (const NamedUnit& thing : things) list.push_back(thing.name);
-  return list;
-}
 
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions) {
   std::vector<std::string> list;
@@ -67,10 +60,6 @@ std::string some_names(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t n = 0; n < std::min(names.size(), kMost); ++n) text += (n == 0 ? "" : ", ") + names[n];
   return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
-}
-
-double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor) {
-  return told_from_rounding(index, index_rounding(result, response, factor));
 }
 
 std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,

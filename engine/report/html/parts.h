@@ -15,8 +15,6 @@
 /// What the sections of all kinds of results share.
 namespace poesy {
 
-/// The names, in order.
-std::vector<std::string> names_of(const std::vector<NamedUnit>& things);
 /// The names at these positions.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
 /// The headline's responses, the one that ranks errors first (default_ranking).
@@ -27,9 +25,6 @@ std::vector<std::size_t> response_order(const StoredResult& result);
 /// "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names);
 
-/// An index, global or local, or an end of its interval, in SI, as far as it can be told from rounding: 0 where the
-/// error has no effect, NaN where it is too small to tell.
-double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor);
 /// "mm/deg", for each of these responses and each of these errors.
 std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
                                                   std::span<const std::size_t> factors);

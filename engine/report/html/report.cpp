@@ -19,7 +19,8 @@ std::string subtitle(const StoredResult& result) {
   std::string text = fmt::format("{} of {}: ", result.kind, result.model);
   if (!result.factors.empty()) text += counted(result.factors.size(), "error", "errors") + ", ";
   text += counted(result.poses.size(), "pose", "poses");
-  return text + fmt::format(", {}", counted(result.facts.solves, "solve", "solves"));
+  text += fmt::format(", {}", counted(result.facts.solves, "solve", "solves"));
+  return result.metric.empty() ? text : text + "; metric: " + metric_text(result);
 }
 
 void add_sections_of_kind(const StoredResult& result, Page& page) {

@@ -98,8 +98,10 @@ void add_study(Facts& facts, const StoredResult& result) {
   add_distributions(facts, result);
   facts.add("sizes of the errors", sizes_text(result));
   facts.add("samples at each pose", samples_text(facts, result));
+  facts.add("metric", metric_text(result));
   facts.add_setting("solver", "solver", "method");
-  facts.add_setting("tolerance of the solver [rad, m]", "solver", "tolerance");
+  const std::string_view of = result.metric == "platform" ? "of the reach" : "rad, m";
+  facts.add_setting(fmt::format("tolerance of the solver [{}]", of), "solver", "tolerance");
   facts.add_setting("most iterations", "solver", "max_iterations");
   facts.add_setting("samples not converged", "solver", "not_converged");
   facts.add("seed", draws(result) ? facts.setting("run", "seed") : "");

@@ -419,6 +419,23 @@ TEST_F(HtmlReport, TakesRoundingForNoDifference) {
   EXPECT_TRUE(all(numbers, "(e-1[0-9]( %)?)</td>").empty());
 }
 
+TEST_F(HtmlReport, OfTwoHasTheirRankingsBesideEachOther) {
+  ReportedResult a = sensitivity();
+  a.stored.factor_sigma = {1.0, 1.0};
+  a.stored.sensitivity.global_corrected = {1.0, 2.0, 1.0, 2.0};
+  ReportedResult b = a;
+  EXPECT_NE(body(report(a, b)).find("Kendall&#39;s tau of the two rankings is 1, over 2 errors"), std::string::npos);
+  a.stored.metric = "published";
+  b.stored.metric = "platform";
+  b.stored.sensitivity.global_corrected = {2.0, 1.0, 2.0, 1.0};
+  const std::string page = body(report(a, b));
+  check_page(report(a, b));
+  EXPECT_NE(page.find("Kendall&#39;s tau of the two rankings is -1, over 2 errors"), std::string::npos);
+  EXPECT_NE(page.find("; metric: published, radians against metres at the base&#39;s origin;"), std::string::npos);
+  EXPECT_NE(page.find("Two metrics do not mean the same by them."), std::string::npos);
+  ASSERT_FALSE(all(page, "<section id=\"(rankings)\"").empty());
+}
+
 TEST_F(HtmlReport, OfCoupledSourcesOpensAtTheLastSize) {
   example.write_coupling(path);
   const ReportedResult result = stored();

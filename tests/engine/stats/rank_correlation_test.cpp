@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace poesy {
@@ -45,6 +46,31 @@ TEST(RankCorrelation, IsNotKnownOfTwoPairsOrOfEqualValues) {
   const std::array same{5.0, 5.0, 5.0};
   EXPECT_TRUE(std::isnan(rank_correlation(grows, same)));
   EXPECT_TRUE(std::isnan(rank_correlation(same, grows)));
+}
+
+TEST(KendallTau, IsOneWhereAllAgree) {
+  const std::array x{3.0, -1.0, 0.5, 8.0};
+  const std::array grows{30.0, 2.0, 5.0, 31.0};
+  const std::array falls{-3.0, 1.0, -0.5, -8.0};
+  EXPECT_EQ(kendall_tau(x, grows), 1.0);
+  EXPECT_EQ(kendall_tau(x, falls), -1.0);
+}
+
+/// By hand: of the ten pairs x orders nine and y seven.
+TEST(KendallTau, LeavesOutWhatIsEqual) {
+  const std::array x{5.0, 4.0, 3.0, 0.0, 0.0};
+  const std::array y{4.0, 5.0, 1.0, 1.0, 1.0};
+  // Pairs that y orders: 0-1, 0-2, 0-3, 0-4, 1-2, 1-3, 1-4: the first against x, the other six as x does.
+  EXPECT_DOUBLE_EQ(kendall_tau(x, y), (6.0 - 1.0) / std::sqrt(9.0 * 7.0));
+}
+
+TEST(KendallTau, LeavesOutWhatIsNotKnown) {
+  const std::array x{1.0, kNaN, 2.0, 3.0};
+  const std::array y{2.0, -9.0, 3.0, kNaN};
+  EXPECT_EQ(kendall_tau(x, y), 1.0);
+  const std::array same{5.0, 5.0, 5.0, 5.0};
+  EXPECT_TRUE(std::isnan(kendall_tau(x, same)));
+  EXPECT_TRUE(std::isnan(kendall_tau(std::span(x).first(1), std::span(y).first(1))));
 }
 
 }  // namespace

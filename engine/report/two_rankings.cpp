@@ -1,0 +1,131 @@
+#include "engine/report/two_rankings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/report/display.h"
+#include "engine/report/in_common.h"
+#include "engine/report/tables.h"
+#include "engine/stats/rank_correlation.h"
+
+namespace poesy {
+namespace {
+
+/// The effects of one result's errors on its response, in SI, for the errors that both results have.
+struct Ranking {
+  std::vector<double> effects;  ///< 0: none; NaN: not known
+  std::string metric;           ///< its name
+  NamedUnit response;           ///< that ranks
+};
+
+Ranking ranking_of(const RankedResult& ranked, const std::vector<std::size_t>& factors) {
+  const StoredResult& result = ranked.result;
+  const std::size_t r = response_named(result, ranked.response);
+  const GlobalIndices shown = shown_indices(result);
+  Ranking ranking{{}, result.metric, result.responses[r]};
+  for (const std::size_t p : factors) {
+    const double index = without_rounding(result, shown.value[r * result.factors.size() + p], r, p);
+    ranking.effects.push_back(index * result.factor_sigma[p]);
+  }
+  return ranking;
+}
+
+/// One more than the number of errors with a larger effect.
+Cell rank_cell(const Ranking& ranking, std::size_t at) {
+  if (std::isnan(ranking.effects[at])) return text_cell("");
+  const auto larger = [&](double effect) { return effect > ranking.effects[at]; };
+  return count_cell(1 + static_cast<std::uint64_t>(std::ranges::count_if(ranking.effects, larger)));
+}
+
+void add_columns(std::vector<Column>& columns, char letter, const Ranking& ranking, bool by_metric) {
+  const std::string suffix = letter == 'A' ? "_a" : "_b";
+  const NamedUnit& response = ranking.response;
+  const std::string in = fmt::format(" in {}", letter);
+  columns.push_back(number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in)));
+  columns.push_back(number_column(
+      "effect" + suffix, response.name + (by_metric ? ", " + ranking.metric + " metric" : in), unit_text(response)));
+}
+
+void add_cells(std::vector<Cell>& row, const Ranking& ranking, std::size_t at) {
+  row.push_back(rank_cell(ranking, at));
+  row.push_back(number_cell(ranking.effects[at] / display(ranking.response).si));
+}
+
+std::string tau_text(double tau, std::size_t errors) {
+  return fmt::format(
+      "Kendall's tau of the two rankings is {}, over {}: 1 where they have the same order, 0 where one says nothing of "
+      "the other, -1 where one is the other reversed.",
+      number_text(tau, 2), counted(errors, "error", "errors"));
+}
+
+constexpr std::string_view kWhyMetricsDiffer =
+    "The published metric weighs radians against metres, so its ranking depends on the unit of length and on where the "
+    "base frame is; the platform's metric measures how far its points move, which depends on neither.";
+
+std::vector<std::string> remarks(const RankedResult& a, const RankedResult& b, double tau, std::size_t errors) {
+  std::vector<std::string> list{tau_text(tau, errors)};
+  if (a.result.metric != b.result.metric) list.emplace_back(kWhyMetricsDiffer);
+  const auto names_a = names_of(a.result.factors);
+  const auto names_b = names_of(b.result.factors);
+  for (const auto& [letter, only] : {std::pair('A', only_in(names_a, names_b)), {'B', only_in(names_b, names_a)}}) {
+    if (!only.empty()) list.push_back(fmt::format("Only in {}: {}.", letter, fmt::join(only, ", ")));
+  }
+  return list;
+}
+
+/// The errors that both have, in this order of A.
+Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder order) {
+  Common both = common(names_of(a.result.factors), names_of(b.result.factors));
+  if (both.empty()) {
+    throw InputError({.file = b.path}, fmt::format("has no error in common with {}", a.path),
+                     "compare two results that share some");
+  }
+  const std::vector<std::size_t> rows = ranked_errors(a.result, a.response, order).rows;
+  std::ranges::sort(both, {}, [&](const auto& one) { return std::ranges::find(rows, one.first) - rows.begin(); });
+  return both;
+}
+
+}  // namespace
+
+TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order) {
+  check_comparable(a.result, a.path, b.result, b.path);
+  std::vector<std::size_t> of_a;
+  std::vector<std::size_t> of_b;
+  for (const auto& [pa, pb] : errors_in_order(a, b, order)) {
+    of_a.push_back(pa);
+    of_b.push_back(pb);
+  }
+  const Ranking first = ranking_of(a, of_a);
+  const Ranking second = ranking_of(b, of_b);
+  const bool by_metric = first.metric != second.metric;
+  Table table{.name = "rankings",
+              .caption = "Two rankings: the effect of each error at the size that its study gives it",
+              .columns = {text_column("error", "error")},
+              .rows = {},
+              .notes = {},
+              .ranked = true};
+  add_columns(table.columns, 'A', first, by_metric);
+  add_columns(table.columns, 'B', second, by_metric);
+  for (std::size_t n = 0; n < of_a.size(); ++n) {
+    std::vector<Cell> row{text_cell(a.result.factors[of_a[n]].name)};
+    add_cells(row, first, n);
+    add_cells(row, second, n);
+    table.rows.push_back(std::move(row));
+  }
+  const double tau = kendall_tau(first.effects, second.effects);
+  return {std::move(table), tau, remarks(a, b, tau, of_a.size())};
+}
+
+std::string ranked_text(char letter, const RankedResult& ranked) {
+  const StoredResult& result = ranked.result;
+  const SolveCounts solves = solves_of(result);
+  std::string text = fmt::format("{}: {} ({})", letter, result.title, ranked.path);
+  if (!result.metric.empty()) text += "; metric: " + metric_text(result);
+  return text + fmt::format("; ranked by {}; {} of {} did not converge", ranked.response,
+                            count_text(solves.not_converged()), counted(solves.total(), "solve", "solves"));
+}
+
+}  // namespace poesy

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/io/result_file.h"
+#include "engine/report/ranking.h"
+#include "engine/report/table.h"
+
+namespace poesy {
+
+/// A sensitivity result, and the response by which its errors are ranked; it must have it.
+struct RankedResult {
+  const StoredResult& result;  ///< must outlive this
+  std::string path;            ///< of the result
+  std::string response;        ///< name
+};
+
+/// Two rankings of the same errors by their effects, at the sizes that each study gives them.
+struct TwoRankings {
+  Table table;  ///< of each error its rank and effect in A and in B, in an order of A
+  double tau;   ///< Kendall's, of the effects; NaN where it is not known
+  std::vector<std::string>
+      remarks;  ///< sentences for people: the tau, what differs between the metrics, what is left out
+};
+
+/// A beside B, of the errors that both have. Errors without effect share the last rank; those whose effect cannot be
+/// told from rounding have none and do not count for the tau. Throws InputError where the results are of two kinds or
+/// mechanisms, or have no error in common.
+TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order = RowOrder::effect);
+
+/// What a reader must know of one of them, on one line: "A: title (path); metric: ...; ranked by gap; 5 of 1 000 solves
+/// did not converge".
+std::string ranked_text(char letter, const RankedResult& ranked);
+
+}  // namespace poesy
