@@ -277,6 +277,10 @@ figures come from [published/](published), ours from the exported tables of the 
 iterations, the last iterate kept whether it settled or not. They differ where solves do not settle in 50 iterations: an
 unfinished iterate can be far off, so that a handful of draws makes an index. Where both differ from the paper, the printed
 equations, the inferred workspace or unknown draws are behind it: [README.md](README.md) goes through it table by table.
+
+What the tables depend on: lengths are in metres, the base frame's origin is the paper's, and errors have the sizes stated, 1 mm and 1 degree in
+Figures 8 and 9 and Table 10. The scheme balances radians against metres at that origin, so in another unit, frame or size there are other numbers and
+another ranking; [2upr-rpu-sensitivity](../2upr-rpu-sensitivity/README.md) shows which, and a metric that has none of this.
 """
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Does what README.md tells a new user to do, in a root that holds only Debian's minimal base, ca-certificates and git.
 
-    bare_root.py         the first command under "Start": it must end well, print the ranked table, and leave a result
-                         and a report; nothing that only tests need may be installed for it
+    bare_root.py         the first command under "Start": it must end well, print the ranked table and the published
+                         ranking beside it, and leave results and reports; nothing that only tests need may be installed for it
     bare_root.py test    the second command: all tests must pass
 
 It makes the root with mmdebstrap from this machine's sources of Debian packages, clones the commit that is checked out
@@ -25,7 +25,8 @@ ERRORS = 25  # of the published study
 MOST_PACKAGES = 165
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen",
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
-LEFT = ("build/2upr-rpu-sensitivity.h5", "build/2upr-rpu-sensitivity.html")  # result and report
+RESULTS = ("build/2upr-rpu-platform.h5", "build/2upr-rpu-published.h5")
+REPORTS = ("build/2upr-rpu-platform.html", "build/2upr-rpu-both.html")
 HOSTS = "127.0.0.1 localhost\n::1 localhost\n"
 CERTIFICATES = "usr/local/share/ca-certificates"  # that this machine trusts besides Debian's, to reach npm
 # A mount namespace and a process namespace of its own: mounts and processes end with the command.
@@ -122,8 +123,21 @@ def check_table(output):
         raise Fault("the ranked table is not in the order of the effects")
     if any(low > high for low, high in intervals):
         raise Fault("an interval of the ranked table has its ends exchanged")
-    if rows[0]["error"] != "epsilon_1_4_z" or not 2 < effects[0] < 4:
-        raise Fault(f"the first error is {rows[0]['error']} with {effects[0]} mm: not as published")
+    if rows[0]["error"] != "epsilon_1_1_x" or not 0.5 < effects[0] < 0.7:
+        raise Fault(f"the first error is {rows[0]['error']} with {effects[0]} mm, not epsilon_1_1_x with 0.6 mm")
+
+
+def check_comparison(output):
+    """That all errors stand there with the rank that each metric gives them, and how well the rankings agree."""
+    _, found, text = output.partition("== The published ranking beside it")
+    rows = [line.split() for line in text.splitlines() if re.match(r"(delta|epsilon)_\d_\d_[xyz] +\d", line)]
+    tau = re.search(r"Kendall's tau of the two rankings is (-?[\d.]+),", text)
+    if not found or not tau:
+        raise Fault("the two rankings are not compared")
+    if len(rows) != ERRORS or [int(row[1]) for row in rows] != list(range(1, ERRORS + 1)):
+        raise Fault("the two rankings are not those of all errors, in the order of the first")
+    if sorted(int(row[3]) for row in rows) != list(range(1, ERRORS + 1)) or not -1 <= float(tau[1]) < 0.8:
+        raise Fault("the published ranking is not another one")
 
 
 def check_packages(before, after):
@@ -200,11 +214,13 @@ def follow(root, command, clock):
 
 def check_program(root, output):
     check_table(output)
-    for name in LEFT:
+    check_comparison(output)
+    for name in (*RESULTS, *REPORTS):
         file = root / CLONE / name
         if not file.is_file() or file.stat().st_size == 0:
             raise Fault(f"{name} is missing or empty")
-    run([*ENTER, root, f"/{CLONE}/build/release/bin/poesy", "verify", f"/{CLONE}/{LEFT[0]}"])
+    for name in RESULTS:
+        run([*ENTER, root, f"/{CLONE}/build/release/bin/poesy", "verify", f"/{CLONE}/{name}"])
 
 
 def summary(clock, command, count, output):

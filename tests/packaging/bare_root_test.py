@@ -26,26 +26,43 @@ On Debian 12:
 ./quickstart other
 ```
 """
-NAMES = [f"{kind}_{limb}_{joint}_{axis}" for kind in ("epsilon", "delta") for limb in "123" for joint in "40"
-         for axis in "zxy"][:25]
+NAMES = [f"{kind}_{limb}_{joint}_{axis}" for kind in ("epsilon", "delta") for limb in "123" for joint in "10"
+         for axis in "xyz"][:25]
 PRINTED = """== Building: rank  error
 == The errors that matter most
-Effect of each error on linear_deformation
+Effect of each error on gap
                                           not
 rank  error  effect  index  low  high  sigma  unit  converged
         [mm] [mm/unit]
 {}
 A note: 1 of them.
 
-== Writing the report
+== The published ranking beside it
+Two rankings
+           rank,      gap,
+error   platform  platform
+                      [mm]
+{}
+Kendall's tau of the two rankings is 0.6, over 25 errors
+== Writing the reports
    1  this is not of the table
 """
 
 
-def printed(change=lambda rows: None):
-    rows = [[str(k + 1), NAMES[k], f"{2.8 - 0.1 * k:.3g}", "1", "0.9", "1.1", "1", "deg", "0"] for k in range(25)]
+def as_is(_rows):
+    pass
+
+
+def printed(change=as_is, change_comparison=as_is):
+    rows = [[str(k + 1), NAMES[k], f"{0.6 - 0.02 * k:.3g}", "1", "0.9", "1.1", "1", "deg", "0"] for k in range(25)]
+    both = [[NAMES[k], str(k + 1), "0.6", str(25 - k), "2.8"] for k in range(25)]
     change(rows)
-    return PRINTED.format("\n".join("  " + "  ".join(row) for row in rows))
+    change_comparison(both)
+    return PRINTED.format("\n".join("  " + "  ".join(row) for row in rows), "\n".join("  ".join(row) for row in both))
+
+
+def set_cell(row, column, text):
+    return lambda rows: rows[row].__setitem__(column, text)
 
 
 class BareRootTest(unittest.TestCase):
@@ -67,9 +84,6 @@ class BareRootTest(unittest.TestCase):
         bare_root.check_table(printed())
 
     def test_faults_of_the_table(self):
-        def set_cell(row, column, text):
-            return lambda rows: rows[row].__setitem__(column, text)
-
         for words, change in {
                 "24 rows": lambda rows: rows.pop(),
                 "24 errors": set_cell(3, 1, NAMES[4]),
@@ -77,11 +91,23 @@ class BareRootTest(unittest.TestCase):
                 "a number": set_cell(3, 2, "-"),
                 "order": set_cell(3, 2, "9"),
                 "exchanged": set_cell(3, 4, "1.2"),
-                "not as published": set_cell(0, 1, "epsilon_3_3_z"),
+                "not epsilon_1_1_x": set_cell(0, 1, "epsilon_3_3_z"),
         }.items():
             self.expect_fault(words, bare_root.check_table, printed(change))
         self.expect_fault("not there", bare_root.check_table, printed().replace("== The errors", "== Errors"))
         self.expect_fault("not there", bare_root.check_table, printed(lambda rows: rows.clear()))
+
+    def test_comparison(self):
+        bare_root.check_comparison(printed())
+        for words, change in {
+                "those of all errors": lambda rows: rows.pop(),
+                "order of the first": set_cell(3, 1, "9"),
+                "not another one": set_cell(3, 3, "9"),
+        }.items():
+            self.expect_fault(words, bare_root.check_comparison, printed(change_comparison=change))
+        self.expect_fault("not compared", bare_root.check_comparison, printed().replace("Kendall's tau", "tau"))
+        self.expect_fault("not compared", bare_root.check_comparison, printed().replace("== The published", "== Its"))
+        self.expect_fault("not another one", bare_root.check_comparison, printed().replace("is 0.6,", "is 0.9,"))
 
     def test_packages(self):
         few = {"g++", "cmake"}

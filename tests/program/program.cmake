@@ -53,6 +53,7 @@ program_test(reference unit)
 program_test(study_notes unit)
 program_test(memory unit)
 program_test(readme unit)
+program_test(published_study regression)
 program_test(tutorial unit)
 
 add_test(NAME regression.golden
