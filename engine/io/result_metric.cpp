@@ -32,8 +32,9 @@ void read_metric(const h5::File& file, StoredResult& result) {
   if (!file.exists("/metric")) return;
   result.metric = file.attribute<std::string>("/metric", "name").at(0);
   if (!file.exists("/metric/points")) return;
-  result.metric_points.resize(axis_length(file, "metric_point"));
-  const auto values = read_exactly<double>(file, "/metric/points", 3 * result.metric_points.size());
+  const std::size_t count = axis_length(file, "metric_point");
+  const auto values = read_exactly<double>(file, "/metric/points", 3 * count);
+  result.metric_points.resize(count);
   for (std::size_t k = 0; k < values.size(); ++k) result.metric_points[k / 3][k % 3] = values[k];
 }
 
