@@ -98,10 +98,10 @@ void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) 
   section.paragraph(ranked_text('A', ranked_a) + ".");
   section.paragraph(ranked_text('B', ranked_b) + ".");
   for (const std::string& remark : rankings.remarks) section.paragraph(remark);
+  section.table(rankings.table);
   if (a.stored.metric != b.stored.metric) {
     section.paragraph("Below, responses of the same name are compared. Two metrics do not mean the same by them.");
   }
-  section.table(rankings.table);
   page.sections.push_back(std::move(section));
 }
 
