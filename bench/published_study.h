@@ -30,6 +30,15 @@ inline Study published_study(std::size_t poses, std::size_t samples) {
   return study;
 }
 
+/// The same by the metric of the platform, exact or to first order.
+inline Study platform_study(std::size_t poses, std::size_t samples, std::size_t fidelity = 0) {
+  Study study = published_study(poses, samples);
+  study.mechanism.entry = study.mechanism.entry->by_platform.get();
+  study.mechanism.fidelity = fidelity;
+  study.solver.tolerance = kToleranceByPlatform;
+  return study;
+}
+
 inline constexpr std::size_t kPublishedPoses = 158;
 inline constexpr std::size_t kPublishedSamples = 1000;
 

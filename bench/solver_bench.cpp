@@ -1,5 +1,7 @@
 #include <benchmark/benchmark.h>
 
+#include <functional>
+
 #include "bench/instruction_sets.h"
 #include "bench/published_study.h"
 #include "bench/reference_model.h"
@@ -17,9 +19,14 @@ void report(benchmark::State& state, const SolveCounts& counts) {
   state.counters["not_converged"] = average(static_cast<double>(counts.not_converged()) / solves);
 }
 
-/// One thread solving units spread over the published study, sampling included.
-void units(benchmark::State& state, SolverOptions::Method method, const std::string& isa) {
-  Study study = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
+using MakeStudy = std::function<Study(std::size_t poses, std::size_t samples)>;
+
+Study platform_study(std::size_t poses, std::size_t samples) { return bench::platform_study(poses, samples); }
+Study first_order_study(std::size_t poses, std::size_t samples) { return bench::platform_study(poses, samples, 1); }
+
+/// One thread solving units spread over a study, sampling included.
+void units(benchmark::State& state, const MakeStudy& make, SolverOptions::Method method, const std::string& isa) {
+  Study study = make(bench::kPublishedPoses, bench::kPublishedSamples);
   study.solver.method = method;
   const auto model = build_model(study.mechanism);
   const bench::ReferenceModel reference(*model);
@@ -35,10 +42,10 @@ void units(benchmark::State& state, SolverOptions::Method method, const std::str
 
 /// All errors varied at once, in blocks of 1000 samples at pose after pose, the same on every thread. Only the solver
 /// is timed.
-void all_errors(benchmark::State& state, const std::string& isa, double scale) {
+void all_errors(benchmark::State& state, const MakeStudy& make, const std::string& isa, double scale) {
   constexpr std::size_t kBlocks = 8;  // as many as there are different samples
   constexpr std::size_t kCount = 1000;
-  const Study study = bench::published_study(bench::kPublishedPoses, kCount);
+  const Study study = make(bench::kPublishedPoses, kCount);
   const auto model = build_model(study.mechanism);
   const PoseSet poses = select_poses(study.poses, *model).poses;
   const std::unique_ptr<Evaluator> evaluator = bench::evaluator_with(isa, *model, study.solver);
@@ -73,19 +80,38 @@ auto add(const std::string& name, Case run) {
       ->Unit(benchmark::kMillisecond);
 }
 
+/// A metric's cases on one instruction set: units by each method, and all errors at two sizes.
+void add_metric(const std::string& metric, const MakeStudy& make, const std::string& isa) {
+  using Method = SolverOptions::Method;
+  const auto add_units = [&](const std::string& method, Method which) {
+    add(metric + "/units/" + method + "/" + isa, [=](benchmark::State& state) {
+      units(state, make, which, isa);
+    })->ThreadRange(1, 2);
+  };
+  add_units("gauss-newton", Method::gauss_newton);
+  add_units("newton", Method::newton);
+  // Large errors make hard solves: fewer blocks of them.
+  add(metric + "/all_errors/1_mm_1_deg/" + isa, [=](benchmark::State& state) { all_errors(state, make, isa, 1.0); })
+      ->ThreadRange(1, 2)
+      ->Iterations(isa == "plain" ? 8 : 40);
+  add(metric + "/all_errors/0.1_mm_0.1_deg/" + isa, [=](benchmark::State& state) { all_errors(state, make, isa, 0.1); })
+      ->ThreadRange(1, 2)
+      ->Iterations(bench::kPublishedPoses);
+}
+
 void add_all() {
   using Method = SolverOptions::Method;
-  add("units/reference/scalar", [](benchmark::State& state) { units(state, Method::gauss_newton, "scalar"); });
+  add("published/units/reference/scalar",
+      [](benchmark::State& state) { units(state, bench::published_study, Method::gauss_newton, "scalar"); });
   for (const std::string& isa : bench::instruction_sets()) {
-    add("units/gauss-newton/" + isa, [=](benchmark::State& state) { units(state, Method::gauss_newton, isa); });
-    add("units/newton/" + isa, [=](benchmark::State& state) { units(state, Method::newton, isa); });
-    // Large errors make hard solves: fewer blocks of them.
-    add("all_errors/1_mm_1_deg/" + isa, [=](benchmark::State& state) { all_errors(state, isa, 1.0); })
-        ->ThreadRange(1, 2)
-        ->Iterations(isa == "plain" ? 8 : 40);
-    add("all_errors/0.1_mm_0.1_deg/" + isa, [=](benchmark::State& state) { all_errors(state, isa, 0.1); })
-        ->ThreadRange(1, 2)
-        ->Iterations(bench::kPublishedPoses);
+    add_metric("published", bench::published_study, isa);
+    add_metric("platform", platform_study, isa);
+    add("first-order/units/" + isa, [=](benchmark::State& state) {
+      units(state, first_order_study, Method::newton, isa);
+    })->ThreadRange(1, 2);
+    add("first-order/all_errors/" + isa, [=](benchmark::State& state) {
+      all_errors(state, first_order_study, isa, 1.0);
+    })->ThreadRange(1, 2);
   }
 }
 
