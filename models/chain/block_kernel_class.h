@@ -90,9 +90,13 @@ struct AnyShape {
 /// is carried along it to first order instead of being evaluated again.
 ///
 /// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. Radians and metres do
-/// not meet, so that Newton needs no passes: each batch is iterated until its last lane is done, from a start in
-/// proportion to the errors, with Gauss-Newton's step where Newton's is not safe. The length of a step is the largest
-/// distance that one joint's part of it moves the platform's points, over the reach.
+/// not meet, so that Newton needs no passes: each batch is iterated until its last lane is done, with Gauss-Newton's
+/// step where Newton's is not safe. The length s of a step is the largest distance that one joint's part of it moves
+/// the platform's points, over the reach. Newton's matrix is made in every third round and used in three:
+///   from a fit   a step with N at nominal displacements comes first; where s < 10 tolerance it is the last one;
+///   elsewhere    from a start in proportion to the errors.
+/// A step is the last one where s < sqrt(tolerance) / 100 with a new matrix, or where s^2 over the step before is below
+/// tolerance / 10.
 template <class T, class Shape, class Measure>
 class BlockKernel {
  public:
@@ -116,6 +120,7 @@ class BlockKernel {
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;
+  static constexpr std::uint32_t kMatrixRounds = 3;
 
   std::size_t limbs() const {
     if constexpr (Shape::kFixed) return Shape::kLimbs;
@@ -168,6 +173,7 @@ class BlockKernel {
   void judge(std::size_t at);
   template <KernelPass pass>
   std::size_t run(std::size_t count, std::uint32_t rounds);
+  void load_all();
   void begin(std::size_t count, bool predicted);
   void predict(std::size_t at);
   void pad(std::size_t count);
@@ -188,12 +194,14 @@ class BlockKernel {
   void solve_by_metric();
   template <bool newton>
   void iterate(std::size_t at);
-  Verdict newton_by_metric(std::size_t at);
+  unsigned finish_fitted(std::size_t at, unsigned open);
+  Verdict newton_by_metric(std::size_t at, std::uint32_t round, T& before, typename T::MaskType& safe);
   Verdict gauss_newton_by_metric(std::size_t at, std::uint32_t round);
   void judge_by_metric(std::size_t at);
   Screw weighted(const Screw& screw) const;
   void weigh();
-  T step_length() const;
+  template <class Diagonal>
+  T step_length(Diagonal diagonal) const;
 
   // block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;
@@ -211,6 +219,7 @@ class BlockKernel {
   typename T::MaskType contracts();
   typename T::MaskType gauss_newton_step(T* x);
   typename T::MaskType newton_step(T* x);
+  void newton_step_again(T* x) const;
   void carry_residual(const T* x, typename T::MaskType lanes);
 
   const KernelChain chain_;
@@ -243,6 +252,7 @@ class BlockKernel {
   T* n_;
   T* m_;
   T* work_;
+  T* pivot_;                 ///< 1 / pivot of Newton's matrix
   std::uint32_t spent_ = 0;  ///< iterations of earlier passes
 };
 

@@ -175,12 +175,13 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::gauss_newton_step(T* __rest
   return margin > T(0.0);
 }
 
-/// Solves M x = f by elimination without pivoting; M is destroyed. Lanes are true where all pivots are safely positive.
+/// Solves M x = f by elimination without pivoting; M becomes its factors. Lanes are true where all pivots are safely
+/// positive.
 template <class T, class Shape, class Measure>
 typename T::MaskType BlockKernel<T, Shape, Measure>::newton_step(T* __restrict x) {
   const std::size_t size = joints();
   T* __restrict m = m_;
-  T* __restrict inverse = work_;
+  T* __restrict inverse = pivot_;
   T margin(1.0);
   for (std::size_t a = 0; a < size; ++a) x[a] = f_[a];
 #pragma GCC unroll 9
@@ -202,6 +203,23 @@ typename T::MaskType BlockKernel<T, Shape, Measure>::newton_step(T* __restrict x
     x[a] = value * inverse[a];
   }
   return margin > T(0.0);
+}
+
+/// Solves M x = f with the factors that newton_step() left.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::newton_step_again(T* __restrict x) const {
+  const std::size_t size = joints();
+#pragma GCC unroll 9
+  for (std::size_t a = 0; a < size; ++a) {
+    T value = f_[a];
+    for (std::size_t k = 0; k < a; ++k) value = nmadd(m_[a * size + k], x[k], value);
+    x[a] = value * pivot_[a];  // as all rows below need it
+  }
+  for (std::size_t a = size; a-- > 0;) {
+    T sum(0.0);
+    for (std::size_t b = a + 1; b < size; ++b) sum = madd(m_[a * size + b], x[b], sum);
+    x[a] = nmadd(pivot_[a], sum, x[a]);
+  }
 }
 
 /// The residual of these lanes after the step x, to first order: V_k - V_i - ad/2 (V_k + V_i) + ad^2/12 (V_k - V_i),

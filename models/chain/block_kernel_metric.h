@@ -7,8 +7,15 @@ namespace poesy::chain {
 template <class T, class Shape, class Measure>
 template <bool newton>
 void BlockKernel<T, Shape, Measure>::solve_by_metric() {
-  begin(samples_.count, newton);
-  pad(samples_.count);
+  load_all();
+  for (std::size_t at = 0; at < samples_.count; at += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) flat_[at + lane] = 0.0;
+    if constexpr (newton) {
+      predict(at);
+    } else {
+      for (std::size_t j = 0; j < joints(); ++j) T(chain_.joint[j].nominal).store(q_ + j * capacity_ + at);
+    }
+  }
   for (std::size_t at = 0; at < samples_.count; at += kLanes) iterate<newton>(at);
 }
 
@@ -20,16 +27,17 @@ void BlockKernel<T, Shape, Measure>::iterate(std::size_t at) {
   vary_segments(at);
   const std::size_t left = samples_.count - at;
   unsigned open = left < kLanes ? (1u << left) - 1u : (1u << kLanes) - 1u;
+  if (newton && start_.fits > 0 && start_.inverse != nullptr) open = finish_fitted(at, open);
   // Gauss-Newton looks at the residual after the last step, too.
   const std::uint32_t rounds = options_.max_iterations + (newton ? 0 : 1);
+  T before(0.0);
+  auto safe = T(1.0) < T(0.0);
   for (std::uint32_t round = 0; open != 0; ++round) {
     residuals();
-    weigh();
     gradient();
-    gauss_newton_matrix();
     Verdict verdict;
     if constexpr (newton) {
-      verdict = newton_by_metric(at);
+      verdict = newton_by_metric(at, round, before, safe);
     } else {
       verdict = gauss_newton_by_metric(at, round);
     }
@@ -42,17 +50,54 @@ void BlockKernel<T, Shape, Measure>::iterate(std::size_t at) {
   }
 }
 
+/// A fit is mostly exact to rounding: a step with the matrix at nominal displacements shows it. Finishes lanes where it
+/// is, and returns those that are left.
 template <class T, class Shape, class Measure>
-auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at) -> Verdict {
+unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned open) {
+  residuals();
+  gradient();
+  for (std::size_t a = 0; a < joints(); ++a) {
+    T sum(0.0);
+    for (std::size_t b = 0; b < joints(); ++b) sum = madd(T(start_.inverse[a * joints() + b]), f_[b], sum);
+    step_[a] = sum;
+  }
+  const T length = step_length([&](std::size_t a) { return T(start_.diagonal[a]); });
+  const auto there = finite_residual() & (length < T(10.0 * options_.tolerance));
+  if (!any(there)) return open;
+  carry_residual(step_, there);
+  const unsigned ended = bits(there) & open;
+  for (std::size_t j = 0; j < joints(); ++j) (joint_[j] + step_[j]).store(q_ + j * capacity_ + at);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if ((ended >> lane & 1u) != 0) finish(at, lane, SolveStatus::converged, 1);
+  }
+  return open & ~ended;
+}
+
+/// One round. before: the length of the last step; safe: where the matrix at hand is. Both are of this batch.
+template <class T, class Shape, class Measure>
+auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint32_t round, T& before,
+                                                      typename T::MaskType& safe) -> Verdict {
   Verdict verdict;
   const auto finite = finite_residual();
-  newton_matrix();
-  const auto safe = newton_step(step_);
-  if (any(!safe)) {
-    verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
-    for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], gauss_newton_[j]);
+  const bool is_new = round % kMatrixRounds == 0;
+  if (is_new) {
+    weigh();
+    gauss_newton_matrix();
+    newton_matrix();
+    safe = newton_step(step_);
+    if (any(!safe)) {
+      verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
+      for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], gauss_newton_[j]);
+    }
+  } else {
+    newton_step_again(step_);
+    for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], T(0.0));
   }
-  const auto converged = safe & finite & (step_length() < T(options_.last_step));
+  const T length = step_length([&](std::size_t a) { return n_[a * joints() + a]; });
+  auto small = length * length < T(0.1 * options_.tolerance) * before;
+  if (is_new) small = small | (length < T(options_.last_step));
+  const auto converged = safe & finite & small;
+  before = length;
   verdict.converged = bits(converged);
   verdict.non_finite = bits(!finite);
   take_step(at, step_);
@@ -84,6 +129,8 @@ auto BlockKernel<T, Shape, Measure>::gauss_newton_by_metric(std::size_t at, std:
     verdict.stagnated = bits(!(change > T(options_.rounding_level)));
   }
   if (round == options_.max_iterations) return verdict;
+  weigh();
+  gauss_newton_matrix();
   verdict.singular = bits(!gauss_newton_step(step_));
   take_step(at, step_);
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
@@ -141,14 +188,15 @@ void BlockKernel<T, Shape, Measure>::weigh() {
   for (std::size_t a = 0; a < joints(); ++a) row_[a] = weighted(column_[a]);
 }
 
-/// The largest |x_a column_a|_W over the reach, for Newton's step x.
+/// The largest |x_a column_a|_W over the reach, for the step x; diagonal(a): of N.
 template <class T, class Shape, class Measure>
-T BlockKernel<T, Shape, Measure>::step_length() const {
+template <class Diagonal>
+T BlockKernel<T, Shape, Measure>::step_length(Diagonal diagonal) const {
   T largest2(0.0);
   for (std::size_t i = 0; i < limbs(); ++i) {
     const T share(1.0 / chain_.limb[i].meetings);
     for (std::size_t a = first_joint(i); a < first_joint(i + 1); ++a) {
-      largest2 = max(largest2, step_[a] * step_[a] * n_[a * joints() + a] * share);
+      largest2 = max(largest2, step_[a] * step_[a] * diagonal(a) * share);
     }
   }
   return sqrt(largest2) * T(1.0 / chain_.reach);

@@ -33,6 +33,7 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
   n_ = reinterpret_cast<T*>(take_lanes(chain.joints * chain.joints));
   m_ = reinterpret_cast<T*>(take_lanes(chain.joints * chain.joints));
   work_ = reinterpret_cast<T*>(take_lanes(chain.joints * chain.joints + chain.joints));
+  pivot_ = reinterpret_cast<T*>(take_lanes(chain.joints));
   value_ = take(samples.varied * capacity_);
   q_ = take(chain.joints * capacity_);
   memory_ = take(kernel_memory(chain) * capacity_);
@@ -69,9 +70,7 @@ void BlockKernel<T, Shape, Measure>::solve() {
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
   const std::size_t rows = 6 * pairs();
-  for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
-  begin(samples_.count, false);
-  pad(samples_.count);
+  load_all();
   for (std::size_t at = 0; at < samples_.count; at += kLanes) {
     T* mu = reinterpret_cast<T*>(mu_);
     for (std::size_t n = 0; n < rows; ++n) mu[n] = T(map.constant[n]);
@@ -152,6 +151,19 @@ std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t
   return left;
 }
 
+/// Takes all samples, in order; the lanes behind the last one are copies of it.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::load_all() {
+  const std::size_t count = samples_.count;
+  for (std::size_t v = 0; v < samples_.varied; ++v) {
+    const double* from = samples_.values + v * samples_.stride;
+    double* to = value_ + v * capacity_;
+    for (std::size_t b = 0; b < count; ++b) to[b] = from[b];
+    for (std::size_t b = count; b % kLanes != 0; ++b) to[b] = from[count - 1];
+  }
+  for (std::size_t b = 0; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
+}
+
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
   for (std::size_t b = 0; b < count; ++b) {
@@ -162,7 +174,7 @@ void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
     smallest_[b] = 1e308;
     flat_[b] = 0.0;
   }
-  if (predicted && (start_.fits > 0 || start_.slopes != nullptr)) {
+  if (predicted && start_.fits > 0) {
     pad(count);
     for (std::size_t at = 0; at < count; at += kLanes) predict(at);
     return;

@@ -83,6 +83,11 @@ struct KernelStart {
   const KernelFit* fit;  ///< [fits], with ranges that do not overlap
   std::size_t fits;      ///< how many
   const double* slopes;  ///< [varied x joints] by how much joints give way to an error, to first order; or null
+  /// By a metric, of N at nominal displacements without errors, for a first step from fits: or null.
+  /// @{
+  const double* inverse;   ///< [joints x joints]
+  const double* diagonal;  ///< [joints], of N itself
+  /// @}
 };
 
 /// Residuals to first order: constant + sum over v of effects[v] x value v.
@@ -134,7 +139,7 @@ static constexpr std::size_t kernel_scratch(const KernelChain& chain, const Kern
   const std::size_t rows = samples.varied + chain.joints + kernel_memory(chain) + 2 + 1;
   const std::size_t motions = 12 * (chain.segments + chain.limbs);
   const std::size_t screws = 6 * (2 * chain.joints + chain.pairs + chain.limbs);
-  const std::size_t equations = 3 * chain.joints * chain.joints + 5 * chain.joints;
+  const std::size_t equations = 3 * chain.joints * chain.joints + 6 * chain.joints;
   return rows * kernel_capacity(samples.count) + (motions + screws + equations) * kMostLanes;
 }
 

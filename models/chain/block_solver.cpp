@@ -196,6 +196,9 @@ void BlockSolver::find_slopes(std::span<const double> displacements, std::span<c
   constant_.assign(rows, 0.0);
   is_singular_ = !first_order_.prepare(displacements, metric_ == nullptr ? nullptr : &metric_->W);
   if (is_singular_) return;
+  inverse_.resize(joints_.size() * joints_.size());
+  diagonal_.resize(joints_.size());
+  first_order_.matrix(inverse_, diagonal_);
   for (std::size_t v = 0; v < varied.size(); ++v) {
     first_order_.effect(varied[v], std::span(effects_).subspan(v * rows, rows),
                         std::span(slopes_).subspan(v * joints_.size(), joints_.size()));
@@ -281,8 +284,13 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   const KernelChain chain = kernel_chain();
   const KernelSamples samples{values.data(), varied_, count, count};
   double* scratch = make_room(chain, samples);
-  const double* slopes = metric_ == nullptr || is_singular_ ? nullptr : slopes_.data();
-  kernels_.solve(chain, samples, {fits_.data(), fits_.size(), slopes}, options, outcome(displacements), scratch);
+  KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr};
+  if (metric_ != nullptr && !is_singular_) {
+    start.slopes = slopes_.data();
+    start.inverse = inverse_.data();
+    start.diagonal = diagonal_.data();
+  }
+  kernels_.solve(chain, samples, start, options, outcome(displacements), scratch);
   if (metric_ == nullptr || !is_singular_) return;
   // Errors make an equation that is singular without them regular, but not meaningful.
   std::ranges::replace_if(

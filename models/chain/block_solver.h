@@ -75,6 +75,8 @@ class BlockSolver {
   const Metric* metric_ = nullptr;
   bool is_singular_ = false;      ///< the first order does not exist
   std::vector<double> slopes_;    ///< [varied x joints]
+  std::vector<double> inverse_;   ///< [joints x joints] of J^T W J at nominal displacements
+  std::vector<double> diagonal_;  ///< [joints], of J^T W J itself
   std::vector<double> effects_;   ///< [varied x 6 pairs]
   std::vector<double> constant_;  ///< [6 pairs], of constant errors
   std::vector<KernelLimb> limbs_;

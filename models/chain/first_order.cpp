@@ -11,6 +11,10 @@ FirstOrder::FirstOrder(const ParallelChain& chain) : chain_(&chain), equations_(
     limb_of_frame_.insert(limb_of_frame_.end(), chain.limbs[i].frames(), i);
     limb_of_joint_.insert(limb_of_joint_.end(), chain.limbs[i].passive_joints(), i);
   }
+  for (const std::size_t limb : limb_of_joint_) {
+    meetings_.push_back(static_cast<double>(
+        std::ranges::count_if(chain.pairs, [limb](const LimbPair& pair) { return pair.k == limb || pair.i == limb; })));
+  }
   from_error_.resize(limb_of_frame_.size());
   columns_.resize(limb_of_joint_.size());
 }
@@ -31,6 +35,7 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
     // The last frame's error is inverted and multiplies from the right.
     from_error_[frame++] = -lie::adjoint(g * limb.home.back());
   }
+  W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
   const std::vector<double> none(6 * chain_->pairs.size(), 0.0);
   return equations_.solve(columns_, none, W);
 }
@@ -44,6 +49,19 @@ void FirstOrder::effect(const FrameEntry& entry, std::span<double> delta_mu, std
   std::ranges::copy(equations_.solution(), displacements.begin());
   for (std::size_t a = 0; a < columns_.size(); ++a) {
     add_motion(limb_of_joint_[a], displacements[a] * columns_[a], delta_mu);
+  }
+}
+
+void FirstOrder::matrix(std::span<double> inverse, std::span<double> diagonal) {
+  const std::size_t size = columns_.size();
+  POESY_EXPECTS(inverse.size() == size * size && diagonal.size() == size);
+  std::vector<double> unit(size, 0.0);
+  for (std::size_t a = 0; a < size; ++a) {
+    unit[a] = 1.0;
+    equations_.solve_for(unit);
+    std::ranges::copy(equations_.solution(), inverse.begin() + static_cast<std::ptrdiff_t>(a * size));
+    unit[a] = 0.0;
+    diagonal[a] = meetings_[a] * columns_[a].dot(W_ * columns_[a]);
   }
 }
 

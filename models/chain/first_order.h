@@ -24,6 +24,10 @@ class FirstOrder {
   /// way, SI per rad or m. Precondition: prepare() returned true.
   void effect(const FrameEntry& entry, std::span<double> delta_mu, std::span<double> displacements);
 
+  /// (J^T W J)^-1 and the diagonal of J^T W J: [passive joints x passive joints] and [passive joints]. Precondition:
+  /// prepare() returned true.
+  void matrix(std::span<double> inverse, std::span<double> diagonal);
+
  private:
   void add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const;
 
@@ -32,6 +36,8 @@ class FirstOrder {
   std::vector<std::size_t> limb_of_joint_;        ///< of each passive joint
   std::vector<lie::Matrix6<double>> from_error_;  ///< per frame: [omega; v] to the motion of the limb's platform
   std::vector<lie::Screw<double>> columns_;       ///< of each passive joint
+  std::vector<double> meetings_;                  ///< of each passive joint: pairs in which its limb takes part
+  lie::Matrix6<double> W_;
   NormalEquations equations_;
 };
 

@@ -36,6 +36,11 @@ void NormalEquations::solve_again(std::span<const double> delta_mu) {
   substitute();
 }
 
+void NormalEquations::solve_for(std::span<const double> right_side) {
+  solution_.assign(right_side.begin(), right_side.end());
+  substitute();
+}
+
 void NormalEquations::weigh(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W) {
   weighted_.assign(columns.begin(), columns.end());
   if (W == nullptr) return;

@@ -24,6 +24,9 @@ class NormalEquations {
   /// Solves once more for another delta_mu, after a solve that returned true.
   void solve_again(std::span<const double> delta_mu);
 
+  /// Solves J^T W J x = right_side [passive joints], after a solve that returned true.
+  void solve_for(std::span<const double> right_side);
+
   /// [passive joints], Eq. 42.
   std::span<const double> solution() const { return solution_; }
 
