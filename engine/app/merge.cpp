@@ -43,9 +43,9 @@ int merge(const MergeOptions& options) {
   const StoredStudy whole = stored_study(first.study_text, first.poses, first.path, registry());
   const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  // The whole run from here on: as one that is resumed when all its solves are done.
+  // The whole run from here on: as one that is resumed when all its stages are done.
   Checkpoints done([] { return false; }, [](std::span<const Bytes>) {}, std::move(merged));
-  RunOptions run{.threads = 1, .progress = [](const Progress&) {}, .checkpoints = &done};
+  RunOptions run{.threads = 0, .progress = [](const Progress&) {}, .checkpoints = &done};
   const Job job{study,
                 *model,
                 whole.poses,

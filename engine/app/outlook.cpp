@@ -12,6 +12,7 @@
 #include "engine/run/cases.h"
 #include "engine/run/coupling_rows.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/linearity.h"
 #include "engine/run/monte_carlo.h"
 #include "engine/run/monte_carlo_collector.h"
 #include "engine/run/rounds.h"
@@ -116,11 +117,14 @@ MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size
 Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const Plan plan(study, poses);
   const std::size_t fidelities = study.mechanism.compared ? 2 : 1;
+  const double once = sampling_seconds(plan, UnitEvaluator(plan, model));
+  const double of_two_sizes =
+      once * 4.0 * static_cast<double>(std::min(kLinearityDraws, plan.samples())) / static_cast<double>(plan.samples());
   Outlook expected{
       fmt::format("{} errors x {} poses x {} samples{} = {}", plan.factors().size(), poses.size(), samples_text(plan),
                   fidelities == 2 ? " x 2 fidelities" : "", solves_text(plan, fidelities)),
-      sensitivity_memory(study, plan, fidelities), sampling_seconds(plan, UnitEvaluator(plan, model)),
-      separation_seconds(study, model, poses), least_share(plan)};
+      sensitivity_memory(study, plan, fidelities), once + of_two_sizes, separation_seconds(study, model, poses),
+      least_share(plan)};
   if (fidelities == 1) return expected;
   const std::unique_ptr<Model> other = build_model(at_compared_fidelity(study.mechanism));
   expected.thread_seconds += sampling_seconds(plan, UnitEvaluator(plan, *other));

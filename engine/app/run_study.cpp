@@ -13,6 +13,7 @@
 #include "engine/run/cases.h"
 #include "engine/run/coupling.h"
 #include "engine/run/fidelity.h"
+#include "engine/run/linearity.h"
 #include "engine/run/separation.h"
 #include "engine/run/verdict.h"
 
@@ -68,7 +69,11 @@ void run_sensitivity_study(const Job& job) {
   auto result = job.study.mechanism.compared
                     ? run_both_fidelities(job, plan)
                     : run_sensitivity(plan, job.model, job.study.analysis.conf_level, job.options);
-  if (!result || !job.writes()) return;
+  if (!result) return;
+  auto changes = index_changes(plan, job.model, job.options);
+  if (!changes) return job.checkpoints().stopped_after_stages();
+  if (!job.writes()) return;
+  result->index_change = *std::move(changes);
   if (job.model.description().separation) {
     result->separation = separate_errors(job.model, plan.poses(), plan.factors(), standard_deviations(job.study));
   }

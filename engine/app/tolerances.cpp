@@ -17,6 +17,7 @@
 #include "engine/io/study_file.h"
 #include "engine/io/tolerance_files.h"
 #include "engine/io/wording.h"
+#include "engine/report/index_change.h"
 #include "engine/report/ranking.h"
 #include "engine/report/text_table.h"
 #include "engine/report/tolerance_table.h"
@@ -32,6 +33,7 @@ struct TolerancesOptions {
   std::optional<std::string> limit;
   std::optional<std::string> reference;
   std::string folder;
+  bool extrapolate = false;
 };
 
 /// Position of the thing that an option names.
@@ -224,6 +226,25 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result) {
   }
 }
 
+/// Whether the result is by the published metric of a mechanism that has the platform's.
+bool may_go_by_platform(const StoredResult& result) {
+  try {
+    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
+    return study.mechanism.entry->by_platform != nullptr;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Refuses tolerances for errors whose index does not hold at their size, or says why they may not hold.
+std::string caveat_of(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
+  const std::string caveat = wrong_sizes_text(result, found);
+  if (caveat.empty() || options.extrapolate) return caveat;
+  throw InputError({options.result}, caveat,
+                   fmt::format("study each at that size ([errors.override]){}, or give --extrapolate",
+                               may_go_by_platform(result) ? ", or all by [solver] metric = \"platform\"" : ""));
+}
+
 int set_tolerances(const TolerancesOptions& options) {
   const StoredResult result = read_sensitivity_result(options.result);
   const std::size_t response = chosen_response(options, result);
@@ -234,6 +255,7 @@ int set_tolerances(const TolerancesOptions& options) {
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
   if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
+  found.caveat = caveat_of(options, result, found);
   Table table = tolerance_table(result, found);
   if (const auto note = perfect_errors_note(result)) table.notes.push_back(*note);
   std::string text = text_of(table, output_width()) + "\n" + write_files(options, result, found);
@@ -260,6 +282,8 @@ void add_tolerances(CLI::App& program, Action& action) {
       ->add_option("--reference", options->reference,
                    "error from which equal effects are counted, with its tolerance; default: the study's")
       ->type_name("FACTOR[=TOLERANCE]");
+  command->add_flag("--extrapolate", options->extrapolate,
+                    "go on where an index changes with size and its tolerance is of another size than was studied");
   command
       ->add_option("-d,--directory", options->folder,
                    "folder for tolerances.csv and the studies that test them; default: RESULT_tolerances, here")

@@ -55,6 +55,21 @@ void write_global(TableFolder& folder, const StoredResult& result) {
   });
 }
 
+/// Files of older versions have none.
+void write_index_change(TableFolder& folder, const StoredResult& result) {
+  const SensitivityResult& found = result.sensitivity;
+  if (found.index_change.empty()) return;
+  std::vector<std::string> columns{"factor"};
+  for (const NamedUnit& response : result.responses) columns.push_back(column(response.name, "1"));
+  folder.write("index_change", columns, [&](CsvTable& table) {
+    for (std::size_t p = 0; p < found.factors; ++p) {
+      std::vector<double> row;
+      for (std::size_t r = 0; r < found.responses; ++r) row.push_back(found.index_change[r * found.factors + p]);
+      table.row(result.factors[p].name, row);
+    }
+  });
+}
+
 template <class UnitOf>
 void write_local(TableFolder& folder, const StoredResult& result, const std::string& name,
                  std::span<const double> values, const UnitOf& unit_of) {
@@ -102,6 +117,7 @@ void export_sensitivity(TableFolder& folder, const StoredResult& result) {
   const SensitivityResult& found = result.sensitivity;
   write_factors(folder, result);
   write_global(folder, result);
+  write_index_change(folder, result);
   const auto index_unit = [&](const NamedUnit& response) {
     return response.unit + " per " + units_of(result.factors, kSi);
   };

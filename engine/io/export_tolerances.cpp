@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "engine/base/nan.h"
 #include "engine/io/export_tables.h"
 #include "engine/io/tolerance_files.h"
 #include "engine/run/sensitivity.h"
@@ -28,6 +29,7 @@ void add_columns(const StoredResult& result, const ResponseTolerances& tolerance
   const std::string index_unit = result.responses[tolerances.response].unit + " per " + si;
   for (const char* name : {"index", "index_ci_low", "index_ci_high"}) columns.push_back(name_of(name, index_unit, ""));
   columns.emplace_back("mean_square_share");
+  columns.emplace_back("index_change");
   for (const auto& [name, values] : lists(tolerances)) columns.push_back(name_of(name, si, ""));
   const std::string display_units = units_of(result.factors, kDisplay);
   for (const auto& [name, values] : lists(tolerances)) columns.push_back(name_of(name, display_units, "_display"));
@@ -38,8 +40,9 @@ void append_row(const StoredResult& result, const ResponseTolerances& tolerances
                 std::vector<double>& row) {
   const SensitivityResult& found = result.sensitivity;
   const std::size_t at = tolerances.response * found.factors + p;
-  row.insert(row.end(), {found.global[at], found.global_ci_low[at], found.global_ci_high[at],
-                         tolerances.all.mean_square_share[p]});
+  row.insert(row.end(),
+             {found.global[at], found.global_ci_low[at], found.global_ci_high[at], tolerances.all.mean_square_share[p],
+              found.index_change.empty() ? kNaN : found.index_change[at]});
   for (const double scale : {1.0, display(result.factors[p]).si}) {
     for (const auto& [name, values] : lists(tolerances)) row.push_back((*values)[p] / scale);
   }

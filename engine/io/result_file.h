@@ -142,6 +142,7 @@ Verification verify_result(const std::string& path);
 ///
 ///     global.csv           factor | each response's index and interval in SI, then in the units people read: as
 ///                               published; then all of that as corrected (see /sensitivity)
+///     index_change.csv     factor | for each response what its index changes by at a tenth of the size
 ///     local_RESPONSE.csv   factor | one column a pose, SI
 ///     not_converged.csv    factor | one column a pose
 ///     factors.csv          factor | standard deviation

@@ -23,6 +23,11 @@ void add_global_indices(ResultBuilder& result, const SensitivityResult& found) {
   result.add("/sensitivity/rounding", {"response"}, found.rounding,
              {"SI: response unit, see /responses/unit",
               "Up to this an effect, index x sigma, cannot be told from the rounding of solves"});
+  if (found.index_change.empty()) return;
+  result.add("/sensitivity/index_change", axes, found.index_change,
+             {"1",
+              "Change of 'global' where the error is a tenth as large, by the same few draws: index there / index "
+              "here - 1; 0: the index holds at other sizes; NaN: not known, or no effect at either size"});
 }
 
 void add_local_indices(ResultBuilder& result, const SensitivityResult& found) {
@@ -84,6 +89,7 @@ SensitivityResult read_indices(const h5::File& file) {
     found.global_corrected_ci_high = read("global_corrected_ci_high", pairs);
     found.rounding = read("rounding", found.responses);
   }
+  if (file.exists("/sensitivity/index_change")) found.index_change = read("index_change", pairs);
   if (file.exists("/sensitivity/background")) found.background = read("background", found.responses * found.poses);
   found.solves = read_solver(file, found.factors * found.poses);
   return found;

@@ -61,16 +61,23 @@ void set_tolerances(Study& study, const Model& model, std::span<const double> to
   }
 }
 
-std::string write_study(const std::string& folder, const std::string& name, const Study& study) {
+std::string write_study(const std::string& folder, const std::string& name, const Study& study,
+                        const std::string& caveat) {
   const std::string path = (std::filesystem::path(folder) / (name + ".toml")).string();
   FileWriter writer(path);
   if (const std::string held = held_errors_text(study); !held.empty()) writer.write("# " + held + "\n");
+  if (!caveat.empty()) writer.write("# " + caveat + "\n");
   writer.write(resolved_text(study));
   writer.commit();
   return path;
 }
 
 }  // namespace
+
+std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances) {
+  if (!tolerances.limit) return {tolerances.all.equal_effect};
+  return {tolerances.limit->equal_effect, tolerances.limit->equal_tolerance};
+}
 
 void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
                            const Catalog& catalog) {
@@ -101,7 +108,7 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
     study.title = "Tests " + words + " against a limit of " + limit + " on the root mean square of " + response.name;
     study.errors = as_studied;
     set_tolerances(study, *model, values, written.cut);
-    written.paths.push_back(write_study(folder, name, study));
+    written.paths.push_back(write_study(folder, name, study, tolerances.caveat));
   };
   add(kEqualEffect, "tolerances of equal effect", tolerances.limit->equal_effect);
   add(kEqualTolerance, "equal tolerances", tolerances.limit->equal_tolerance);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,12 @@ struct ResponseTolerances {
   std::size_t response;                  ///< position among the result's
   Tolerances all;                        ///< without regard to a limit
   std::optional<LimitTolerances> limit;  ///< within the limit, if there is one
+  std::string caveat = {};               ///< why they may not hold, for tables and studies; empty: no known reason
 };
+
+/// The lists of tolerances [P] that are to be used: within the limit by either way to share it, without one those of
+/// equal effect. Refers to the tolerances.
+std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
 /// Whether a sensitivity result holds what tolerances are made of; one of an older version may not.
 bool has_tolerances(const StoredResult& result);
@@ -24,9 +30,9 @@ bool has_tolerances(const StoredResult& result);
 /// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
 ///
 ///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the
-///     study) | index, index_ci_low, index_ci_high, mean_square_share, equal_effect, and with a limit
-///     limit_equal_effect and limit_equal_tolerance, in `unit`; then the tolerances once more in `display_unit`:
-///     equal_effect_display ...
+///     study) | index, index_ci_low, index_ci_high, mean_square_share, index_change (as
+///     /sensitivity/index_change), equal_effect, and with a limit limit_equal_effect and limit_equal_tolerance, in
+///     `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
 ///
 /// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error,
 /// whatever the error was studied as; "inf" says that the error has no effect on its own. Returns the path. Throws
@@ -48,9 +54,10 @@ struct Confirmation {
 /// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
 /// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. Poses that
 /// came from a file are written beside them as confirm_poses.csv. Each study states its limit ([analysis.limits],
-/// judged by the root mean square), so that running it says PASS or FAIL. A tolerance of a quarter of the part that it
-/// is an error of (Model::error_bound), or more, makes no sense: the studies take that quarter. Precondition:
-/// tolerances.limit. Throws FileError; InputError when the stored study cannot be read with this catalog.
+/// judged by the root mean square), so that running it says PASS or FAIL, and begins with the caveat as a comment. A
+/// tolerance of a quarter of the part that it is an error of (Model::error_bound), or more, makes no sense: the studies
+/// take that quarter. Precondition: tolerances.limit. Throws FileError; InputError when the stored study cannot be read
+/// with this catalog.
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog);
 

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "engine/report/display.h"
+#include "engine/report/index_change.h"
 #include "engine/report/tables.h"
 
 namespace poesy {
 namespace {
 
 /// Which columns go first where the room does not suffice: other responses, from the last, then the rank.
-enum Dispensable : int { kNotConverged = 1, kRank = 2, kFirstOther = 3 };
+enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
 
 /// The responses of the headline beside the one that ranks, those that have a dimension.
 std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
@@ -54,6 +55,7 @@ std::vector<Column> columns(const StoredResult& result, std::size_t ranking, con
     const std::string& name = result.responses[r].name;
     add_index_columns(list, "index_" + name, name, result.responses[r], dispensable++);
   }
+  if (has_index_changes(result)) list.push_back(percent_column("index_change", "at a tenth", kIndexChange));
   list.push_back(percent_column("not_converged", "not converged", kNotConverged));
   if (has_corrected_indices(result)) {
     list.push_back(
@@ -75,6 +77,7 @@ std::vector<Cell> row(const StoredResult& result, const RankedErrors& ranked, st
   cells.push_back(number_cell(sigma));
   cells.push_back(text_cell(unit.name));
   for (const std::size_t r : others) add_index_cells(cells, result, r, p);
+  if (has_index_changes(result)) cells.push_back(change_cell(result.sensitivity.index_change[at]));
   cells.push_back(percent_cell(share_not_converged(result.sensitivity, p)));
   if (has_corrected_indices(result)) {
     cells.push_back(index_cell(result.sensitivity.global[at], unit.si / si, rounding));
@@ -100,6 +103,12 @@ std::vector<std::string> notes(const StoredResult& result, const RankedErrors& r
   list.emplace_back(
       "effect: index x sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
       "indices per mm and per deg do not compare");
+  if (has_index_changes(result)) {
+    list.emplace_back(
+        "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
+        "changes, the index says something about the size studied and no other");
+    list.push_back(index_change_text(result, ranked.response));
+  }
   list.emplace_back("not converged: share of the samples whose solve did not settle");
   return list;
 }

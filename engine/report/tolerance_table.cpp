@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/report/display.h"
+#include "engine/report/index_change.h"
 #include "engine/report/ranking.h"
 
 namespace poesy {
@@ -81,8 +82,7 @@ void add_distribution_note(std::vector<std::string>& notes, const StoredResult& 
 
 /// Errors with a tolerance larger than the size at which they were studied: of a limit, by either way to share it.
 std::size_t extrapolated(const StoredResult& result, const ResponseTolerances& tolerances) {
-  std::vector<std::span<const double>> lists{tolerances.all.equal_effect};
-  if (tolerances.limit) lists = {tolerances.limit->equal_effect, tolerances.limit->equal_tolerance};
+  const std::vector<std::span<const double>> lists = proposed_tolerances(tolerances);
   std::size_t count = 0;
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     const double studied = result.factor_sigma[p] * (1.0 + 1e-9);
@@ -110,6 +110,13 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   add_bound_note(list, result, tolerances);
   add_distribution_note(list, result);
   add_extrapolation_note(list, result, tolerances);
+  if (!has_index_changes(result)) {
+    list.push_back(
+        fmt::format("whether indices hold at other sizes is not known, because an older poesy ({}) wrote "
+                    "this result",
+                    result.poesy_version));
+  }
+  if (!tolerances.caveat.empty()) list.push_back(tolerances.caveat);
   list.push_back(fmt::format(
       "index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
       "tolerances are counted from it as published; share: of what the errors add to the mean square of the "

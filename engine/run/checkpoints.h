@@ -49,8 +49,14 @@ class Checkpoints {
     ends_.back() = {complete, solves};
   }
 
-  /// Whether all stages that began have ended complete.
-  bool complete() const { return ends_.size() == begun_ && std::ranges::all_of(ends_, &End::complete); }
+  /// The run was stopped in what follows its stages and keeps no state; writes a checkpoint.
+  void stopped_after_stages() {
+    stopped_ = true;
+    save();
+  }
+
+  /// Whether all stages that began have ended complete, and nothing after them was stopped.
+  bool complete() const { return !stopped_ && ends_.size() == begun_ && std::ranges::all_of(ends_, &End::complete); }
   /// Of the stages that have ended.
   SolveCounts solves() const {
     SolveCounts sum;
@@ -83,6 +89,7 @@ class Checkpoints {
   std::vector<Bytes> stages_;  ///< those begun, then what is left of the earlier run's
   std::size_t begun_ = 0;
   std::vector<End> ends_;  ///< of the stages that have ended
+  bool stopped_ = false;
 };
 
 /// One stage's dealings with checkpoints and other ranks, if there are any.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/random/stream.h"
 #include "engine/run/counts.h"
@@ -68,16 +69,17 @@ UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
       iterations_(Plan::kUnitSamples),
       points_(history_points(plan)) {}
 
-UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit) {
+UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, double scale) {
   const std::span values = std::span(values_).first(unit.count);
   const std::span outcome = std::span(outcome_).first(responses_ * unit.count);
   const FactorIndex factor = plan_->factors()[unit.slot];
   fill_uniforms({plan_->seed(), Purpose::error_samples, factor, unit.pose}, unit.first, values);
   plan_->distributions()[unit.slot].transform(values);
+  for (double& value : values) value *= scale;
   const std::span status = std::span(status_).first(unit.count);
   const std::span iterations = std::span(iterations_).first(unit.count);
   evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), std::span(&factor, 1), values, unit.count,
-                        expected_range(plan_->distributions()[unit.slot])},
+                        std::abs(scale) * expected_range(plan_->distributions()[unit.slot])},
                        {outcome, status, iterations, {}});
   return {values, outcome, status, iterations};
 }

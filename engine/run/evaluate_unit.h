@@ -58,8 +58,9 @@ class UnitEvaluator {
 
   /// Solves the whole unit.
   SensitivityUnit operator()(const WorkUnit& unit);
-  /// Any samples of a cell, at most Plan::kUnitSamples of them: what they come to is the same whatever the unit.
-  UnitOutcomes solve(const WorkUnit& unit);
+  /// Any samples of a cell, at most Plan::kUnitSamples of them: what they come to is the same whatever the unit. scale:
+  /// what each drawn error is multiplied by.
+  UnitOutcomes solve(const WorkUnit& unit, double scale = 1.0);
 
  private:
   const Plan* plan_;

@@ -113,6 +113,9 @@ struct SensitivityResult {
   std::vector<double> global_corrected_ci_low;   ///< [R x P]
   std::vector<double> global_corrected_ci_high;  ///< [R x P]
   std::vector<double> rounding;                  ///< [R] standard deviation up to which an effect may be rounding
+  /// [R x P] index at a tenth of the study's sizes over that at these sizes, less 1 (run/linearity.h); NaN where that
+  /// is not known. Empty in files of older versions.
+  std::vector<double> index_change;
   std::vector<double> background;                ///< [R x M] all varied errors zero; NaN where that was not solved
   std::vector<SolveCounts> solves;               ///< [P x M] of the samples; the background's solves are not among them
   std::vector<Failure> failures;                 ///< the first, in the order of factors, poses, samples

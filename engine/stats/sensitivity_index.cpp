@@ -152,14 +152,6 @@ bool is_known(std::span<const LocalIndex> poses) {
   });
 }
 
-/// Eqs. 53-54.
-double published_index(std::span<const LocalIndex> poses) {
-  if (poses.empty()) return kNaN;
-  Moments over_poses;
-  for (const LocalIndex& pose : poses) over_poses.add(pose.value);
-  return over_poses.mean() + (poses.size() > 1 ? over_poses.standard_deviation() : 0.0);
-}
-
 }  // namespace
 
 Estimate local_index(const Moments& response, double error_sigma, double conf_level) {
@@ -176,6 +168,13 @@ LocalIndex local_index_with_error(const Moments& response, double error_sigma) {
   return {value, 0.5 * value * log_variance_error(response)};
 }
 
+double published_index(std::span<const LocalIndex> poses) {
+  if (poses.empty()) return kNaN;
+  Moments over_poses;
+  for (const LocalIndex& pose : poses) over_poses.add(pose.value);
+  return over_poses.mean() + (poses.size() > 1 ? over_poses.standard_deviation() : 0.0);
+}
+
 Estimate global_index(std::span<const LocalIndex> poses, double conf_level) {
   const double value = published_index(poses);
   if (!is_known(poses)) return {value, kUnknown};
@@ -188,5 +187,7 @@ Estimate corrected_global_index(std::span<const LocalIndex> poses, double conf_l
   if (!is_known(poses)) return {published_index(poses), kUnknown};
   return without_noise(poses, conf_level);
 }
+
+bool changes_with_size(double change) { return std::abs(change) > kIndexHolds; }
 
 }  // namespace poesy

@@ -23,6 +23,10 @@ struct LocalIndex {
 /// samples; 0 for zero spread.
 LocalIndex local_index_with_error(const Moments& response, double error_sigma);
 
+/// Mean over the poses plus sample standard deviation over the poses (Du et al. 2022, Eqs. 53-54), without an interval:
+/// the value of global_index. NaN without a pose.
+double published_index(std::span<const LocalIndex> poses);
+
 /// Global index: mean over the poses plus sample standard deviation over the poses (Du et al. 2022,
 /// Eqs. 53-54); NaN when a pose has no index, the mean alone for a single pose.
 /// The interval is for the value that infinitely many samples would give at the same poses. Sampling noise, which the
@@ -40,5 +44,12 @@ Estimate global_index(std::span<const LocalIndex> poses, double conf_level);
 /// is that of global_index but for the extension. Where a pose has no standard error nothing can be taken off: the
 /// value then is that of global_index, NaN at both ends.
 Estimate corrected_global_index(std::span<const LocalIndex> poses, double conf_level);
+
+/// An index holds at other sizes of its error if it changes by no more than this share at a tenth of the size.
+inline constexpr double kIndexHolds = 0.02;
+
+/// Whether an index is known to change with the size of its error. change: index at a tenth of the size over index - 1;
+/// where it is NaN nothing is known.
+bool changes_with_size(double change);
 
 }  // namespace poesy

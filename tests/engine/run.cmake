@@ -10,6 +10,7 @@ poesy_test(tolerance_confirmation_test LABELS statistical SOURCES engine/run/tol
 poesy_test(fidelity_statistical_test LABELS statistical SOURCES engine/run/fidelity_statistical_test.cpp
            LINKS poesy_run)
 poesy_test(index_history_test LABELS property SOURCES engine/run/index_history_test.cpp LINKS poesy_run poesy_models)
+poesy_test(linearity_test LABELS determinism SOURCES engine/run/linearity_test.cpp LINKS poesy_run)
 poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_io poesy_models)
 poesy_test(failures_test LABELS determinism SOURCES engine/run/failures_test.cpp LINKS poesy_run)
 poesy_test(continuation_test LABELS robustness SOURCES engine/run/continuation_test.cpp LINKS poesy_run)

@@ -6,9 +6,13 @@ import math
 import h5py
 from poesy_program import STUDY, ProgramTest, main
 
-RESPONSE = "linear_deformation"
-# epsilon_1_1_z moves one length alone, and has no effect on angles.
+RESPONSE = "gap"
+# epsilon_1_1_z moves one length alone, and by the published metric has no effect on angles.
+PUBLISHED = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '["delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"]')
+PUBLISHED = PUBLISHED.replace("samples = 1500", 'samples = 1500\nreference = { factor = "epsilon_1_1_z", tolerance = "1 deg" }')
+# By the platform's metric indices hold at any size.
 FACTORS = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '["delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"]')
+FACTORS = FACTORS.replace('method = "gauss-newton"', 'metric = "platform"')
 REFERENCE = FACTORS.replace("samples = 1500", 'samples = 1500\nreference = { factor = "epsilon_1_1_z", tolerance = "1 deg" }')
 # This one deforms with the background alone.
 DEFORMED = FACTORS.replace('factors = "benign", linear', 'factors = ["epsilon_3_0_y"], linear')
@@ -115,19 +119,21 @@ class Tolerances(ProgramTest):
         # Errors that act with the square of their size look harmless in a study of small ones.
         study = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '"deforming"').replace('method = "gauss-newton"', "")
         study = study.replace('"1 mm" }\nang', '"0.01 mm" }\nang').replace("0.2 deg", "0.01 deg").replace("samples = 1500", "samples = 500")
-        self.succeeds("tolerances", self.result(study), "--response", RESPONSE, "--limit", "0.05 mm", "-d", "out")
-        self.assertEqual((self.folder / "out/confirm_equal_effect.toml").read_text().splitlines()[0],
-                         "# held constant: 30 errors of set 'benign' at 1 mm and 1 deg")
+        response = "linear_deformation"
+        self.succeeds("tolerances", self.result(study), "--response", response, "--limit", "0.05 mm", "--extrapolate", "-d", "out")
+        first, second = (self.folder / "out/confirm_equal_effect.toml").read_text().splitlines()[:2]
+        self.assertEqual(first, "# held constant: 30 errors of set 'benign' at 1 mm and 1 deg")
+        self.assertRegex(second, "^# 10 errors have an index on linear_deformation that changes with size")
         done = self.poesy("run", "out/confirm_equal_effect.toml", "--quiet")
         self.assertEqual(done.returncode, 6, done.stderr)
         with h5py.File(self.folder / "confirm_equal_effect.h5") as file:
-            at = list(file["response"].asstr()).index(RESPONSE)
+            at = list(file["response"].asstr()).index(response)
             mean, std, count = (file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std", "count"))
             rms = 1e3 * math.hypot(mean, std * math.sqrt((count - 1) / count))
             self.assertEqual(file.attrs["title"], "Tests tolerances of equal effect against a limit of 0.05 mm on the root "
                                                   "mean square of linear_deformation")
         self.assertGreater(rms, 0.5)
-        verdict = next(line for line in done.stdout.decode().splitlines() if "FAIL" in line and RESPONSE in line)
+        verdict = next(line for line in done.stdout.decode().splitlines() if "FAIL" in line and response in line)
         self.assertIn(f" {rms:.6g} ", verdict)
         self.assertIn("0.05", verdict)
 
@@ -145,15 +151,15 @@ class Tolerances(ProgramTest):
         self.succeeds(*own)
 
     def test_responses_are_listed(self):
-        self.refuses(self.result(), words=["r.h5: has tolerances for angular_deformation (deg), linear_deformation (mm), "
+        self.refuses(self.result(PUBLISHED), words=["r.h5: has tolerances for angular_deformation (deg), linear_deformation (mm), "
                                            "deformation_max; choose one with --response"])
 
     def test_confirmation_stays_within_the_parts(self):
-        # Lengths hardly turn the platform, so their tolerances for an angle outgrow it.
+        # Tolerances for so large an angle outgrow the parts.
         template = self.succeeds("template", "2upr-rpu").replace("count = 158", "count = 5").replace("samples = 1000", "samples = 300")
         self.write("whole.toml", template)
         self.succeeds("run", "whole.toml", "-o", "w.h5", "--quiet")
-        printed = self.succeeds("tolerances", "w.h5", "--response", "angular_deformation", "--limit", "0.2 deg", "-d", "t")
+        printed = self.succeeds("tolerances", "w.h5", "--response", "angular_deformation", "--limit", "20 deg", "-d", "t")
         self.assertIn("cut the tolerance of delta_1_0_y to 15 mm", printed)
         for name in ("equal_effect", "equal_tolerance"):
             self.succeeds("check", f"t/confirm_{name}.toml")
@@ -162,7 +168,7 @@ class Tolerances(ProgramTest):
         printed = self.succeeds("tolerances", self.result(), "--response", RESPONSE, "--limit", "0.05 mm")
         self.assertIn("poesy run r_tolerances/confirm_equal_effect.toml -o r_tolerances/confirm_equal_effect.h5", printed)
         self.assertRegex(printed, r"errors were not in this study, and count as perfect here")
-        self.assertIn("root mean square of linear_deformation over all poses", " ".join(printed.split()))
+        self.assertIn("root mean square of gap over all poses", " ".join(printed.split()))
         self.assertIn("root mean square", (self.folder / "r_tolerances/confirm_equal_effect.toml").read_text())
         self.assertEqual(set(self.table("r_tolerances")), {"delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"})
 
@@ -174,7 +180,7 @@ class Tolerances(ProgramTest):
         self.assertAlmostEqual(float(self.table("b")["delta_1_1_y"]["equal_effect"]), 1e-3, places=16)
 
     def test_no_limit_for_an_error_without_effect(self):
-        printed = self.succeeds("tolerances", self.result(), "--response", "angular_deformation", "--reference",
+        printed = self.succeeds("tolerances", self.result(PUBLISHED), "--response", "angular_deformation", "--reference",
                                 "epsilon_1_4_z", "-d", "out")
         self.assertIn("no effect", printed)
         self.assertEqual(self.table("out")["epsilon_1_1_z"]["equal_effect"], "inf")
@@ -218,10 +224,10 @@ class Tolerances(ProgramTest):
         self.refuses(result, "--response", RESPONSE, "--limit", "0.05 mm", "-d", "out",
                      words=["--limit", "background alone", "0.05 mm", "no tolerance can meet"])
         self.assertFalse((self.folder / "out").exists())
-        self.succeeds("tolerances", result, "--response", RESPONSE, "--limit", "50 mm")
+        self.succeeds("tolerances", result, "--response", RESPONSE, "--limit", "50 mm", "--extrapolate")
 
     def test_reference_without_effect(self):
-        result = self.result()
+        result = self.result(PUBLISHED)
         words = ["'epsilon_1_1_z' has no effect on angular_deformation (index 0)", "name another with --reference"]
         self.refuses(result, "--response", "angular_deformation", words=["the study's [analysis] reference: ", *words])
         self.refuses(result, "--response", "angular_deformation", "--reference", "epsilon_1_1_z",

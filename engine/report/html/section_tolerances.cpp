@@ -4,6 +4,7 @@
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/sections.h"
+#include "engine/report/index_change.h"
 #include "engine/report/tables.h"
 #include "engine/report/tolerance_table.h"
 #include "engine/run/sensitivity.h"
@@ -42,8 +43,9 @@ void add_tolerances(const StoredResult& result, Page& page) {
     page.sections.push_back(std::move(section));
     return;
   }
-  const ResponseTolerances found{
+  ResponseTolerances found{
       response, tolerances(response_study(result.sensitivity, result.factor_sigma, response), reference), std::nullopt};
+  found.caveat = wrong_sizes_text(result, found);
   section.paragraph(fmt::format(
       "Tolerances, as standard deviations of normal errors, with which every error has the same effect on {}: the "
       "tighter one, the more its error matters. They are counted from a reference, and all may be multiplied by one "

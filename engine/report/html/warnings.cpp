@@ -10,8 +10,10 @@
 #include "engine/report/html/outcomes.h"
 #include "engine/report/html/parts.h"
 #include "engine/report/html/study_facts.h"
+#include "engine/report/index_change.h"
 #include "engine/report/not_converged.h"
 #include "engine/report/ranking.h"
+#include "engine/report/tables.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {
@@ -99,6 +101,14 @@ void warn_of_small_errors(const StoredResult& result, Warnings& list) {
                   counted(small.size(), "error is", "errors are"), some_names(small)));
 }
 
+void warn_of_sizes(const StoredResult& result, Warnings& list) {
+  if (!has_index_changes(result)) return;
+  const std::size_t response = response_named(result, default_ranking(result));
+  if (changing_errors(result, response).empty()) return;
+  list.push_back(fmt::format("Some indices say something about the size of the errors in this study and no other: {}.",
+                             index_change_text(result, response)));
+}
+
 void warn_of_wide_intervals(const StoredResult& result, Warnings& list) {
   const SensitivityResult& found = result.sensitivity;
   const GlobalIndices shown = shown_indices(result);
@@ -169,6 +179,7 @@ void warn_of_fidelity(const StoredResult& result, Warnings& list) {
 void warn_of_sensitivity(const StoredResult& result, Warnings& list) {
   warn_of_unknown_indices(result, list);
   warn_of_small_errors(result, list);
+  warn_of_sizes(result, list);
   if (const auto& found = result.sensitivity.convergence) {
     std::vector<std::size_t> all(result.responses.size());
     for (std::size_t r = 0; r < all.size(); ++r) all[r] = r;

@@ -55,6 +55,7 @@ TEST_F(Export, SensitivityHasThePromisedTables) {
                                       "global.csv",
                                       "history_angular_deformation.csv",
                                       "history_linear_deformation.csv",
+                                      "index_change.csv",
                                       "iterations_max.csv",
                                       "iterations_mean.csv",
                                       "local_angular_deformation.csv",
@@ -109,6 +110,14 @@ TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
   // global_corrected is array 11.
   EXPECT_EQ(table[1][13], "11000");
   EXPECT_DOUBLE_EQ(parse_number(table[2][16]).value(), 11010.0 * 1e-3 * 180.0 / std::numbers::pi);  // deg per mm
+}
+
+TEST_F(Export, IndexChangesHaveAColumnForEachResponse) {
+  export_tables(folder_ / "s.h5", folder_.path());
+  EXPECT_EQ(read_table(folder_ / "index_change.csv"),
+            (std::vector<Cells>{{"factor", "angular_deformation", "linear_deformation"},
+                                {"epsilon_1", "0", "0.125"},
+                                {"delta_1", "-0.25", "NaN"}}));
 }
 
 TEST_F(Export, HistoryHasARowForEachNumberOfSamples) {

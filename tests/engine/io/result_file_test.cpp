@@ -77,6 +77,7 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   expect_same(found.global_corrected_ci_low, expected.global_corrected_ci_low, "global_corrected_ci_low");
   expect_same(found.global_corrected_ci_high, expected.global_corrected_ci_high, "global_corrected_ci_high");
   expect_same(found.rounding, expected.rounding, "rounding");
+  expect_same(found.index_change, expected.index_change, "index_change");
   expect_same(found.background, expected.background, "background");
   ASSERT_TRUE(found.history);
   EXPECT_EQ(found.history->samples, expected.history->samples);
@@ -90,6 +91,15 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
     EXPECT_EQ(found.solves[cell].iterations, expected.solves[cell].iterations) << cell;
     EXPECT_EQ(found.solves[cell].most_iterations, expected.solves[cell].most_iterations) << cell;
   }
+}
+
+TEST(ResultFile, OfAnOlderVersionSaysNothingOfOtherSizes) {
+  const TempFolder folder;
+  Example example;
+  SensitivityResult result = example.sensitivity();
+  result.index_change.clear();
+  write_sensitivity(folder / "r.h5", example.study, example.poses, result, example.facts);
+  EXPECT_TRUE(read_result(folder / "r.h5").sensitivity.index_change.empty());
 }
 
 TEST(ResultFile, SaysWhatErrorsAndResponsesAre) {

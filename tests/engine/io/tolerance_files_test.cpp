@@ -87,12 +87,12 @@ TEST_F(ToleranceFiles, TableReadsWithoutKnowingTheProgram) {
   EXPECT_EQ(
       read_bytes(path),
       "factor,kind,limb,unit,display_unit,index_unit,studied_as,index,index_ci_low,index_ci_high,mean_square_share,"
-      "equal_effect,limit_equal_effect,limit_equal_tolerance,"
+      "index_change,equal_effect,limit_equal_effect,limit_equal_tolerance,"
       "equal_effect_display,limit_equal_effect_display,limit_equal_tolerance_display\n"
-      "epsilon_1,angular,1,rad,deg,rad/rad,uniform,0,6000,7000,0,inf,0.25,0.25,inf," +
+      "epsilon_1,angular,1,rad,deg,rad/rad,uniform,0,6000,7000,0,0,inf,0.25,0.25,inf," +
           shortest(0.25 / kDegree) + "," + shortest(0.25 / kDegree) +
           "\n"
-          "delta_1,linear,1,m,mm,rad/m,normal,2,6010,7010,1,0.002,0.004,1e-05,2,4,0.01\n");
+          "delta_1,linear,1,m,mm,rad/m,normal,2,6010,7010,1,-0.25,0.002,0.004,1e-05,2,4,0.01\n");
 }
 
 TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
@@ -122,6 +122,16 @@ TEST_F(ToleranceFiles, ConfirmationVariesErrorsByTheirTolerances) {
   EXPECT_EQ(equal_tolerance.errors.by_factor[0].sigma(), 1e-5);
   EXPECT_EQ(equal_tolerance.errors.by_factor[1].shape(), Distribution::Shape::normal);
   EXPECT_EQ(equal_tolerance.errors.by_factor[1].sigma(), 0.25);
+}
+
+TEST_F(ToleranceFiles, StudiesBeginWithTheCaveat) {
+  ResponseTolerances tolerances = some(true);
+  tolerances.caveat = "they may not hold";
+  for (const std::string& path :
+       write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), tolerances, catalog_).paths) {
+    EXPECT_TRUE(read_bytes(path).starts_with("# they may not hold\n"));
+    read_back(path);
+  }
 }
 
 TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfAFileAlong) {
@@ -194,9 +204,10 @@ TEST_F(ToleranceFiles, ExportHasTheSameRows) {
   export_tables(path_, folder_.path());
   EXPECT_EQ(read_bytes(folder_ / "tolerances_angular_deformation.csv"),
             "factor,angular,limb,index [rad per rad or m],index_ci_low [rad per rad or m],"
-            "index_ci_high [rad per rad or m],mean_square_share,equal_effect [rad or m],equal_effect [deg or mm]\n"
-            "epsilon_1,1,1,0,6000,7000,0,inf,inf\n"
-            "delta_1,0,1,2,6010,7010,1,0.001,1\n");
+            "index_ci_high [rad per rad or m],mean_square_share,index_change,equal_effect [rad or m],"
+            "equal_effect [deg or mm]\n"
+            "epsilon_1,1,1,0,6000,7000,0,0,inf,inf\n"
+            "delta_1,0,1,2,6010,7010,1,-0.25,0.001,1\n");
 }
 
 TEST_F(ToleranceFiles, ExportLeavesThemOutWithoutABackground) {

@@ -1,0 +1,101 @@
+#include "engine/report/index_change.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "engine/report/display.h"
+#include "engine/report/ranking.h"
+#include "engine/stats/sensitivity_index.h"
+
+namespace poesy {
+namespace {
+
+/// Names in one sentence, at most.
+constexpr std::size_t kMostNames = 10;
+
+std::span<const double> changes_of(const StoredResult& result, std::size_t response) {
+  const SensitivityResult& found = result.sensitivity;
+  return std::span(found.index_change).subspan(response * found.factors, found.factors);
+}
+
+/// The first of the error's tolerances that is of another size than was studied; none where all are of that size.
+std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::size_t factor, double studied) {
+  for (const std::span<const double> proposed : proposed_tolerances(tolerances)) {
+    const double ratio = proposed[factor] / studied;
+    if (std::isfinite(ratio) && (ratio > kSameSize || ratio < 1.0 / kSameSize)) return proposed[factor];
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool has_index_changes(const StoredResult& result) { return !result.sensitivity.index_change.empty(); }
+
+std::string change_text(double change) { return std::isnan(change) ? "-" : fmt::format("{:+.1f} %", 100.0 * change); }
+
+Cell change_cell(double change) {
+  if (std::isnan(change)) return text_cell("");
+  // Rounding has either sign.
+  const double percent = std::abs(change) < 5e-4 ? 0.0 : 100.0 * change;
+  return {fmt::format("{:.1f}", percent), std::isfinite(change) ? std::optional(100.0 * change) : std::nullopt};
+}
+
+std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t response) {
+  const std::span<const double> changes = changes_of(result, response);
+  std::vector<std::size_t> list;
+  for (std::size_t p = 0; p < changes.size(); ++p) {
+    if (has_effect(result, response, p) && changes_with_size(changes[p])) list.push_back(p);
+  }
+  std::ranges::stable_sort(list, std::ranges::greater(), [&](std::size_t p) { return std::abs(changes[p]); });
+  return list;
+}
+
+std::string index_change_text(const StoredResult& result, std::size_t response) {
+  const std::span<const double> changes = changes_of(result, response);
+  const std::vector<std::size_t> changing = changing_errors(result, response);
+  std::size_t effects = 0;
+  std::size_t unknown = 0;
+  for (std::size_t p = 0; p < changes.size(); ++p) {
+    if (!has_effect(result, response, p)) continue;
+    ++effects;
+    if (std::isnan(changes[p])) ++unknown;
+  }
+  std::string text =
+      fmt::format("the index on {} holds at a tenth of the size, within {:.3g} %: {} of {}",
+                  result.responses[response].name, 100.0 * kIndexHolds, effects - unknown - changing.size(),
+                  counted(effects, "error with an effect", "errors with an effect"));
+  if (unknown > 0) text += fmt::format("; not known for {}", unknown);
+  const std::size_t shown = std::min(changing.size(), kMostNames);
+  for (std::size_t n = 0; n < shown; ++n) {
+    text += fmt::format("{} {} ({})", n == 0 ? "; not for" : ",", result.factors[changing[n]].name,
+                        change_text(changes[changing[n]]));
+  }
+  return changing.size() > shown ? text + fmt::format(" and {} more", changing.size() - shown) : text;
+}
+
+std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances) {
+  if (!has_index_changes(result)) return {};
+  const std::span<const double> changes = changes_of(result, tolerances.response);
+  std::vector<std::string> list;
+  for (std::size_t p = 0; p < changes.size(); ++p) {
+    if (!changes_with_size(changes[p])) continue;
+    const auto size = size_to_study(tolerances, p, result.factor_sigma[p]);
+    if (!size) continue;
+    const NamedUnit& factor = result.factors[p];
+    list.push_back(fmt::format("{} ({}; study it at {:.3g} {})", factor.name, change_text(changes[p]),
+                               *size / display(factor).si, unit_text(factor)));
+  }
+  if (list.empty()) return {};
+  return fmt::format(
+      "{} on {} that changes with size, by so much at a tenth of it, and a tolerance of another size than was studied: "
+      "{}",
+      counted(list.size(), "error has an index", "errors have an index"), result.responses[tolerances.response].name,
+      fmt::join(list, ", "));
+}
+
+}  // namespace poesy

@@ -1,0 +1,158 @@
+"""Whether indices hold at other sizes of their errors: what a run finds, what is shown of it, and tolerances that do not
+extrapolate in silence."""
+
+import json
+
+import h5py
+import numpy
+from poesy_program import ProgramTest, main
+
+# Of limbs 1 and 3, those that deform, without anything held constant.
+STUDY = """\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "2upr-rpu"
+[poses]
+count = 6
+[errors]
+linear = { distribution = "normal", sigma = "1 mm" }
+angular = { distribution = "normal", sigma = "1 deg" }
+[analysis]
+factors = "deforming"
+samples = 500
+[solver]
+metric = "published"
+"""
+
+
+class Linearity(ProgramTest):
+    def result(self, name="study", text=STUDY):
+        self.write(f"{name}.toml", text)
+        self.succeeds("run", f"{name}.toml", "-o", f"{name}.h5", "--quiet")
+        return f"{name}.h5"
+
+    def by_platform(self):
+        return self.result("platform", STUDY.replace("published", "platform"))
+
+    def read(self, result, response, name="index_change"):
+        """A number of each error, by its name."""
+        with h5py.File(self.folder / result) as file:
+            at = list(file["responses/name"].asstr()).index(response)
+            return dict(zip(file["factors/name"].asstr()[:], file[f"sensitivity/{name}"][at]))
+
+    def test_published_index_of_a_quadratic_error_is_said_to_change(self):
+        result = self.result()
+        change = self.read(result, "linear_deformation")["epsilon_3_4_z"]
+        self.assertGreater(change, -1.0)
+        self.assertLess(change, -0.85)
+        shown = " ".join(self.succeeds("show", result, "--response", "linear_deformation").split())
+        self.assertRegex(shown, rf"not for [^;]*epsilon_3_4_z \({100 * change:.1f} %\)")
+        table = json.loads(self.succeeds("show", result, "--response", "linear_deformation", "--json"))["tables"][0]
+        shown = {row["error"]: row["index_change"] for row in table["rows"]}
+        self.assertAlmostEqual(shown["epsilon_3_4_z"], 100 * change, places=9)
+        self.succeeds("report", result)
+        self.assertIn("Some indices say something about the size of the errors in this study and no other",
+                      (self.folder / "study.html").read_text())
+
+    def test_change_is_that_between_two_studies(self):
+        found = self.read(self.result(), "linear_deformation")
+        large = self.read("study.h5", "linear_deformation", "global")
+        small = self.result("small", STUDY.replace("1 mm", "0.1 mm").replace("1 deg", "0.1 deg"))
+        quadratic = 0
+        for name, index in self.read(small, "linear_deformation", "global").items():
+            if numpy.isnan(found[name]):
+                continue
+            change = index / large[name] - 1.0
+            # A few draws tell whether an index changes, and by how much where all is of one order.
+            self.assertEqual(abs(found[name]) > 0.02, abs(change) > 0.02, name)
+            if change < -0.8:
+                quadratic += 1
+                self.assertAlmostEqual(found[name], change, delta=0.05, msg=name)
+        self.assertGreater(quadratic, 8)
+
+    def test_by_the_platform_every_index_holds(self):
+        result = self.by_platform()
+        changes = self.read(result, "gap")
+        self.assertEqual(len(changes), 25)
+        indices = self.read(result, "gap", "global")
+        without = {name for name, index in indices.items() if index < 1e-10}
+        self.assertLess(len(without), 3)
+        self.assertEqual({name for name, change in changes.items() if numpy.isnan(change)}, without)
+        for name in changes.keys() - without:
+            self.assertLess(abs(changes[name]), 0.02, name)
+        count = 25 - len(without)
+        self.assertIn(f"within 2 %: {count} of {count} errors with an effect\n", self.succeeds("show", result, "--width", "200"))
+        self.succeeds("report", result)
+        self.assertNotIn("Some indices say something about", (self.folder / "platform.html").read_text())
+
+    def test_tolerances_of_another_size_are_refused(self):
+        command = ("tolerances", self.result(), "--response", "linear_deformation", "--limit", "0.03 mm", "-d", "out")
+        done = self.poesy(*command)
+        message = done.stderr.decode()
+        self.assertEqual((done.returncode, done.stdout), (2, b""), message)
+        self.assertEqual(message.count("\n"), 1)
+        self.assertRegex(message, r"epsilon_3_4_z \(-\d\d\.\d %; study it at 0\.\d+ deg\)")
+        self.assertNotIn("delta_1_1_y", message)
+        for words in ("changes with size", '[solver] metric = "platform"', "--extrapolate", "[errors.override]"):
+            self.assertIn(words, message)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_extrapolation_is_said_where_it_was_asked_for(self):
+        printed = " ".join(self.succeeds("tolerances", self.result(), "--response", "linear_deformation", "--limit", "0.03 mm",
+                                         "--extrapolate", "-d", "out").split())
+        self.assertIn("changes with size", printed)
+        self.assertIn("epsilon_3_4_z (-", printed)
+        for name in ("equal_effect", "equal_tolerance"):
+            study = (self.folder / f"out/confirm_{name}.toml").read_text()
+            self.assertRegex(study.splitlines()[0], "^# .* changes with size.*epsilon_3_4_z")
+            self.succeeds("check", f"out/confirm_{name}.toml")
+        changes = self.read("study.h5", "linear_deformation")
+        table = numpy.genfromtxt(self.folder / "out/tolerances.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
+        for row in table:
+            self.assertEqual(numpy.nan_to_num(row["index_change"]), numpy.nan_to_num(changes[row["factor"]]))
+
+    def test_tolerances_by_the_platform_may_be_of_any_size(self):
+        result = self.by_platform()
+        for limit in ("0.3 um", "3 um", "0.03 mm"):
+            printed = self.succeeds("tolerances", result, "--response", "gap", "--limit", limit, "-d", "out")
+            self.assertNotIn("changes with size", printed)
+
+    def test_tolerances_at_the_size_studied_are_not_refused(self):
+        # One error and its own size: the limit is what it causes.
+        study = STUDY.replace('"deforming"', '["epsilon_3_4_z"]')
+        result = self.result("one", study)
+        self.assertLess(self.read(result, "linear_deformation")["epsilon_3_4_z"], -0.5)
+        with h5py.File(self.folder / result) as file:
+            at = list(file["responses/name"].asstr()).index("linear_deformation")
+            rms = 1e3 * file["tolerances/rms_effect"][at][0] * file["factors/sigma"][0]
+        for multiple, refused in ((1.0, False), (1.9, False), (0.55, False), (2.1, True), (0.45, True)):
+            done = self.poesy("tolerances", result, "--response", "linear_deformation", "--limit", f"{multiple * rms} mm",
+                              "-d", "out")
+            self.assertEqual(done.returncode, 2 if refused else 0, multiple)
+
+    def test_result_of_an_older_version_says_that_nothing_is_known(self):
+        result = self.result()
+        with h5py.File(self.folder / result, "r+") as file:
+            del file["sensitivity/index_change"]
+        printed = " ".join(self.succeeds("tolerances", result, "--response", "linear_deformation", "--limit", "0.03 mm", "-d",
+                                         "out").split())
+        self.assertIn("whether indices hold at other sizes is not known, because an older poesy", printed)
+        self.assertNotIn("at a tenth", self.succeeds("show", result))
+        self.succeeds("report", result)
+        self.succeeds("export", result, "-d", "tables")
+        self.assertFalse((self.folder / "tables/index_change.csv").exists())
+
+    def test_shards_and_threads_give_the_bits_of_one_run(self):
+        self.result()
+        for shard in ("1/2", "2/2"):
+            self.succeeds("run", "study.toml", "--shard", shard, "--quiet")
+        self.succeeds("merge", "study.1-of-2.h5", "study.2-of-2.h5", "-o", "merged.h5")
+        self.succeeds("run", "study.toml", "-o", "one.h5", "--threads", "1", "--quiet")
+        expected = self.read("study.h5", "angular_deformation")
+        for result in ("merged.h5", "one.h5"):
+            numpy.testing.assert_array_equal(list(self.read(result, "angular_deformation").values()), list(expected.values()))
+
+
+if __name__ == "__main__":
+    main()
