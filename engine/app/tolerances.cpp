@@ -226,23 +226,13 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result) {
   }
 }
 
-/// Whether the result is by the published metric of a mechanism that has the platform's.
-bool may_go_by_platform(const StoredResult& result) {
-  try {
-    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
-    return study.mechanism.entry->by_platform != nullptr;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 /// Refuses tolerances for errors whose index does not hold at their size, or says why they may not hold.
 std::string caveat_of(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
   const std::string caveat = wrong_sizes_text(result, found);
   if (caveat.empty() || options.extrapolate) return caveat;
   throw InputError({options.result}, caveat,
                    fmt::format("study each at that size ([errors.override]){}, or give --extrapolate",
-                               may_go_by_platform(result) ? ", or all by [solver] metric = \"platform\"" : ""));
+                               result.metric == "published" ? ", or all by [solver] metric = \"platform\"" : ""));
 }
 
 int set_tolerances(const TolerancesOptions& options) {

@@ -127,7 +127,7 @@ class Terminal(ProgramTest):
         for command in ("run study.toml -o again.h5", "check study.toml", "show r.h5", "models", "models 3-prs", "--help",
                         "run --help", "template 3-prs", "export r.h5 -d t", "verify r.h5", "man", "completion bash",
                         "completion zsh", "show nothing.h5", "run", "rum", "show r.h5 --response x", "--version",
-                        "tolerances r.h5 --response linear_deformation -d tolerances"):
+                        "tolerances r.h5 --response linear_deformation --extrapolate -d tolerances"):
             with self.subTest(command=command):
                 done = subprocess.run([PROGRAM, *command.split()], cwd=self.folder, env=environment, capture_output=True,
                                       timeout=300, check=False)

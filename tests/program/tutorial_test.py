@@ -51,11 +51,12 @@ class Tutorial(ProgramTest):
         with h5py.File(self.work / "precise.h5") as file:
             self.assertIn("convergence", file)
         with h5py.File(self.work / "all_tolerances/confirm_equal_effect.h5") as file:
-            at = list(file["response"].asstr()).index("linear_deformation")
+            at = list(file["response"].asstr()).index("gap")
             mean, std = (file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))
         self.assertLess(math.hypot(mean, std), 5e-5)
+        self.assertGreater(math.hypot(mean, std), 0.98 * 5e-5)
         self.assertGreater((self.work / "ranked.svg").stat().st_size, 5000)
-        self.assertTrue((self.work / "tables/local_linear_deformation.csv").is_file())
+        self.assertTrue((self.work / "tables/local_gap.csv").is_file())
 
     def test_a_command_that_fails_is_found(self):
         first, second = blocks("```sh\npoesy models\n```\n\n```\nfalse\n```\n```sh\npoesy frobnicate\ntrue\n```\n")

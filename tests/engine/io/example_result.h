@@ -75,7 +75,7 @@ class Example {
       values->back() = std::numeric_limits<double>::quiet_NaN();
     }
     result.rounding = {1e-15, 2e-15};
-    result.index_change = {0.0, -0.25, 0.125, std::numeric_limits<double>::quiet_NaN()};
+    result.index_change = {-0.25, 0.125, 0.0, std::numeric_limits<double>::quiet_NaN()};
     result.count.assign(result.local.size(), 97.0);
     for (std::size_t k = 0; k < 2 * kPoses; ++k) result.background.push_back(static_cast<double>(k) / 16.0);
     for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {

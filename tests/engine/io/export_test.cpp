@@ -116,8 +116,8 @@ TEST_F(Export, IndexChangesHaveAColumnForEachResponse) {
   export_tables(folder_ / "s.h5", folder_.path());
   EXPECT_EQ(read_table(folder_ / "index_change.csv"),
             (std::vector<Cells>{{"factor", "angular_deformation", "linear_deformation"},
-                                {"epsilon_1", "0", "0.125"},
-                                {"delta_1", "-0.25", "NaN"}}));
+                                {"epsilon_1", "-0.25", "0"},
+                                {"delta_1", "0.125", "NaN"}}));
 }
 
 TEST_F(Export, HistoryHasARowForEachNumberOfSamples) {

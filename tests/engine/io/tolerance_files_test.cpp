@@ -89,10 +89,10 @@ TEST_F(ToleranceFiles, TableReadsWithoutKnowingTheProgram) {
       "factor,kind,limb,unit,display_unit,index_unit,studied_as,index,index_ci_low,index_ci_high,mean_square_share,"
       "index_change,equal_effect,limit_equal_effect,limit_equal_tolerance,"
       "equal_effect_display,limit_equal_effect_display,limit_equal_tolerance_display\n"
-      "epsilon_1,angular,1,rad,deg,rad/rad,uniform,0,6000,7000,0,0,inf,0.25,0.25,inf," +
+      "epsilon_1,angular,1,rad,deg,rad/rad,uniform,0,6000,7000,0,-0.25,inf,0.25,0.25,inf," +
           shortest(0.25 / kDegree) + "," + shortest(0.25 / kDegree) +
           "\n"
-          "delta_1,linear,1,m,mm,rad/m,normal,2,6010,7010,1,-0.25,0.002,0.004,1e-05,2,4,0.01\n");
+          "delta_1,linear,1,m,mm,rad/m,normal,2,6010,7010,1,0.125,0.002,0.004,1e-05,2,4,0.01\n");
 }
 
 TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
@@ -206,8 +206,8 @@ TEST_F(ToleranceFiles, ExportHasTheSameRows) {
             "factor,angular,limb,index [rad per rad or m],index_ci_low [rad per rad or m],"
             "index_ci_high [rad per rad or m],mean_square_share,index_change,equal_effect [rad or m],"
             "equal_effect [deg or mm]\n"
-            "epsilon_1,1,1,0,6000,7000,0,0,inf,inf\n"
-            "delta_1,0,1,2,6010,7010,1,-0.25,0.001,1\n");
+            "epsilon_1,1,1,0,6000,7000,0,-0.25,inf,inf\n"
+            "delta_1,0,1,2,6010,7010,1,0.125,0.001,1\n");
 }
 
 TEST_F(ToleranceFiles, ExportLeavesThemOutWithoutABackground) {

@@ -495,6 +495,16 @@ TEST_F(HtmlReport, WarnsOfWhatAReaderMustNotMiss) {
   }
 }
 
+TEST_F(HtmlReport, WarnsOfIndicesThatHoldAtNoOtherSize) {
+  ReportedResult result = sensitivity();
+  constexpr const char* kWarning = "Some indices say something about the size of the errors in this study and no other";
+  EXPECT_EQ(body(report(result)).find(kWarning), std::string::npos);
+  result.stored.sensitivity.index_change = {0.0, 0.0, -0.9, 0.0};
+  const std::string page = body(report(result));
+  EXPECT_NE(page.find(kWarning), std::string::npos);
+  EXPECT_NE(page.find("not for epsilon_1 (-90.0 %)"), std::string::npos);
+}
+
 TEST_F(HtmlReport, HasNoSectionOfWarningsWithoutAny) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
