@@ -118,8 +118,7 @@ Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSe
   const Plan plan(study, poses);
   const std::size_t fidelities = study.mechanism.compared ? 2 : 1;
   const double once = sampling_seconds(plan, UnitEvaluator(plan, model));
-  const double of_two_sizes =
-      once * 4.0 * static_cast<double>(std::min(kLinearityDraws, plan.samples())) / static_cast<double>(plan.samples());
+  const double of_two_sizes = once * index_change_solves(plan) / static_cast<double>(plan.solves());
   Outlook expected{
       fmt::format("{} errors x {} poses x {} samples{} = {}", plan.factors().size(), poses.size(), samples_text(plan),
                   fidelities == 2 ? " x 2 fidelities" : "", solves_text(plan, fidelities)),

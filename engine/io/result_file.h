@@ -148,10 +148,9 @@ Verification verify_result(const std::string& path);
 ///     factors.csv          factor | standard deviation
 ///     failures.csv         factor | pose, sample, status (position in kStatusNames) of the listed failures
 ///     poses.csv            pose | time (s) on a trajectory, coordinates, condition number
-///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, share of
-///     the
-///                               mean square, equal-effect tolerance in SI and in the units people read ("inf": no
-///                               effect)
+///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, share
+///                               of the mean square, index_change, equal-effect tolerance in SI and in the units people
+///                               read ("inf": no effect)
 ///
 ///     separation.csv            factor | drive_share, removable (see /separation), and for each published class 1 if
 ///                               the error belongs to it; where the model separates its errors, as the next four:

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "engine/base/contract.h"
 #include "engine/random/stream.h"
 #include "engine/run/counts.h"
 #include "engine/study/history_points.h"
@@ -69,17 +69,24 @@ UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
       iterations_(Plan::kUnitSamples),
       points_(history_points(plan)) {}
 
-UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, double scale) {
-  const std::span values = std::span(values_).first(unit.count);
-  const std::span outcome = std::span(outcome_).first(responses_ * unit.count);
+UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit) { return solve(unit, std::array{1.0}); }
+
+UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> scales) {
+  const std::size_t count = scales.size() * unit.count;
+  POESY_EXPECTS(count <= Plan::kUnitSamples);
+  const std::span values = std::span(values_).first(count);
+  const std::span draws = values.first(unit.count);
+  const std::span outcome = std::span(outcome_).first(responses_ * count);
   const FactorIndex factor = plan_->factors()[unit.slot];
-  fill_uniforms({plan_->seed(), Purpose::error_samples, factor, unit.pose}, unit.first, values);
-  plan_->distributions()[unit.slot].transform(values);
-  for (double& value : values) value *= scale;
-  const std::span status = std::span(status_).first(unit.count);
-  const std::span iterations = std::span(iterations_).first(unit.count);
-  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), std::span(&factor, 1), values, unit.count,
-                        std::abs(scale) * expected_range(plan_->distributions()[unit.slot])},
+  fill_uniforms({plan_->seed(), Purpose::error_samples, factor, unit.pose}, unit.first, draws);
+  plan_->distributions()[unit.slot].transform(draws);
+  for (std::size_t k = scales.size(); k-- > 0;) {  // the draws themselves stand first, and are scaled last
+    for (std::size_t b = 0; b < unit.count; ++b) values[k * unit.count + b] = scales[k] * draws[b];
+  }
+  const std::span status = std::span(status_).first(count);
+  const std::span iterations = std::span(iterations_).first(count);
+  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), std::span(&factor, 1), values, count,
+                        expected_range(plan_->distributions()[unit.slot])},
                        {outcome, status, iterations, {}});
   return {values, outcome, status, iterations};
 }

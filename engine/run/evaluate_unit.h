@@ -58,9 +58,11 @@ class UnitEvaluator {
 
   /// Solves the whole unit.
   SensitivityUnit operator()(const WorkUnit& unit);
-  /// Any samples of a cell, at most Plan::kUnitSamples of them: what they come to is the same whatever the unit. scale:
-  /// what each drawn error is multiplied by.
-  UnitOutcomes solve(const WorkUnit& unit, double scale = 1.0);
+  /// Any samples of a cell, at most Plan::kUnitSamples of them: what they come to is the same whatever the unit.
+  UnitOutcomes solve(const WorkUnit& unit);
+  /// The unit's draws times each of these scales, [scales x B] one behind the other, at most Plan::kUnitSamples in all.
+  /// Precondition: scales between -1 and 1.
+  UnitOutcomes solve(const WorkUnit& unit, std::span<const double> scales);
 
  private:
   const Plan* plan_;

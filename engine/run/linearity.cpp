@@ -16,10 +16,22 @@
 namespace poesy {
 namespace {
 
-constexpr std::array kSizes{1.0, kSmallerSize};
-constexpr std::array kSigns{1.0, -1.0};
+/// The study's size and a tenth of it, draws and their mirror images.
+constexpr std::size_t kSizes = 2;
+constexpr std::size_t kSigns = 2;
+constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 
-/// The local indices of one cell, for each of kSizes those of all responses: [2 x R].
+/// Poses at which draws are solved at both sizes.
+std::size_t chosen_poses(const Plan& plan) { return std::min(kLinearityPoses, plan.poses().size()); }
+
+/// The cells of the plan at the chosen poses, slot by slot, counted from 0.
+WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
+  const std::size_t poses = chosen_poses(plan);
+  const std::size_t pose = chosen_cell % poses * plan.poses().size() / poses;
+  return {chosen_cell / poses, PoseIndex(pose), SampleIndex(0), std::min(kLinearityDraws, plan.samples())};
+}
+
+/// The local indices of one cell, for each size those of all responses: [2 x R].
 using CellIndices = std::vector<LocalIndex>;
 
 /// Solves the first draws of a cell and their mirror images at both sizes. Owns the scratch of one thread.
@@ -29,56 +41,33 @@ class CellEvaluator {
       : plan_(&plan), responses_(model.description().responses.size()), solve_(plan, model) {}
 
   CellIndices operator()(std::size_t cell) {
-    const std::size_t poses = plan_->poses().size();
-    const WorkUnit unit{cell / poses, PoseIndex(cell % poses), SampleIndex(0),
-                        std::min(kLinearityDraws, plan_->samples())};
-    solve_all(unit);
+    const WorkUnit unit = first_draws(*plan_, cell);
+    const UnitOutcomes found = solve_.solve(unit, kScales);  // at once, because a model prepares for a pose
+    const std::size_t draws = kSigns * unit.count;
     const double sigma = plan_->distributions()[unit.slot].standard_deviation();
     CellIndices indices;
-    for (std::size_t size = 0; size < kSizes.size(); ++size) {
+    for (std::size_t size = 0; size < kSizes; ++size) {
       for (std::size_t r = 0; r < responses_; ++r) {
-        indices.push_back(local_index_with_error(moments(size, r), kSizes[size] * sigma));
+        Moments moments;
+        for (std::size_t n = 0; n < draws; ++n) {
+          if (counts_at_both(found, n)) moments.add(found.responses[(r * kSizes + size) * draws + n]);
+        }
+        indices.push_back(local_index_with_error(moments, kScales[size * kSigns] * sigma));
       }
     }
     return indices;
   }
 
  private:
-  /// What draws of one sign came to.
-  struct Outcomes {
-    std::array<std::vector<double>, kSizes.size()> responses;  ///< [R x B] at each size
-    std::vector<bool> count;                                   ///< [B] whether a draw counts at both
-  };
-
-  void solve_all(const WorkUnit& unit) {
-    for (std::size_t sign = 0; sign < kSigns.size(); ++sign) {
-      Outcomes& found = outcomes_[sign];
-      found.count.assign(unit.count, true);
-      for (std::size_t size = 0; size < kSizes.size(); ++size) {
-        const UnitOutcomes solved = solve_.solve(unit, kSigns[sign] * kSizes[size]);
-        found.responses[size].assign(solved.responses.begin(), solved.responses.end());
-        for (std::size_t b = 0; b < unit.count; ++b) {
-          found.count[b] = found.count[b] && counts(solved.status[b], plan_->not_converged());
-        }
-      }
-    }
-  }
-
-  Moments moments(std::size_t size, std::size_t response) const {
-    Moments over_draws;
-    for (const Outcomes& found : outcomes_) {
-      const std::size_t draws = found.count.size();
-      for (std::size_t b = 0; b < draws; ++b) {
-        if (found.count[b]) over_draws.add(found.responses[size][response * draws + b]);
-      }
-    }
-    return over_draws;
+  bool counts_at_both(const UnitOutcomes& found, std::size_t draw) const {
+    const std::size_t draws = found.status.size() / kSizes;
+    return counts(found.status[draw], plan_->not_converged()) &&
+           counts(found.status[draws + draw], plan_->not_converged());
   }
 
   const Plan* plan_;
   std::size_t responses_;
   UnitEvaluator solve_;
-  std::array<Outcomes, kSigns.size()> outcomes_;
 };
 
 /// Collects cells, pose by pose, and fills in an error's changes when its poses are there.
@@ -87,15 +76,15 @@ class ChangeCollector {
   ChangeCollector(const Plan& plan, const Model& model)
       : plan_(&plan),
         rounding_(response_rounding(model)),
-        at_poses_(kSizes.size() * rounding_.size()),
+        at_poses_(kSizes * rounding_.size()),
         changes_(rounding_.size() * plan.slots(), kNaN) {}
 
   void add(std::size_t cell, const CellIndices& indices) {
-    const std::size_t poses = plan_->poses().size();
+    const std::size_t poses = chosen_poses(*plan_);
     for (std::size_t n = 0; n < at_poses_.size(); ++n) at_poses_[n].push_back(indices[n]);
     if ((cell + 1) % poses != 0) return;
-    for (std::size_t r = 0; r < rounding_.size(); ++r)
-      changes_[r * plan_->slots() + cell / poses] = change(r, cell / poses);
+    const std::size_t slot = cell / poses;
+    for (std::size_t r = 0; r < rounding_.size(); ++r) changes_[r * plan_->slots() + slot] = change(r, slot);
     for (std::vector<LocalIndex>& poses_of_one : at_poses_) poses_of_one.clear();
   }
 
@@ -104,10 +93,10 @@ class ChangeCollector {
  private:
   double change(std::size_t response, std::size_t slot) const {
     const double sigma = plan_->distributions()[slot].standard_deviation();
-    std::array<double, kSizes.size()> index{};
-    for (std::size_t size = 0; size < kSizes.size(); ++size) {
+    std::array<double, kSizes> index{};
+    for (std::size_t size = 0; size < kSizes; ++size) {
       index[size] = told_from_rounding(published_index(at_poses_[size * rounding_.size() + response]),
-                                       index_rounding(rounding_[response], kSizes[size] * sigma));
+                                       index_rounding(rounding_[response], kScales[size * kSigns] * sigma));
     }
     return index[1] / index[0] - 1.0;
   }
@@ -140,11 +129,11 @@ std::optional<std::vector<double>> index_changes(const Plan& plan, const Model& 
   Stage stage(nullptr, options.team);
   stage.begin([](std::span<const std::byte>) {});
   const bool complete = run_in_order(
-      plan.cells(), options, [&] { return CellEvaluator(plan, model); },
+      plan.slots() * chosen_poses(plan), options, [&] { return CellEvaluator(plan, model); },
       [](CellEvaluator& evaluate, std::size_t cell) { return evaluate(cell); },
       [&](std::size_t cell, const CellIndices& found) { collect.add(cell, found); },
       [](std::size_t, const CellIndices& found, ByteWriter& to) { pack(found, to); },
-      [&](std::size_t, ByteReader& from) { return unpack(from, kSizes.size() * responses); });
+      [&](std::size_t, ByteReader& from) { return unpack(from, kSizes * responses); });
   std::vector<double> changes = std::move(collect).take();
   stage.end(
       complete, [] { return SolveCounts(); },
@@ -156,6 +145,10 @@ std::optional<std::vector<double>> index_changes(const Plan& plan, const Model& 
       [&](std::span<const std::byte> end) { ByteReader(end).reals(std::span(changes)); });
   if (!complete) return std::nullopt;
   return changes;
+}
+
+double index_change_solves(const Plan& plan) {
+  return static_cast<double>(plan.slots() * chosen_poses(plan) * kScales.size() * first_draws(plan, 0).count);
 }
 
 }  // namespace poesy

@@ -142,6 +142,22 @@ TEST(IndexChanges, DependOnTheFirstDrawsAlone) {
   EXPECT_EQ(changes_in(few, {}), changes_in(many, {}));
 }
 
+TEST(IndexChanges, TakeNoMoreThanSomePosesOfMany) {
+  for (const std::size_t poses : {std::size_t{3}, kLinearityPoses, 2 * kLinearityPoses + 5}) {
+    Study study = study_of(Kind::sensitivity, 1000);
+    study.poses.count = poses;
+    const Prepared prepared(study);
+    std::atomic<std::size_t> solves = 0;
+    const CurveModel model([&](double error, SolveStatus& status) {
+      ++solves;
+      return linear(error, status);
+    });
+    ASSERT_TRUE(index_changes(prepared.plan, model, {}));
+    EXPECT_EQ(solves, 2 * std::min(poses, kLinearityPoses) * 4 * kLinearityDraws);
+    EXPECT_EQ(static_cast<double>(solves), index_change_solves(prepared.plan));
+  }
+}
+
 TEST(IndexChanges, AreNoneWhenStopped) {
   const Prepared prepared(study_of(Kind::sensitivity, 100));
   const std::atomic<bool> stop{true};
