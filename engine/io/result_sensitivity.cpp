@@ -26,7 +26,7 @@ void add_global_indices(ResultBuilder& result, const SensitivityResult& found) {
   if (found.index_change.empty()) return;
   result.add("/sensitivity/index_change", axes, found.index_change,
              {"1",
-              "Change of 'global' where the error is a tenth as large, by the same few draws at up to 64 poses: index "
+              "Change of 'global' where the error is a tenth as large, by the same few draws at up to 32 poses: index "
               "there / index "
               "here - 1; 0: the index holds at other sizes; NaN: not known, or no effect at either size"});
 }

@@ -15,7 +15,7 @@ namespace poesy {
 inline constexpr std::size_t kLinearityDraws = 16;
 
 /// Poses at which they are solved: as many of the study's, evenly spread over their order, or all if it has fewer.
-inline constexpr std::size_t kLinearityPoses = 64;
+inline constexpr std::size_t kLinearityPoses = 32;
 
 /// The second size, as a multiple of the study's.
 inline constexpr double kSmallerSize = 0.1;
