@@ -1,0 +1,144 @@
+"""The deformation by the platform's metric: reference cases, indices that hold at any size, sums that hold, nothing at
+the cap, and that only what asks for it has it."""
+
+import json
+import math
+import os
+
+import h5py
+import numpy as np
+
+from poesy_program import STUDY, ProgramTest, main
+
+COORDINATES = ["z", "beta", "gamma"]
+RESPONSES = ["gap", "angular_deformation", "linear_deformation"]
+
+
+def study(analysis, size, poses=20, background="", solver="", seed=3):
+    """A study of the 2UPR-RPU by the metric; size in mm and deg."""
+    return f"""\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "2upr-rpu"
+[poses]
+count = {poses}
+[errors]
+linear = {{ distribution = "normal", sigma = "{size} mm" }}
+angular = {{ distribution = "normal", sigma = "{size} deg" }}
+[analysis]
+{analysis}
+{background}
+[solver]
+metric = "platform"
+{solver}
+[run]
+seed = {seed}
+"""
+
+
+SENSITIVITY = 'kind = "sensitivity"\nfactors = "deforming"\nsamples = {}'
+MONTE_CARLO = 'kind = "monte-carlo"\nfactors = "{}"\nsamples = {}'
+BACKGROUND = 'background = { factors = "benign", linear = "1 mm", angular = "1 deg" }'
+
+
+class Metric(ProgramTest):
+    def result(self, name, text):
+        self.write(f"{name}.toml", text)
+        self.succeeds("run", f"{name}.toml", "--quiet")
+        return h5py.File(self.folder / f"{name}.h5")
+
+    def test_reference_cases(self):
+        with open(os.environ["POESY_METRIC_ORACLE"], encoding="utf-8") as file:
+            cases = json.load(file)["cases"]
+        factors = sorted({name for case in cases for name in case["errors"]})
+        rows = [",".join(repr(case["pose"][name]) for name in COORDINATES) for case in cases]
+        self.write("poses.csv", "\n".join([",".join(COORDINATES), *rows]) + "\n")
+        rows = [",".join(repr(case["errors"].get(name, 0.0)) for name in factors) for case in cases]
+        self.write("errors.csv", "\n".join([",".join(factors), *rows]) + "\n")
+        for method in ("newton", "gauss-newton"):
+            text = STUDY.replace('method = "gauss-newton"', f'method = "{method}"\nmetric = "platform"')
+            self.write(f"{method}.toml", text)
+            self.succeeds("evaluate", f"{method}.toml", "--poses", "poses.csv", "--errors", "errors.csv", "--paired", "-o",
+                          f"{method}.h5")
+            with h5py.File(self.folder / f"{method}.h5") as result:
+                group = result["evaluate"]
+                for m, case in enumerate(cases):
+                    self.assertLess(group["status"][m, 0], 2)
+                    for name in RESPONSES:
+                        self.assertAlmostEqual(group[name][m, 0], case[name], delta=1e-11)
+                    for pair, name in enumerate(("delta_mu_21", "delta_mu_32", "delta_mu_13")):
+                        np.testing.assert_allclose(group[name][m, 0], case["delta_mu"][pair], rtol=0, atol=1e-11)
+
+    def test_indices_hold_at_any_size(self):
+        # The background stays: what it multiplies is an error of the product's size.
+        index, low, high = [], [], []
+        for size in (1, 0.1, 0.01):
+            with self.result(f"s{size}", study(SENSITIVITY.format(1000), size, 40, BACKGROUND)) as file:
+                self.assertEqual(file["responses/name"].asstr()[0], "gap")
+                index.append(file["sensitivity/global_corrected"][0])
+                low.append(file["sensitivity/global_corrected_ci_low"][0])
+                high.append(file["sensitivity/global_corrected_ci_high"][0])
+        for other in (1, 2):
+            self.assertTrue(np.all(low[other] <= 1.02 * high[0]) and np.all(high[other] >= 0.98 * low[0]))
+            np.testing.assert_allclose(index[other], index[0], rtol=0.02)  # the draws are the same
+
+    def test_mean_squares_add(self):
+        with self.result("each", study(SENSITIVITY.format(2000), 0.3, 30, BACKGROUND)) as file:
+            mean, std = file["sensitivity/mean"][0], file["sensitivity/std"][0]
+            predicted = math.sqrt(np.mean(np.sum(mean**2 + std**2, axis=0)))
+        with self.result("all", study(MONTE_CARLO.format("deforming", 4000), 0.3, 30, BACKGROUND)) as file:
+            self.assertLess(abs(file["monte_carlo/overall_rms"][0] / predicted - 1), 0.03)
+
+    def test_everything_is_solved(self):
+        with self.result("published_design", study(SENSITIVITY.format(1000), 1, 158, BACKGROUND)) as file:
+            missed = np.sum(file["solver/not_converged"][:])
+            self.assertLessEqual(missed, 158 * 25 * 1000 / 100_000)
+        for method in ("newton", "gauss-newton"):
+            with self.result(f"all_{method}", study(MONTE_CARLO.format("all", 1000), 1, 60, solver=f'method = "{method}"')) as file:
+                self.assertLessEqual(np.sum(file["solver/not_converged"][:]), 60 * 1000 / 10_000)
+
+    def test_first_order_is_the_limit_of_small_errors(self):
+        for size, most in ((0.001, 1e-4), (1, 0.2)):
+            exact = study(MONTE_CARLO.format("all", 500), size, 10)
+            linear = exact.replace('model = "2upr-rpu"', 'model = "2upr-rpu"\nfidelity = "first-order"')
+            with self.result(f"e{size}", exact) as one, self.result(f"l{size}", linear) as other:
+                np.testing.assert_allclose(other["monte_carlo/rms"], one["monte_carlo/rms"], rtol=most)
+
+    def test_who_does_not_ask_has_the_published_one(self):
+        plain = study(SENSITIVITY.format(200), 1, 5, BACKGROUND).replace('metric = "platform"\n', "")
+        asked = plain.replace("[solver]\n", '[solver]\nmetric = "published"\n')
+        with self.result("plain", plain) as one, self.result("asked", asked) as other:
+            self.assertEqual(one.attrs["content_sha256"], other.attrs["content_sha256"])
+            self.assertIn("deformation_max", one["responses/name"].asstr()[:])
+
+    def test_points_are_checked(self):
+        def refused(points, *parts):
+            text = study(SENSITIVITY.format(10), 1, 2, BACKGROUND, f"points = {points}")
+            self.write("points.toml", text)
+            done = self.poesy("check", "points.toml")
+            self.assertEqual(done.returncode, 2)
+            for part in ("points.toml:", *parts):
+                self.assertIn(part, done.stderr.decode())
+
+        refused('[["1 mm", "0 mm", "0 mm"], ["2 mm", "0 mm", "0 mm"], ["9 mm", "0 mm", "0 mm"]]', "on one line", "joints")
+        refused('[["1 mm", "0 mm", "0 mm"], ["2 mm", "0 mm", "0 mm"]]', "has 2 points", "three or more")
+        refused('[["1 mm", "0 mm"], ["2 mm", "0 mm", "0 mm"], ["0 mm", "0 mm", "3 mm"]]', "has 2 values", "a point has three")
+        text = study(SENSITIVITY.format(10), 1, 2, BACKGROUND, 'points = [["1 mm", "0 mm", "0 mm"]]')
+        self.write("published.toml", text.replace('"platform"', '"published"'))
+        done = self.poesy("check", "published.toml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('metric = "platform"', done.stderr.decode())
+
+    def test_the_points_that_are_usual_may_be_named(self):
+        points = 'points = [["60 mm", "0 mm", "0 mm"], ["-60 mm", "0 mm", "0 mm"], ["0 mm", "60 mm", "0 mm"]]'
+        with self.result("usual", study(SENSITIVITY.format(100), 1, 3, BACKGROUND)) as one:
+            with self.result("named", study(SENSITIVITY.format(100), 1, 3, BACKGROUND, points)) as other:
+                np.testing.assert_array_equal(one["sensitivity/global"], other["sensitivity/global"])
+        text = study(SENSITIVITY.format(100), 1, 3, BACKGROUND, points.replace("60 mm", "120 mm"))
+        with self.result("twice", text) as other:
+            self.assertTrue(np.all(other["sensitivity/global"][0] > 1.05 * h5py.File(self.folder / "usual.h5")["sensitivity/global"][0]))
+
+
+if __name__ == "__main__":
+    main()
