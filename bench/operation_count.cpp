@@ -36,8 +36,7 @@ void print(const char* name, const SolveCounts& counts) {
 }
 
 /// Everything that a solve of the published study costs, its share of the prediction of starts included.
-void count_units(const char* name, SolverOptions::Method method, std::size_t units) {
-  Study study = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
+void count_units(const char* name, Study study, SolverOptions::Method method, std::size_t units) {
   study.solver.method = method;
   const auto model = build_model(study.mechanism);
   const Plan plan(study, select_poses(study.poses, *model).poses);
@@ -48,9 +47,9 @@ void count_units(const char* name, SolverOptions::Method method, std::size_t uni
   print(name, counts);
 }
 
-void count_all_errors(const char* name, double scale) {
-  constexpr std::size_t kCount = 100;
-  const Study study = bench::published_study(bench::kPublishedPoses, kCount);
+constexpr std::size_t kCount = 100;
+
+void count_all_errors(const char* name, const Study& study, double scale) {
   const auto model = build_model(study.mechanism);
   const PoseSet poses = select_poses(study.poses, *model).poses;
   const auto evaluator = model->evaluator(study.solver);
@@ -75,8 +74,15 @@ void count_all_errors(const char* name, double scale) {
 /// Counts the floating-point operations of solves, one sample at a time; one JSON object a line.
 int main() {
   bench::choose_instruction_set("plain");
-  count_units("gauss-newton", SolverOptions::Method::gauss_newton, 50);
-  count_units("newton", SolverOptions::Method::newton, 200);
-  count_all_errors("all_errors/1_mm_1_deg", 1.0);
-  count_all_errors("all_errors/0.1_mm_0.1_deg", 0.1);
+  using Method = SolverOptions::Method;
+  const Study published = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  const Study platform = bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  count_units("gauss-newton", published, Method::gauss_newton, 50);
+  count_units("newton", published, Method::newton, 200);
+  count_units("platform gauss-newton", platform, Method::gauss_newton, 50);
+  count_units("platform newton", platform, Method::newton, 200);
+  count_all_errors("published/all_errors/1_mm_1_deg", published, 1.0);
+  count_all_errors("published/all_errors/0.1_mm_0.1_deg", published, 0.1);
+  count_all_errors("platform/all_errors/1_mm_1_deg", platform, 1.0);
+  count_all_errors("platform/all_errors/0.1_mm_0.1_deg", platform, 0.1);
 }

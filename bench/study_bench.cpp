@@ -9,15 +9,32 @@ namespace {
 
 using namespace poesy;
 
-/// The published study on a number of threads. Slow solvers see every step-th pose only.
-void study(benchmark::State& state, SolverOptions::Method method, const std::string& isa, std::size_t step) {
-  Study study = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
-  study.solver.method = method;
+/// A solver of the published study: by which metric, how, and on which of the poses.
+struct Solver {
+  std::string name;
+  bool by_platform;
+  std::size_t fidelity;  ///< by the platform's metric
+  SolverOptions::Method method;
+  std::string isa;
+  std::size_t step;  ///< slow solvers see every step-th pose only
+};
+
+Study study_of(const Solver& solver) {
+  Study study = solver.by_platform
+                    ? bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples, solver.fidelity)
+                    : bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  study.solver.method = solver.method;
+  return study;
+}
+
+/// The published study on a number of threads.
+void run(benchmark::State& state, const Solver& solver) {
+  const Study study = study_of(solver);
   std::unique_ptr<Model> model = build_model(study.mechanism);
-  const Plan plan(study, bench::every(step, select_poses(study.poses, *model).poses));
+  const Plan plan(study, bench::every(solver.step, select_poses(study.poses, *model).poses));
   const bench::ReferenceModel reference(*model);
-  const bool is_reference = isa == "scalar";
-  if (!is_reference) bench::choose_instruction_set(isa);
+  const bool is_reference = solver.isa == "scalar";
+  if (!is_reference) bench::choose_instruction_set(solver.isa);
   RunOptions options;
   options.threads = static_cast<std::size_t>(state.range(0));
   SolveCounts counts;
@@ -31,10 +48,10 @@ void study(benchmark::State& state, SolverOptions::Method method, const std::str
   state.counters["not_converged"] = static_cast<double>(counts.not_converged()) / solves;
 }
 
-void add(const std::string& solver, SolverOptions::Method method, const std::string& isa, std::size_t step) {
-  const std::size_t poses = (bench::kPublishedPoses + step - 1) / step;
-  const std::string name = solver + "/" + isa + "/poses:" + std::to_string(poses);
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { study(state, method, isa, step); })
+void add(const Solver& solver) {
+  const std::size_t poses = (bench::kPublishedPoses + solver.step - 1) / solver.step;
+  const std::string name = solver.name + "/" + solver.isa + "/poses:" + std::to_string(poses);
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { run(state, solver); })
       ->Arg(1)
       ->Arg(2)
       ->ArgName("threads")
@@ -46,11 +63,14 @@ void add(const std::string& solver, SolverOptions::Method method, const std::str
 /// Cases of about the same length.
 void add_all() {
   using Method = SolverOptions::Method;
-  add("reference", Method::gauss_newton, "scalar", 40);
+  add({"reference", false, 0, Method::gauss_newton, "scalar", 40});
   for (const std::string& isa : bench::instruction_sets()) {
     const bool vectors = isa != "plain";
-    add("gauss-newton", Method::gauss_newton, isa, vectors ? 8 : 40);
-    add("newton", Method::newton, isa, vectors ? 1 : 8);
+    add({"gauss-newton", false, 0, Method::gauss_newton, isa, vectors ? std::size_t{8} : 40});
+    add({"newton", false, 0, Method::newton, isa, vectors ? std::size_t{1} : 8});
+    add({"platform gauss-newton", true, 0, Method::gauss_newton, isa, vectors ? std::size_t{8} : 40});
+    add({"platform newton", true, 0, Method::newton, isa, vectors ? std::size_t{1} : 8});
+    add({"platform first-order", true, 1, Method::newton, isa, 1});
   }
 }
 

@@ -14,6 +14,7 @@
 #include "engine/run/coupling.h"
 #include "engine/run/fidelity.h"
 #include "engine/run/linearity.h"
+#include "engine/run/points_radius.h"
 #include "engine/run/separation.h"
 #include "engine/run/verdict.h"
 
@@ -74,6 +75,7 @@ void run_sensitivity_study(const Job& job) {
   if (!changes) return job.checkpoints().stopped_after_stages();
   if (!job.writes()) return;
   result->index_change = *std::move(changes);
+  result->radius_tau = radius_rank_correlations(job.study, plan);
   if (job.model.description().separation) {
     result->separation = separate_errors(job.model, plan.poses(), plan.factors(), standard_deviations(job.study));
   }

@@ -1,4 +1,5 @@
 #include "engine/io/result_parts.h"
+#include "engine/run/points_radius.h"
 
 namespace poesy {
 namespace {
@@ -36,6 +37,20 @@ void read_metric(const h5::File& file, StoredResult& result) {
   const auto values = read_exactly<double>(file, "/metric/points", 3 * count);
   result.metric_points.resize(count);
   for (std::size_t k = 0; k < values.size(); ++k) result.metric_points[k / 3][k % 3] = values[k];
+}
+
+void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau) {
+  result.add_axis("radius_multiple", std::vector<double>(kPointsRadii.begin(), kPointsRadii.end()),
+                  {"1", "Distance of the metric's points from their middle, over that in /metric/points"});
+  result.add("/metric/radius_tau", {"radius_multiple", "response"}, tau,
+             {"1",
+              "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, "
+              "to first order, without the background's errors, at up to 32 of the poses"});
+}
+
+std::vector<double> read_radius_tau(const h5::File& file) {
+  if (!file.exists("/metric/radius_tau")) return {};
+  return read_exactly<double>(file, "/metric/radius_tau", kPointsRadii.size() * axis_length(file, "response"));
 }
 
 }  // namespace poesy

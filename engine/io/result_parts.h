@@ -57,6 +57,10 @@ void add_poses(ResultBuilder& result, const ModelDescription& model, const Selec
 void add_metric(ResultBuilder& result, const Study& study);
 /// Fills in `metric` and `metric_points`.
 void read_metric(const h5::File& file, StoredResult& result);
+/// What the ranking owes to the metric's points, [2 x R]: /metric/radius_tau. After add_metric.
+void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau);
+/// Likewise; empty where the file has none.
+std::vector<double> read_radius_tau(const h5::File& file);
 
 /// The coordinates' names and units.
 std::vector<NamedUnit> read_pose_coordinates(const h5::File& file);

@@ -106,6 +106,7 @@ void add_sensitivity(ResultBuilder& result, const Study& study, const Sensitivit
   if (found.separation) add_separation(result, study, *found.separation);
   if (found.fidelity) add_fidelity(result, study, *found.fidelity);
   if (found.convergence) add_convergence(result, result_format::kSensitivity, *found.convergence);
+  if (!found.radius_tau.empty()) add_radius_tau(result, found.radius_tau);
   add_solver(result, {"factor", "pose"}, found.solves);
   std::vector<std::string> names;
   for (const FactorIndex factor : study.analysis.factors) names.push_back(study.model().factors[factor.value].name);
@@ -119,6 +120,7 @@ void read_sensitivity(const h5::File& file, StoredResult& result) {
     check_names(result.factor_distribution, "/factors/distribution");
   }
   result.sensitivity = read_indices(file);
+  result.sensitivity.radius_tau = read_radius_tau(file);
   result.sensitivity.history = read_history(file);
   result.sensitivity.failures = read_failures(file, result);
   if (file.exists("/tolerances")) read_tolerances(file, result);

@@ -113,6 +113,17 @@ std::vector<std::string> notes(const StoredResult& result, const RankedErrors& r
   return list;
 }
 
+/// How the ranking changes with the points of the platform's metric; empty where the result does not say it.
+std::string radius_note(const StoredResult& result, std::size_t response) {
+  const std::vector<double>& tau = result.sensitivity.radius_tau;
+  const std::size_t responses = result.responses.size();
+  if (tau.empty() || std::isnan(tau[response])) return {};
+  return fmt::format(
+      "the metric's points at half and at twice their distance from their middle give rankings by {} whose Kendall's "
+      "tau with this one is {:.2f} and {:.2f} (1: the same order), to first order",
+      result.responses[response].name, tau[response], tau[responses + response]);
+}
+
 /// Why some cells hold no number; empty where none is so.
 std::string rounding_note(const Table& table) {
   const auto is_rounding = [](const Cell& cell) { return cell.text == kTooSmall; };
@@ -137,7 +148,9 @@ Table ranked_table(const StoredResult& result, const RankedErrors& ranked) {
               .notes = notes(result, ranked),
               .ranked = true};
   for (const std::size_t p : ranked.rows) table.rows.push_back(row(result, ranked, p, others));
-  if (std::string note = rounding_note(table); !note.empty()) table.notes.push_back(std::move(note));
+  for (std::string note : {radius_note(result, ranked.response), rounding_note(table)}) {
+    if (!note.empty()) table.notes.push_back(std::move(note));
+  }
   return table;
 }
 

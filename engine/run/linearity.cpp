@@ -10,6 +10,7 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/run_in_order.h"
 #include "engine/run/sensitivity.h"
+#include "engine/run/some_poses.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/sensitivity_index.h"
 
@@ -22,13 +23,13 @@ constexpr std::size_t kSigns = 2;
 constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 
 /// Poses at which draws are solved at both sizes.
-std::size_t chosen_poses(const Plan& plan) { return std::min(kLinearityPoses, plan.poses().size()); }
+std::size_t chosen_poses(const Plan& plan) { return some_poses(plan.poses().size()); }
 
 /// The cells of the plan at the chosen poses, slot by slot, counted from 0.
 WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
   const std::size_t poses = chosen_poses(plan);
-  const std::size_t pose = chosen_cell % poses * plan.poses().size() / poses;
-  return {chosen_cell / poses, PoseIndex(pose), SampleIndex(0), std::min(kLinearityDraws, plan.samples())};
+  return {chosen_cell / poses, some_pose(chosen_cell % poses, plan.poses().size()), SampleIndex(0),
+          std::min(kLinearityDraws, plan.samples())};
 }
 
 /// The local indices of one cell, for each size those of all responses: [2 x R].

@@ -14,15 +14,12 @@ namespace poesy {
 /// or all if it has fewer.
 inline constexpr std::size_t kLinearityDraws = 16;
 
-/// Poses at which they are solved: as many of the study's, evenly spread over their order, or all if it has fewer.
-inline constexpr std::size_t kLinearityPoses = 32;
-
 /// The second size, as a multiple of the study's.
 inline constexpr double kSmallerSize = 0.1;
 
 /// How the global indices of a sensitivity study change when its errors are a tenth as large, [R x P]: index at a tenth
 /// over index at the study's sizes, less 1. Both are of the same draws, the first of the study and their mirror images,
-/// over the same poses, and by the published estimator: 0 to rounding where a response is linear in the error or the
+/// over the same poses (run/some_poses.h), and by the published estimator: 0 to rounding where a response is linear in the error or the
 /// norm of something linear, -0.9 where it is quadratic. Mirror images, because without them a term of second order
 /// beside one of first order changes the index of a few draws by chance; errors are symmetric (random/distribution.h).
 /// The errors of the background keep their sizes. A draw that does not count at one size counts at neither. An index

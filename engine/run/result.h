@@ -116,6 +116,9 @@ struct SensitivityResult {
   /// [R x P] index at a tenth of the study's sizes over that at these sizes, less 1 (run/linearity.h); NaN where that
   /// is not known. Empty in files of older versions.
   std::vector<double> index_change;
+  /// [2 x R] Kendall's tau with the ranking by points of the metric at kPointsRadii (run/points_radius.h). Empty where
+  /// the mechanism has no such metric, and in files of older versions.
+  std::vector<double> radius_tau;
   std::vector<double> background;                ///< [R x M] all varied errors zero; NaN where that was not solved
   std::vector<SolveCounts> solves;               ///< [P x M] of the samples; the background's solves are not among them
   std::vector<Failure> failures;                 ///< the first, in the order of factors, poses, samples

@@ -52,9 +52,9 @@ double largest_step(const std::vector<JointType>& types, JointType type, std::sp
 }
 
 /// NaN where an iterate is no number.
-double condition(const ParallelChain& chain, std::span<const double> displacements) {
+double condition(const ParallelChain& chain, std::span<const double> displacements, const Metric* metric) {
   const bool is_finite = std::ranges::all_of(displacements, [](double value) { return std::isfinite(value); });
-  return is_finite ? passive_condition(chain, displacements) : std::numeric_limits<double>::quiet_NaN();
+  return is_finite ? passive_condition(chain, displacements, metric) : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// By a metric: gap, angular and linear deformation.
@@ -91,7 +91,8 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
   std::vector<double> delta_mu(6 * model.chain.pairs.size());
   const std::vector<JointType> types = passive_types(model.chain);
   SolveTrace trace;
-  const std::optional<Metric> metric = model.metric(displacements);
+  const std::optional<Metric> by_points = model.metric(displacements);
+  const Metric* metric = by_points ? &*by_points : nullptr;
   trace.solver = metric ? "Gauss-Newton by the platform's metric, in plain double precision, from nominal displacements"
                         : "Gauss-Newton as published, in plain double precision, from nominal displacements";
   trace.columns = {{"change", metric ? "1" : "rad, m"},
@@ -103,11 +104,11 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
     trace.rows.insert(
         trace.rows.end(),
         {iteration.change, largest(iteration.delta_mu), largest_step(types, JointType::revolute, iteration.step),
-         largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements)});
+         largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements, metric)});
   };
   DeformationSolver solver(model.chain, options);
   const Deformation end =
-      solver.solve(frames_with(model, errors), displacements, delta_mu, metric ? &*metric : nullptr, observe);
+      solver.solve(frames_with(model, errors), displacements, delta_mu, metric, observe);
   trace.status = end.status;
   trace.iterations = end.iterations;
   trace.responses = metric ? responses_by(*metric, delta_mu) : responses_of(delta_mu);

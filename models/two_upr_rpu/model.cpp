@@ -1,6 +1,5 @@
 #include "models/two_upr_rpu/model.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -15,7 +14,8 @@
 namespace poesy::two_upr_rpu {
 namespace {
 
-/// How far a limb's platform pose may be from the wanted one, in m and rad, before its loop counts as open.
+/// How far a limb's platform pose may be from the wanted one before its loop counts as open: as a share of the chain's
+/// reach, and in rad. Loops that close leave some 1e-15.
 constexpr double kClosure = 1e-9;
 
 using Vector3 = lie::Vector3<double>;
@@ -65,10 +65,10 @@ ModelDescription describe(const chain::DeformationModel& deformation) {
   return description;
 }
 
-/// Distance between two poses: the larger of the translation (m) and the rotation angle (rad).
-double distance(const lie::Transform<double>& a, const lie::Transform<double>& b) {
+/// Whether two poses are the same, up to kClosure.
+bool are_same(const lie::Transform<double>& a, const lie::Transform<double>& b, double reach) {
   const lie::Screw<double> screw = lie::log(a * b.inverse());
-  return std::max(screw.head<3>().norm(), screw.tail<3>().norm());
+  return screw.head<3>().norm() < kClosure && screw.tail<3>().norm() < kClosure * reach;
 }
 
 class TwoUprRpu final : public Model {
@@ -99,7 +99,9 @@ class TwoUprRpu final : public Model {
   }
 
   double condition(std::span<const double> pose) const override {
-    return chain::passive_condition(deformation_.chain, joint_displacements(pose));
+    const std::vector<double> displacements = joint_displacements(pose);
+    const std::optional<chain::Metric> metric = deformation_.metric(displacements);
+    return chain::passive_condition(deformation_.chain, displacements, metric ? &*metric : nullptr);
   }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
@@ -142,7 +144,7 @@ class TwoUprRpu final : public Model {
       const chain::Limb& limb = deformation_.chain.limbs[i];
       const auto reached = chain::forward_kinematics<double>(limb, limb.home, std::span(q).subspan(4 * i, 4),
                                                              [](std::size_t, const lie::Screw<double>&) {});
-      if (!(distance(reached, wanted) < kClosure)) {
+      if (!are_same(reached, wanted, deformation_.chain.reach())) {
         return "limb " + std::to_string(i + 1) + " cannot reach the platform there";
       }
     }

@@ -19,8 +19,8 @@ constexpr double kDifference = 1e-6;
 class Follower {
  public:
   Follower(const ParallelChain& chain, std::span<const double> displacements,
-           std::span<const FrameError<double>> errors)
-      : chain_(chain), errors_(errors), all_(displacements.begin(), displacements.end()) {
+           std::span<const FrameError<double>> errors, const lie::Matrix6<double>& W)
+      : chain_(chain), errors_(errors), W_(W), all_(displacements.begin(), displacements.end()) {
     for (const Limb& limb : chain.limbs) {
       for (const Joint& joint : limb.joints) passive_.push_back(!joint.actuated);
     }
@@ -53,7 +53,7 @@ class Follower {
  private:
   struct Evaluation {
     Eigen::VectorXd delta_mu;
-    Eigen::VectorXd gradient;  ///< J^T delta_mu
+    Eigen::VectorXd gradient;  ///< J^T W delta_mu
   };
 
   void set_errors(double share) {
@@ -95,18 +95,19 @@ class Follower {
       const LimbPair& pair = chain_.pairs[n];
       const lie::Screw<double> mu = lie::log(poses[pair.k] * poses[pair.i].inverse());
       at.delta_mu.segment<6>(6 * static_cast<Eigen::Index>(n)) = mu;
+      const lie::Screw<double> weighted = W_ * mu;
       std::size_t c = 0;
       for (std::size_t limb = 0; limb < chain_.limbs.size(); ++limb) {
         const double sign = limb == pair.i ? 1.0 : limb == pair.k ? -1.0 : 0.0;
         for (std::size_t joint = 0; joint < chain_.limbs[limb].passive_joints(); ++joint, ++c) {
-          at.gradient[static_cast<Eigen::Index>(c)] += sign * columns[c].dot(mu);
+          at.gradient[static_cast<Eigen::Index>(c)] += sign * columns[c].dot(weighted);
         }
       }
     }
     return at;
   }
 
-  /// The derivative of -J^T delta_mu, by central differences.
+  /// The derivative of -J^T W delta_mu, by central differences.
   Eigen::MatrixXd derivative(const Eigen::VectorXd& q) {
     Eigen::MatrixXd m(q.size(), q.size());
     for (Eigen::Index j = 0; j < q.size(); ++j) {
@@ -135,6 +136,7 @@ class Follower {
 
   const ParallelChain& chain_;
   std::span<const FrameError<double>> errors_;
+  const lie::Matrix6<double>& W_;
   std::vector<double> all_;  ///< displacements of all joints
   std::vector<bool> passive_;
   Eigen::VectorXd nominal_;  ///< of the passive joints
@@ -144,8 +146,8 @@ class Follower {
 }  // namespace
 
 Branch follow_branch(const ParallelChain& chain, std::span<const double> displacements,
-                     std::span<const FrameError<double>> errors) {
-  return Follower(chain, displacements, errors).follow();
+                     std::span<const FrameError<double>> errors, const lie::Matrix6<double>& W) {
+  return Follower(chain, displacements, errors, W).follow();
 }
 
 }  // namespace poesy::chain

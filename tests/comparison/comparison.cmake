@@ -3,4 +3,5 @@ add_executable(newton_comparison comparison/branch.cpp comparison/newton_compari
 find_package(Threads REQUIRED)
 target_link_libraries(newton_comparison PRIVATE poesy_models poesy_random fmt::fmt Threads::Threads poesy_options)
 add_test(NAME newton_comparison COMMAND newton_comparison 20000)
-set_tests_properties(newton_comparison PROPERTIES LABELS statistical)
+add_test(NAME newton_comparison_platform COMMAND newton_comparison 20000 1 2 platform)
+set_tests_properties(newton_comparison newton_comparison_platform PROPERTIES LABELS statistical)

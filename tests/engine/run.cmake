@@ -1,7 +1,7 @@
 poesy_test(run_test LABELS determinism SOURCES engine/run/monte_carlo_test.cpp engine/run/runner_test.cpp LINKS poesy_run)
 poesy_test(analysis_test LABELS unit SOURCES engine/run/cases_test.cpp engine/run/coupling_rows_test.cpp
            engine/run/coupling_test.cpp engine/run/fidelity_test.cpp engine/run/identification_test.cpp
-           engine/run/separation_test.cpp engine/run/verdict_test.cpp LINKS poesy_run)
+           engine/run/points_radius_test.cpp engine/run/separation_test.cpp engine/run/verdict_test.cpp LINKS poesy_run)
 poesy_test(allocation_test LABELS property SOURCES engine/run/allocation_test.cpp LINKS poesy_run poesy_models)
 poesy_test(monte_carlo_sort_test LABELS regression SOURCES engine/run/monte_carlo_sort_test.cpp
            LINKS poesy_run poesy_models)

@@ -143,7 +143,7 @@ TEST(IndexChanges, DependOnTheFirstDrawsAlone) {
 }
 
 TEST(IndexChanges, TakeNoMoreThanSomePosesOfMany) {
-  for (const std::size_t poses : {std::size_t{3}, kLinearityPoses, 2 * kLinearityPoses + 5}) {
+  for (const std::size_t poses : {std::size_t{3}, kSomePoses, 2 * kSomePoses + 5}) {
     Study study = study_of(Kind::sensitivity, 1000);
     study.poses.count = poses;
     const Prepared prepared(study);
@@ -153,7 +153,7 @@ TEST(IndexChanges, TakeNoMoreThanSomePosesOfMany) {
       return linear(error, status);
     });
     ASSERT_TRUE(index_changes(prepared.plan, model, {}));
-    EXPECT_EQ(solves, 2 * std::min(poses, kLinearityPoses) * 4 * kLinearityDraws);
+    EXPECT_EQ(solves, 2 * std::min(poses, kSomePoses) * 4 * kLinearityDraws);
     EXPECT_EQ(static_cast<double>(solves), index_change_solves(prepared.plan));
   }
 }

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "engine/base/index.h"
+
+namespace poesy {
+
+/// Poses at which a study is looked at a second time, at the most.
+inline constexpr std::size_t kSomePoses = 32;
+
+/// How many those are, of a study with so many.
+constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses, poses); }
+
+/// The n-th of them: evenly spaced over the order of the study's poses. Precondition: n < some_poses(poses).
+constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
+
+}  // namespace poesy
