@@ -98,8 +98,8 @@ std::vector<double> radius_rank_correlations(const Study& study, const Plan& pla
     const std::vector<double> others = Effects(plan, *build_model(*mechanism)).all();
     for (std::size_t r = 0; r < own->description().responses.size(); ++r) {
       const std::size_t from = r * plan.slots();
-      correlations.push_back(kendall_tau(std::span(effects).subspan(from, plan.slots()),
-                                         std::span(others).subspan(from, plan.slots())));
+      correlations.push_back(
+          kendall_tau(std::span(effects).subspan(from, plan.slots()), std::span(others).subspan(from, plan.slots())));
     }
   }
   return correlations;

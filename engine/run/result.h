@@ -119,11 +119,11 @@ struct SensitivityResult {
   /// [2 x R] Kendall's tau with the ranking by points of the metric at kPointsRadii (run/points_radius.h). Empty where
   /// the mechanism has no such metric, and in files of older versions.
   std::vector<double> radius_tau;
-  std::vector<double> background;                ///< [R x M] all varied errors zero; NaN where that was not solved
-  std::vector<SolveCounts> solves;               ///< [P x M] of the samples; the background's solves are not among them
-  std::vector<Failure> failures;                 ///< the first, in the order of factors, poses, samples
-  std::optional<SeparationResult> separation;    ///< where the model separates its errors
-  std::optional<FidelityResult> fidelity;        ///< where the study compares two fidelities
+  std::vector<double> background;              ///< [R x M] all varied errors zero; NaN where that was not solved
+  std::vector<SolveCounts> solves;             ///< [P x M] of the samples; the background's solves are not among them
+  std::vector<Failure> failures;               ///< the first, in the order of factors, poses, samples
+  std::optional<SeparationResult> separation;  ///< where the model separates its errors
+  std::optional<FidelityResult> fidelity;      ///< where the study compares two fidelities
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
   /// Where it has a fixed number of samples; not in files of older versions.

@@ -107,8 +107,7 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
          largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements, metric)});
   };
   DeformationSolver solver(model.chain, options);
-  const Deformation end =
-      solver.solve(frames_with(model, errors), displacements, delta_mu, metric, observe);
+  const Deformation end = solver.solve(frames_with(model, errors), displacements, delta_mu, metric, observe);
   trace.status = end.status;
   trace.iterations = end.iterations;
   trace.responses = metric ? responses_by(*metric, delta_mu) : responses_of(delta_mu);

@@ -17,7 +17,8 @@ lie::Screw<double> in_reaches(const lie::Screw<double>& spatial, double reach) {
   return scaled;
 }
 
-/// J of Eq. 43 with column_of each passive joint's screw. A motion of limb i enters pair (k, i) with +, one of limb k with -.
+/// J of Eq. 43 with column_of each passive joint's screw. A motion of limb i enters pair (k, i) with +, one of limb k
+/// with -.
 template <class ColumnOf>
 Eigen::MatrixXd passive_jacobian(const ParallelChain& chain, std::span<const double> displacements,
                                  ColumnOf&& column_of) {
@@ -65,7 +66,7 @@ Eigen::MatrixXd jacobian_by(const Metric& metric, const ParallelChain& chain, st
 double passive_condition(const ParallelChain& chain, std::span<const double> displacements, const Metric* metric) {
   POESY_EXPECTS(displacements.size() == chain.joints());
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(metric == nullptr ? jacobian_in_reaches(chain, displacements)
-                                                               : jacobian_by(*metric, chain, displacements));
+                                                                : jacobian_by(*metric, chain, displacements));
   const auto& values = svd.singularValues();
   const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
   const double largest = values[0];

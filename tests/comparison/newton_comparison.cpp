@@ -244,7 +244,8 @@ void list_differences(const Model& model, const PairSource& source, const std::v
 }
 
 /// What became of the branch from zero error in some of these cases, evenly chosen.
-void follow(const Model& model, const PairSource& source, const std::vector<Case>& cases, const char* what, Root Case::*root) {
+void follow(const Model& model, const PairSource& source, const std::vector<Case>& cases, const char* what,
+            Root Case::*root) {
   if (cases.empty()) return;
   const std::size_t followed = std::min(kFollowed, cases.size());
   std::size_t on = 0, off = 0, ended = 0;
@@ -330,8 +331,8 @@ int run(std::size_t pairs, std::uint64_t seed, std::size_t threads, const std::s
   const Findings found = compare(*model, source, groups, threads);
   Counts total = found.single;
   total.add(found.combined);
-  fmt::print("Newton against Gauss-Newton, {} metric, seed {}, z in [-0.30, -0.18] m, |beta| <= 0.6, |gamma| <= 1.0\n", metric,
-             seed);
+  fmt::print("Newton against Gauss-Newton, {} metric, seed {}, z in [-0.30, -0.18] m, |beta| <= 0.6, |gamma| <= 1.0\n",
+             metric, seed);
   print_counts(found, total);
   list_differences(*model, source, found.differing);
   fmt::print("\n");
@@ -352,7 +353,8 @@ int main(int argc, char** argv) {
     return poesy::comparison::run(argument(1, 2000000), argument(2, 1), argument(3, processors),
                                   argc > 4 ? argv[4] : "published");
   } catch (const std::exception& problem) {
-    fmt::print(stderr, "newton_comparison: {}; usage: newton_comparison [PAIRS [SEED [THREADS [METRIC]]]]\n", problem.what());
+    fmt::print(stderr, "newton_comparison: {}; usage: newton_comparison [PAIRS [SEED [THREADS [METRIC]]]]\n",
+               problem.what());
     return 2;
   }
 }

@@ -79,8 +79,8 @@ std::vector<double> correlations(const CatalogEntry& entry) {
   return radius_rank_correlations(study, Prepared(study).plan);
 }
 
-// With own = 0.7 the effects are 1, 0.7, 0.98; at half 1, 0.35, 0.245; at twice 1, 1.4, 3.92. At half one of three pairs
-// changes its order, at twice two do.
+// With own = 0.7 the effects are 1, 0.7, 0.98; at half 1, 0.35, 0.245; at twice 1, 1.4, 3.92. At half one of three
+// pairs changes its order, at twice two do.
 TEST(PointsRadius, IsComparedByTheOrderOfEffects) {
   const std::vector<double> tau = correlations(radius_entry(0.7));
   ASSERT_EQ(tau.size(), 4U);
