@@ -164,7 +164,8 @@ LimitTolerances within(const TolerancesOptions& options, const StoredResult& res
   }
   std::vector<Dimension> dimensions;
   for (const NamedUnit& factor : result.factors) dimensions.push_back(dimension_of(factor.unit));
-  return limit_tolerances(study, response, one_size_for_each(result.factor_sigma, dimensions), limit);
+  return limit_tolerances(study, response, one_size_for_each(result.factor_sigma, dimensions), limit,
+                          largest_tolerances(result, registry()));
 }
 
 /// result.h5 gives result_tolerances in the current folder.
@@ -185,8 +186,8 @@ std::string write_files(const TolerancesOptions& options, const StoredResult& re
       const std::string outcome = std::filesystem::path(study).replace_extension(".h5").string();
       commands += "test with: " + shell_command({"poesy", "run", study, "-o", outcome}) + "\n";
     }
-    for (const std::string& error : written.cut) {
-      commands += "  these studies cut the tolerance of " + error + ", a quarter of the part that it is an error of\n";
+    for (const std::string& error : written.at_largest) {
+      commands += "  the tolerance of " + error + ", a quarter of the part that it is an error of, and no more\n";
     }
   }
   const std::string table = write_tolerances(folder, result, found);

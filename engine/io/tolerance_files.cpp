@@ -47,17 +47,26 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   return study;
 }
 
-/// Names of the errors whose tolerance was cut go to `cut`.
-void set_tolerances(Study& study, const Model& model, std::span<const double> tolerances,
-                    std::vector<std::string>& cut) {
+/// A quarter of the part that each of the study's errors is an error of, [P].
+std::vector<double> quarters_of_parts(const Study& study) {
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  std::vector<double> largest;
+  for (const FactorIndex factor : study.analysis.factors) {
+    largest.push_back(kShareOfPart * model->error_bound(factor).size);
+  }
+  return largest;
+}
+
+/// Errors whose tolerance is as large as it may be go to `at_largest`.
+void set_tolerances(Study& study, std::span<const double> largest, std::span<const double> tolerances,
+                    std::vector<std::string>& at_largest) {
   for (std::size_t p = 0; p < tolerances.size(); ++p) {
     const FactorIndex factor = study.analysis.factors[p];
-    const double largest = kShareOfPart * model.error_bound(factor).size;
-    study.errors.by_factor[factor.value] = Distribution::normal(std::min(tolerances[p], largest));
-    if (tolerances[p] <= largest) continue;
+    study.errors.by_factor[factor.value] = Distribution::normal(std::min(tolerances[p], largest[p]));
+    if (tolerances[p] < largest[p]) continue;
     const Factor& named = study.model().factors[factor.value];
-    const std::string text = named.name + " to " + readable_text({largest, named.dimension});
-    if (std::ranges::find(cut, text) == cut.end()) cut.push_back(text);
+    const std::string text = named.name + " is " + readable_text({largest[p], named.dimension});
+    if (std::ranges::find(at_largest, text) == at_largest.end()) at_largest.push_back(text);
   }
 }
 
@@ -77,6 +86,10 @@ std::string write_study(const std::string& folder, const std::string& name, cons
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances) {
   if (!tolerances.limit) return {tolerances.all.equal_effect};
   return {tolerances.limit->equal_effect, tolerances.limit->equal_tolerance};
+}
+
+std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog) {
+  return quarters_of_parts(monte_carlo_study(result, catalog));
 }
 
 void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
@@ -102,12 +115,12 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
   const std::string limit = response.unit == "1"
                                 ? shortest(tolerances.limit->limit)
                                 : readable_text({tolerances.limit->limit, display(response).dimension});
-  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  const std::vector<double> largest = quarters_of_parts(study);
   Confirmation written;
   const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
     study.title = "Tests " + words + " against a limit of " + limit + " on the root mean square of " + response.name;
     study.errors = as_studied;
-    set_tolerances(study, *model, values, written.cut);
+    set_tolerances(study, largest, values, written.at_largest);
     written.paths.push_back(write_study(folder, name, study, tolerances.caveat));
   };
   add(kEqualEffect, "tolerances of equal effect", tolerances.limit->equal_effect);

@@ -24,6 +24,10 @@ struct ResponseTolerances {
 /// equal effect. Refers to the tolerances.
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
+/// The largest tolerance that makes sense for each error of a sensitivity result, [P], SI: a quarter of the part that
+/// it is an error of (Model::error_bound). Throws InputError when the stored study cannot be read with this catalog.
+std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog);
+
 /// Whether a sensitivity result holds what tolerances are made of; one of an older version may not.
 bool has_tolerances(const StoredResult& result);
 
@@ -47,17 +51,16 @@ void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, con
 
 /// The studies that test tolerances.
 struct Confirmation {
-  std::vector<std::string> paths;  ///< the studies that were written
-  std::vector<std::string> cut;    ///< "delta_1_0_y to 15 mm", each once
+  std::vector<std::string> paths;       ///< the studies that were written
+  std::vector<std::string> at_largest;  ///< "delta_1_0_y is 15 mm", each once
 };
 
 /// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
 /// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. Poses that
 /// came from a file are written beside them as confirm_poses.csv. Each study states its limit ([analysis.limits],
 /// judged by the root mean square), so that running it says PASS or FAIL, and begins with the caveat as a comment. A
-/// tolerance of a quarter of the part that it is an error of (Model::error_bound), or more, makes no sense: the studies
-/// take that quarter. Precondition: tolerances.limit. Throws FileError; InputError when the stored study cannot be read
-/// with this catalog.
+/// tolerance above largest_tolerances() is cut to it. Precondition: tolerances.limit. Throws FileError; InputError when
+/// the stored study cannot be read with this catalog.
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog);
 

@@ -92,11 +92,25 @@ std::vector<double> mean_square_shares(const MeanSquare& response, std::span<con
   return shares;
 }
 
-std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit) {
+std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit,
+                                      std::span<const double> largest) {
   POESY_EXPECTS(!(square(limit) <= response.background));
-  const double multiple = std::sqrt((square(limit) - response.background) / response.growth(proportions));
   std::vector<double> tolerances(proportions.begin(), proportions.end());
-  for (double& tolerance : tolerances) tolerance *= multiple;
+  std::vector<double> shared = tolerances;  // 0 for errors at their largest
+  double left = square(limit) - response.background;
+  for (bool again = true; again;) {
+    const double multiple = std::sqrt(left / response.growth(shared));
+    again = false;
+    for (std::size_t p = 0; p < tolerances.size(); ++p) {
+      if (shared[p] == 0.0) continue;
+      tolerances[p] = multiple * proportions[p];
+      if (response.effects[p] == 0.0 || !(tolerances[p] > largest[p])) continue;
+      tolerances[p] = largest[p];
+      shared[p] = 0.0;
+      left -= response.effects[p] * square(largest[p]);
+      again = true;
+    }
+  }
   return tolerances;
 }
 
@@ -115,9 +129,10 @@ std::vector<double> one_size_for_each(std::span<const double> sigma, std::span<c
 }
 
 LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response,
-                                 std::span<const double> one_size, double limit) {
-  LimitTolerances found{limit, tolerances_within(response, inverse(study.index), limit),
-                        tolerances_within(response, one_size, limit)};
+                                 std::span<const double> one_size, double limit, std::span<const double> largest) {
+  const std::vector<double> unbounded(one_size.size(), kInfinity);
+  LimitTolerances found{limit, tolerances_within(response, inverse(study.index), limit, largest),
+                        tolerances_within(response, one_size, limit, unbounded)};
   for (std::size_t p = 0; p < found.equal_effect.size(); ++p) {
     if (std::isinf(found.equal_effect[p])) found.equal_effect[p] = found.equal_tolerance[p];
   }

@@ -57,9 +57,11 @@ MeanSquare mean_square(const ResponseStudy& study);
 /// mean square. NaN throughout where an effect is not known or no error has one.
 std::vector<double> mean_square_shares(const MeanSquare& response, std::span<const double> sigma);
 
-/// The multiple of `proportions` [P] whose predicted mean square is limit^2; proportions that are infinite stay so. NaN
-/// where the prediction is not known. Precondition: limit^2 > background.
-std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit);
+/// The multiple of `proportions` [P] whose predicted mean square is limit^2; proportions that are infinite stay so. No
+/// tolerance of an error with effect is larger than largest [P] says: what such an error leaves of the limit the others
+/// share. NaN where the prediction is not known. Precondition: limit^2 > background.
+std::vector<double> tolerances_within(const MeanSquare& response, std::span<const double> proportions, double limit,
+                                      std::span<const double> largest);
 
 /// Tolerances of all errors for one response.
 struct Tolerances {
@@ -79,14 +81,15 @@ Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceE
 /// Tolerances that keep the root mean square of a response over samples and poses at a limit, and so its mean below.
 struct LimitTolerances {
   double limit = 0.0;  ///< on the response, SI
-  /// [P] every error has the same effect: t_p = k / mu_p. One without effect on its own may act together with others,
-  /// so it has its equal tolerance.
+  /// [P] every error has the same effect: t_p = k / mu_p, up to the largest tolerance that it may have. One without
+  /// effect on its own may act together with others, so it has its equal tolerance.
   std::vector<double> equal_effect;
   std::vector<double> equal_tolerance;  ///< [P] one number for all lengths, one for all angles
 };
 
-/// one_size: [P] the proportions of equal_tolerance. Precondition: limit^2 > response.background.
+/// one_size: [P] the proportions of equal_tolerance; largest: [P] that equal_effect may be. Precondition: limit^2 >
+/// response.background.
 LimitTolerances limit_tolerances(const ResponseStudy& study, const MeanSquare& response,
-                                 std::span<const double> one_size, double limit);
+                                 std::span<const double> one_size, double limit, std::span<const double> largest);
 
 }  // namespace poesy

@@ -56,7 +56,7 @@ ModelDescription describe(const chain::DeformationModel& deformation) {
   description.deformation = chain::deformation_measure(deformation);
   description.details = chain::deformation_details(deformation.chain);
   description.joints = chain::joint_displacement_names(deformation.chain);
-  if (by_platform) description.fidelities = {"exact", "first-order"};
+  description.fidelities = {"exact", "first-order"};
   description.pose_lower = {-0.30, -0.5, -0.6};
   description.pose_upper = {-0.18, 0.5, 0.6};
   description.workspace_note =
@@ -172,8 +172,9 @@ Geometry checked_geometry(std::span<const double> values) {
   return geometry;
 }
 
-std::unique_ptr<Model> build_as_published(std::span<const double> values, std::size_t /*fidelity*/) {
-  return std::make_unique<TwoUprRpu>(checked_geometry(values), std::vector<Vector3>(), chain::Fidelity::exact);
+std::unique_ptr<Model> build_as_published(std::span<const double> values, std::size_t fidelity) {
+  return std::make_unique<TwoUprRpu>(checked_geometry(values), std::vector<Vector3>(),
+                                     static_cast<chain::Fidelity>(fidelity));
 }
 
 std::unique_ptr<Model> build_by_platform(std::span<const double> values, std::size_t fidelity) {

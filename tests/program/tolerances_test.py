@@ -160,7 +160,7 @@ class Tolerances(ProgramTest):
         self.write("whole.toml", template)
         self.succeeds("run", "whole.toml", "-o", "w.h5", "--quiet")
         printed = self.succeeds("tolerances", "w.h5", "--response", "angular_deformation", "--limit", "20 deg", "-d", "t")
-        self.assertIn("cut the tolerance of delta_1_0_y to 15 mm", printed)
+        self.assertIn("the tolerance of delta_1_0_y is 15 mm, a quarter", printed)
         for name in ("equal_effect", "equal_tolerance"):
             self.succeeds("check", f"t/confirm_{name}.toml")
 

@@ -88,7 +88,8 @@ TEST_F(FidelityFile, ConfirmationOfItsTolerancesIsAtTheFirstFidelity) {
   const StoredResult stored = read_result(path_);
   const ResponseStudy study = response_study(stored.sensitivity, stored.factor_sigma, 1);
   ResponseTolerances found{1, tolerances(study, stored.tolerance_reference[1]), std::nullopt};
-  found.limit = limit_tolerances(study, found.all.mean_square, stored.factor_sigma, 10.0);
+  found.limit =
+      limit_tolerances(study, found.all.mean_square, stored.factor_sigma, 10.0, largest_tolerances(stored, catalog_));
   for (const std::string& path : write_confirmation(folder_.file("t"), stored, found, catalog_).paths) {
     const Study confirmation = read_study(path, catalog_, StudyUse::run);
     EXPECT_EQ(confirmation.mechanism.fidelity, 0u);

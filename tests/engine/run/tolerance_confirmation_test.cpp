@@ -78,7 +78,8 @@ TEST(ToleranceConfirmation, MonteCarloConfirmsTheLimit) {
     Found found(study_with(background));
     const MeanSquare prediction = mean_square(found.response());
     const double limit = 3e-4;
-    const LimitTolerances tolerances = limit_tolerances(found.response(), prediction, found.sigma, limit);
+    const LimitTolerances tolerances =
+        limit_tolerances(found.response(), prediction, found.sigma, limit, std::vector(found.sigma.size(), HUGE_VAL));
     for (const auto* chosen : {&tolerances.equal_effect, &tolerances.equal_tolerance}) {
       Study confirmation = found.study;
       confirmation.analysis.kind = Analysis::Kind::monte_carlo;

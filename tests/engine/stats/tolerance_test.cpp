@@ -148,11 +148,13 @@ TEST(EqualTolerances, AreInTheProportionOfTheMedians) {
   EXPECT_EQ(one_size_for_each(std::vector{2.0}, std::vector{kDeg}), std::vector{2.0});
 }
 
+const std::vector<double> kUnbounded(3, kInfinity);
+
 TEST(LimitTolerances, ReachTheLimitExactly) {
   const LinearResponse response;
   const MeanSquare prediction = mean_square(response.study());
   for (const double limit : {4e-4, 1e-3, 0.7}) {
-    const LimitTolerances found = limit_tolerances(response.study(), prediction, response.sigma, limit);
+    const LimitTolerances found = limit_tolerances(response.study(), prediction, response.sigma, limit, kUnbounded);
     EXPECT_NEAR(response.rms(found.equal_effect), limit, 1e-12 * limit);
     EXPECT_NEAR(response.rms(found.equal_tolerance), limit, 1e-12 * limit);
   }
@@ -161,7 +163,8 @@ TEST(LimitTolerances, ReachTheLimitExactly) {
 TEST(LimitTolerances, KeepTheirProportions) {
   const LinearResponse response;
   const std::vector<double> one_size{3.0, 5.0, 5.0};
-  const LimitTolerances found = limit_tolerances(response.study(), mean_square(response.study()), one_size, 1e-3);
+  const LimitTolerances found =
+      limit_tolerances(response.study(), mean_square(response.study()), one_size, 1e-3, kUnbounded);
   EXPECT_DOUBLE_EQ(found.equal_effect[0] * response.index[0], found.equal_effect[1] * response.index[1]);
   EXPECT_EQ(found.equal_effect[2], found.equal_tolerance[2]);
   for (std::size_t p = 1; p < 3; ++p) {
@@ -169,12 +172,36 @@ TEST(LimitTolerances, KeepTheirProportions) {
   }
 }
 
+// Which of both has the larger one by itself is all the same: the other takes what it leaves.
+TEST(LimitTolerances, AreNoLargerThanTheyMayBe) {
+  const LinearResponse response;
+  const MeanSquare prediction = mean_square(response.study());
+  constexpr double kLimit = 1e-3;
+  const auto within = [&](const std::vector<double>& largest) {
+    return limit_tolerances(response.study(), prediction, response.sigma, kLimit, largest).equal_effect;
+  };
+  const std::vector<double> free = within(kUnbounded);
+  for (std::size_t p = 0; p < 2; ++p) {
+    std::vector<double> largest = kUnbounded;
+    largest[p] = 0.5 * free[p];
+    const std::vector<double> found = within(largest);
+    EXPECT_EQ(found[p], largest[p]);
+    EXPECT_GT(found[1 - p], free[1 - p]);
+    EXPECT_NEAR(response.rms(found), kLimit, 1e-12 * kLimit);
+  }
+  const std::vector<double> small{0.5 * free[0], 0.5 * free[1], kUnbounded[2]};
+  const std::vector<double> found = within(small);
+  EXPECT_EQ(found[0], small[0]);
+  EXPECT_EQ(found[1], small[1]);
+  EXPECT_LT(response.rms(found), kLimit);
+}
+
 TEST(LimitTolerances, VanishAsTheLimitNearsTheBackground) {
   LinearResponse response;
   response.index[2] = 0.0;
   const MeanSquare prediction = mean_square(response.study());
   const double limit = std::sqrt(prediction.background) * (1.0 + 1e-10);
-  const LimitTolerances found = limit_tolerances(response.study(), prediction, response.sigma, limit);
+  const LimitTolerances found = limit_tolerances(response.study(), prediction, response.sigma, limit, kUnbounded);
   EXPECT_GT(found.equal_effect[0], 0.0);
   EXPECT_LT(found.equal_effect[0], 1e-7);
 }
