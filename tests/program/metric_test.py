@@ -112,6 +112,47 @@ class Metric(ProgramTest):
             self.assertEqual(one.attrs["content_sha256"], other.attrs["content_sha256"])
             self.assertIn("deformation_max", one["responses/name"].asstr()[:])
 
+    def content_hash(self, name):
+        with h5py.File(self.folder / name) as file:
+            return file.attrs["content_sha256"]
+
+    def test_shards_have_the_bits_of_one_run(self):
+        text = study(SENSITIVITY.format(700), 1, 9, BACKGROUND, 'points = [["1 mm", "0 m", "0 m"], ["0 m", "1 mm", "0 m"], ["0 m", "0 m", "0 m"]]')
+        self.result("whole", text).close()
+        shards = [f"s{n}.h5" for n in (1, 2, 3)]
+        for n, shard in enumerate(shards, 1):
+            self.succeeds("run", "whole.toml", "--shard", f"{n}/3", "--threads", n, "-o", shard, "--quiet")
+        self.succeeds("merge", *shards, "-o", "all.h5")
+        self.assertEqual(self.content_hash("all.h5"), self.content_hash("whole.h5"))
+        for what, old, new in (("metric", 'metric = "platform"', 'metric = "published"'), ("points", '"1 mm", "0 m"', '"2 mm", "0 m"')):
+            other = text.replace(old, new, 1)
+            if what == "metric":
+                other = "".join(line for line in other.splitlines(True) if not line.startswith("points"))
+            self.write("other.toml", other)
+            self.succeeds("run", "other.toml", "--shard", "2/3", "-o", f"{what}.h5", "--quiet")
+            done = self.poesy("merge", "s1.h5", f"{what}.h5", "s3.h5", "-o", "mixed.h5")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"{what}.h5: is of another study", done.stderr.decode())
+
+    def test_a_sample_is_replayed_by_its_metric(self):
+        text = study(SENSITIVITY.format(2), 1, 3, BACKGROUND).replace("[run]", 'method = "gauss-newton"\nmax_iterations = 3\n[run]')
+        with self.result("few", text) as file:
+            self.assertGreater(np.sum(file["solver/not_converged"][:]), 0)
+        shown = self.succeeds("show", "few.h5")
+        command = next(line for line in shown.splitlines() if line.startswith("replay it: ")).split(maxsplit=4)[4]
+        printed = self.succeeds("replay", *command.split())
+        self.assertIn("Gauss-Newton by the platform's metric", printed)
+        self.assertIn("status: the same", printed)
+        self.assertIn("gap", printed)
+
+    def test_both_fidelities_say_which_errors_are_linear(self):
+        for metric, fewest, most in (("platform", 0, 0), ("published", 10, 25)):
+            text = study(SENSITIVITY.format(400), 0.1, 6).replace('"platform"', f'"{metric}"')
+            text = text.replace('model = "2upr-rpu"', 'model = "2upr-rpu"\nfidelity = "both"')
+            with self.result(metric, text) as file:
+                not_linear = 25 - np.sum(file["fidelity/linear"][:])
+            self.assertTrue(fewest <= not_linear <= most, not_linear)
+
     def test_points_are_checked(self):
         def refused(points, *parts):
             text = study(SENSITIVITY.format(10), 1, 2, BACKGROUND, f"points = {points}")

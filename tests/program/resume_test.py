@@ -156,6 +156,7 @@ class Resume(ResumptionTest):
             ('"delta_1_1_y", ', "", ["delta_1_1_y"]),
             ('kind = "sensitivity"', 'kind = "monte-carlo"', ["sensitivity", "monte-carlo"]),
             ("gauss-newton", "newton", ["gauss-newton"]),
+            ("[solver]", '[solver]\nmetric = "platform"', ["metric", "published", "platform"]),
         ]:
             with self.subTest(new):
                 self.write("study.toml", SENSITIVITY.replace(old, new))
