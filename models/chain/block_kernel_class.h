@@ -89,14 +89,17 @@ struct AnyShape {
 /// Newton converges quadratically: a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is carried along it to first order instead of being evaluated again.
 ///
-/// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. Radians and metres do
-/// not meet, so that Newton needs no passes: each batch is iterated until its last lane is done, with Gauss-Newton's
-/// step where Newton's is not safe. The length s of a step is the largest distance that one joint's part of it moves
-/// the platform's points, over the reach. Newton's matrix is made in every third round and used in three:
-///   from a fit   a step with N at nominal displacements comes first; where s < 10 tolerance it is the last one;
-///   elsewhere    from a start in proportion to the errors.
-/// A step is the last one where s < sqrt(tolerance) / 100 with a new matrix, or where s^2 over the step before is below
-/// tolerance / 10.
+/// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. The length s of a
+/// step is the largest distance that one joint's part of it moves the platform's points, over the reach. Nearly every
+/// sample is solved by the first pass, so that a batch of samples is iterated until its last lane is done:
+///   direct   Newton from a start in proportion to the errors, or from a fit, where a step with N at nominal
+///            displacements comes first and is the last one if s < 10 tolerance. Newton's matrix is made in every third
+///            round and used in three; a lane is refused where one is not safe, and after 12 rounds;
+///   follow   as above, Newton as soon as its s < 0.01, from the start of Gauss-Newton; where its s < tolerance,
+///            Gauss-Newton has found a root by itself;
+///   rescue   as above, with 0.5 of the reach for 0.5 (rad, m).
+/// A Newton step is the last one where s < sqrt(tolerance) / 100, but at least 1e-10, with a new matrix, or where s^2
+/// over the step before is below tolerance / 10.
 template <class T, class Shape, class Measure>
 class BlockKernel {
  public:
@@ -114,6 +117,7 @@ class BlockKernel {
   static constexpr double kSafePivot = 1e-5;
   static constexpr double kFollowStep = 1e-3;
   static constexpr double kNearStep = 2e-3;
+  static constexpr double kFollowLength = 1e-2;
   static constexpr double kRestingStep = 1e-12;
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
@@ -173,7 +177,10 @@ class BlockKernel {
   void judge(std::size_t at);
   template <KernelPass pass>
   std::size_t run(std::size_t count, std::uint32_t rounds);
-  void load_all();
+  void load_all(std::size_t first = 0);
+  void map_lanes(const KernelMap& map, const double* values, std::size_t stride);
+  template <std::size_t rows>
+  void map_rows(const KernelMap& map, std::size_t first, const double* values, std::size_t stride);
   void begin(std::size_t count, bool predicted);
   void predict(std::size_t at);
   void pad(std::size_t count);
@@ -190,18 +197,21 @@ class BlockKernel {
   void move(std::size_t from, std::size_t to);
 
   // block_kernel_metric.h: solves by a metric.
-  template <bool newton>
   void solve_by_metric();
-  template <bool newton>
-  void iterate(std::size_t at);
+  template <KernelPass pass>
+  unsigned iterate(std::size_t at, unsigned open, std::uint32_t rounds);
+  template <KernelPass pass>
+  void start(std::size_t at);
   unsigned finish_fitted(std::size_t at, unsigned open);
   Verdict newton_by_metric(std::size_t at, std::uint32_t round, T& before, typename T::MaskType& safe);
+  template <KernelPass pass>
+  Verdict careful_by_metric(std::size_t at);
   Verdict gauss_newton_by_metric(std::size_t at, std::uint32_t round);
   void judge_by_metric(std::size_t at);
   Screw weighted(const Screw& screw) const;
   void weigh();
   template <class Diagonal>
-  T step_length(Diagonal diagonal) const;
+  T step_length(const T* x, Diagonal diagonal) const;
 
   // block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;

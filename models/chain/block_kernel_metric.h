@@ -5,49 +5,77 @@
 namespace poesy::chain {
 
 template <class T, class Shape, class Measure>
-template <bool newton>
 void BlockKernel<T, Shape, Measure>::solve_by_metric() {
+  using enum KernelPass;
   load_all();
+  const std::uint32_t cap = options_.max_iterations;
   for (std::size_t at = 0; at < samples_.count; at += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) flat_[at + lane] = 0.0;
-    if constexpr (newton) {
-      predict(at);
-    } else {
-      for (std::size_t j = 0; j < joints(); ++j) T(chain_.joint[j].nominal).store(q_ + j * capacity_ + at);
+    const std::size_t count = samples_.count - at;
+    const unsigned lanes = count < kLanes ? (1u << count) - 1u : (1u << kLanes) - 1u;
+    spent_ = 0;
+    if (options_.method == KernelMethod::gauss_newton) {
+      iterate<published>(at, lanes, cap);
+      continue;
     }
+    unsigned left = iterate<direct>(at, lanes, cap < kDirectIterations ? cap : kDirectIterations);
+    if (options_.method == KernelMethod::newton_direct) continue;
+    if (left != 0) left = iterate<follow>(at, left, kFollowFactor * cap);
+    if (left != 0) iterate<rescue>(at, left, cap);
   }
-  for (std::size_t at = 0; at < samples_.count; at += kLanes) iterate<newton>(at);
 }
 
-/// A batch until its last lane is done. Those that are done earlier go on, and what becomes of them is not kept.
+/// Iterates these lanes of a batch, each until it is done; the others go on beside them, and what becomes of them is
+/// not kept. Finishes lanes that are solved, the last pass all of them; returns those that are left.
 template <class T, class Shape, class Measure>
-template <bool newton>
-void BlockKernel<T, Shape, Measure>::iterate(std::size_t at) {
-  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(q_ + j * capacity_ + at);
-  vary_segments(at);
-  const std::size_t left = samples_.count - at;
-  unsigned open = left < kLanes ? (1u << left) - 1u : (1u << kLanes) - 1u;
-  if (newton && start_.fits > 0 && start_.inverse != nullptr) open = finish_fitted(at, open);
+template <KernelPass pass>
+unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, std::uint32_t rounds) {
+  constexpr bool newton = pass != KernelPass::published;
+  constexpr bool last_pass = !newton || pass == KernelPass::rescue;
+  start<pass>(at);
+  if (pass == KernelPass::direct && start_.fits > 0 && start_.inverse != nullptr) open = finish_fitted(at, open);
   // Gauss-Newton looks at the residual after the last step, too.
-  const std::uint32_t rounds = options_.max_iterations + (newton ? 0 : 1);
+  const std::uint32_t evaluations = newton ? rounds : rounds + 1;
+  unsigned left = 0;
   T before(0.0);
   auto safe = T(1.0) < T(0.0);
   for (std::uint32_t round = 0; open != 0; ++round) {
+    const bool last_round = round + 1 == evaluations;
     residuals();
     gradient();
     Verdict verdict;
-    if constexpr (newton) {
+    if constexpr (!newton) {
+      verdict = gauss_newton_by_metric(at, round);
+    } else if constexpr (pass == KernelPass::direct) {
       verdict = newton_by_metric(at, round, before, safe);
     } else {
-      verdict = gauss_newton_by_metric(at, round);
+      verdict = careful_by_metric<pass>(at);
     }
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const bool is_open = (open >> lane & 1u) != 0;
-      if (!is_open || (!verdict.ended(lane) && round + 1 < rounds)) continue;
-      finish(at, lane, verdict.status(lane), round + (newton ? 1 : 0));
-      open &= ~(1u << lane);
+      const unsigned bit = 1u << lane;
+      if ((open & bit) == 0 || (!verdict.ended(lane) && !last_round)) continue;
+      open &= ~bit;
+      if (last_pass || verdict.solved(lane)) {
+        finish(at, lane, verdict.status(lane), spent_ + round + (newton ? 1 : 0));
+      } else {
+        left |= bit;
+      }
     }
   }
+  spent_ += rounds;
+  return left;
+}
+
+/// From fits, or in proportion to the errors, or as Gauss-Newton does, from nominal displacements.
+template <class T, class Shape, class Measure>
+template <KernelPass pass>
+void BlockKernel<T, Shape, Measure>::start(std::size_t at) {
+  if constexpr (pass == KernelPass::direct) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) flat_[at + lane] = 0.0;
+    predict(at);
+  } else {
+    for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T(chain_.joint[j].nominal);
+  }
+  vary_segments(at);
 }
 
 /// A fit is mostly exact to rounding: a step with the matrix at nominal displacements shows it. Finishes lanes where it
@@ -61,7 +89,7 @@ unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned 
     for (std::size_t b = 0; b < joints(); ++b) sum = madd(T(start_.inverse[a * joints() + b]), f_[b], sum);
     step_[a] = sum;
   }
-  const T length = step_length([&](std::size_t a) { return T(start_.diagonal[a]); });
+  const T length = step_length(step_, [&](std::size_t a) { return T(start_.diagonal[a]); });
   const auto there = finite_residual() & (length < T(10.0 * options_.tolerance));
   if (!any(there)) return open;
   carry_residual(step_, there);
@@ -73,35 +101,69 @@ unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned 
   return open & ~ended;
 }
 
-/// One round. before: the length of the last step; safe: where the matrix at hand is. Both are of this batch.
+/// One round of the first pass. before: the length of the last step; safe: where the matrix at hand is. Both are of
+/// this batch.
 template <class T, class Shape, class Measure>
 auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint32_t round, T& before,
                                                       typename T::MaskType& safe) -> Verdict {
-  Verdict verdict;
-  const auto finite = finite_residual();
   const bool is_new = round % kMatrixRounds == 0;
   if (is_new) {
     weigh();
     gauss_newton_matrix();
     newton_matrix();
-    safe = newton_step(step_);
-    if (any(!safe)) {
-      verdict.singular = bits((!safe) & (!gauss_newton_step(gauss_newton_)));
-      for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], gauss_newton_[j]);
-    }
+    safe = contracts();
+    safe = safe & newton_step(step_);
   } else {
     newton_step_again(step_);
-    for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], T(0.0));
   }
-  const T length = step_length([&](std::size_t a) { return n_[a * joints() + a]; });
+  const T length = step_length(step_, [&](std::size_t a) { return n_[a * joints() + a]; });
   auto small = length * length < T(0.1 * options_.tolerance) * before;
   if (is_new) small = small | (length < T(options_.last_step));
-  const auto converged = safe & finite & small;
+  const auto converged = safe & finite_residual() & small;
   before = length;
+  Verdict verdict;
   verdict.converged = bits(converged);
-  verdict.non_finite = bits(!finite);
+  verdict.refused = bits(!(safe & finite_residual()));
   take_step(at, step_);
   if (any(converged)) carry_residual(step_, converged);
+  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
+  return verdict;
+}
+
+/// One round with a matrix of its own. follow: Gauss-Newton's steps, and Newton's where they are short and safe and
+/// Gauss-Newton contracts; rescue: Newton's wherever its matrix is safely positive, else half of Gauss-Newton's.
+template <class T, class Shape, class Measure>
+template <KernelPass pass>
+auto BlockKernel<T, Shape, Measure>::careful_by_metric(std::size_t at) -> Verdict {
+  constexpr bool follows = pass == KernelPass::follow;
+  const auto diagonal = [&](std::size_t a) { return n_[a * joints() + a]; };
+  const auto finite = finite_residual();
+  weigh();
+  gauss_newton_matrix();
+  const auto regular = gauss_newton_step(gauss_newton_);
+  newton_matrix();
+  auto safe = finite;
+  if constexpr (follows) safe = safe & contracts();
+  safe = safe & newton_step(step_);
+  const T newton_length = step_length(step_, diagonal);
+  if constexpr (follows) safe = safe & (newton_length < T(kFollowLength));
+  auto converged = safe & (newton_length < T(options_.last_step));
+  const auto by_newton = converged;
+  if constexpr (follows) {
+    // Where Gauss-Newton rests though Newton is not safe.
+    converged = converged | (regular & finite & (step_length(gauss_newton_, diagonal) < T(options_.tolerance)));
+  } else {
+    for (std::size_t j = 0; j < joints(); ++j) f_[j] = joint_[j] - T(chain_.joint[j].nominal);
+    converged = converged & (step_length(f_, diagonal) < T(kSameBranch));
+  }
+  Verdict verdict;
+  verdict.converged = bits(converged);
+  verdict.singular = bits((!safe) & (!regular));
+  verdict.non_finite = bits(!finite);
+  const T damping(follows ? 1.0 : 0.5);
+  for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
+  take_step(at, step_);
+  if (any(by_newton)) carry_residual(step_, by_newton);
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
   return verdict;
 }
@@ -188,15 +250,15 @@ void BlockKernel<T, Shape, Measure>::weigh() {
   for (std::size_t a = 0; a < joints(); ++a) row_[a] = weighted(column_[a]);
 }
 
-/// The largest |x_a column_a|_W over the reach, for the step x; diagonal(a): of N.
+/// The largest |x_a column_a|_W over the reach; diagonal(a): of N.
 template <class T, class Shape, class Measure>
 template <class Diagonal>
-T BlockKernel<T, Shape, Measure>::step_length(Diagonal diagonal) const {
+T BlockKernel<T, Shape, Measure>::step_length(const T* x, Diagonal diagonal) const {
   T largest2(0.0);
   for (std::size_t i = 0; i < limbs(); ++i) {
     const T share(1.0 / chain_.limb[i].meetings);
     for (std::size_t a = first_joint(i); a < first_joint(i + 1); ++a) {
-      largest2 = max(largest2, step_[a] * step_[a] * diagonal(a) * share);
+      largest2 = max(largest2, x[a] * x[a] * diagonal(a) * share);
     }
   }
   return sqrt(largest2) * T(1.0 / chain_.reach);

@@ -54,7 +54,7 @@ void BlockKernel<T, Shape, Measure>::solve() {
   for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
   const std::uint32_t cap = options_.max_iterations;
   if constexpr (Measure::kWeighted) {
-    options_.method == KernelMethod::gauss_newton ? solve_by_metric<false>() : solve_by_metric<true>();
+    solve_by_metric();
   } else if (options_.method == KernelMethod::gauss_newton) {
     run<KernelPass::published>(samples_.count, cap);
   } else {
@@ -69,18 +69,17 @@ void BlockKernel<T, Shape, Measure>::solve() {
 
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
-  const std::size_t rows = 6 * pairs();
-  load_all();
+  const std::size_t whole = samples_.count - samples_.count % kLanes;
+  load_all(whole);  // whole batches are read where they are
   for (std::size_t at = 0; at < samples_.count; at += kLanes) {
-    T* mu = reinterpret_cast<T*>(mu_);
-    for (std::size_t n = 0; n < rows; ++n) mu[n] = T(map.constant[n]);
-    for (std::size_t v = 0; v < samples_.varied; ++v) {
-      const T value = T::load(value_ + v * capacity_ + at);
-      const double* effects = map.effects + v * rows;
-      for (std::size_t n = 0; n < rows; ++n) mu[n] = madd(T(effects[n]), value, mu[n]);
+    if (at < whole) {
+      map_lanes(map, samples_.values + at, samples_.stride);
+    } else {
+      map_lanes(map, value_ + at, capacity_);
     }
     const unsigned finite = bits(finite_residual());
-    for (std::size_t n = 0; n < rows; ++n) mu[n].store(outcome_.delta_mu + n * outcome_.stride + at);
+    const T* mu = reinterpret_cast<const T*>(mu_);
+    for (std::size_t n = 0; n < 6 * pairs(); ++n) mu[n].store(outcome_.delta_mu + n * outcome_.stride + at);
     for (std::size_t lane = 0; lane < kLanes && at + lane < samples_.count; ++lane) {
       const bool is_finite = (finite >> lane & 1u) != 0;
       outcome_.status[at + lane] = is_finite ? SolveStatus::converged : SolveStatus::non_finite;
@@ -88,6 +87,41 @@ void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
     }
     judge(at);
   }
+}
+
+/// The residuals of one batch. values: its first lane, rows are `stride` apart.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::map_lanes(const KernelMap& map, const double* values, std::size_t stride) {
+  if constexpr (Shape::kEveryPairOnce) {
+    // The third pair compares limbs that the first two compare with another one.
+    map_rows<12>(map, 0, values, stride);
+    const bool is_started = chain_.pair[0].k == chain_.pair[2].k || chain_.pair[0].i == chain_.pair[2].i;
+    const bool is_ended = chain_.pair[1].k == chain_.pair[2].k || chain_.pair[1].i == chain_.pair[2].i;
+    const T first(is_started ? 1.0 : -1.0), second(is_ended ? 1.0 : -1.0);
+    for (int k = 0; k < 3; ++k) {
+      mu_[2].w[k] = madd(first, mu_[0].w[k], second * mu_[1].w[k]);
+      mu_[2].v[k] = madd(first, mu_[0].v[k], second * mu_[1].v[k]);
+    }
+  } else {
+    for (std::size_t n = 0; n < pairs(); ++n) map_rows<6>(map, 6 * n, values, stride);
+  }
+}
+
+/// These rows of the residuals, in as many registers.
+template <class T, class Shape, class Measure>
+template <std::size_t rows>
+void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map, std::size_t first, const double* values,
+                                              std::size_t stride) {
+  T sum[rows];
+  for (std::size_t n = 0; n < rows; ++n) sum[n] = T(map.constant[first + n]);
+  for (std::size_t v = 0; v < samples_.varied; ++v) {
+    const T value = T::load(values + v * stride);
+    __builtin_prefetch(values + v * stride + 4 * kLanes);  // rows are too many for the processor to foresee
+    const double* effects = map.effects + 6 * pairs() * v + first;
+    for (std::size_t n = 0; n < rows; ++n) sum[n] = madd(T(effects[n]), value, sum[n]);
+  }
+  T* mu = reinterpret_cast<T*>(mu_) + first;
+  for (std::size_t n = 0; n < rows; ++n) mu[n] = sum[n];
 }
 
 /// By a metric see judge_by_metric(). As published Eqs. 45-50: mean of the angular and of the linear norms over the
@@ -151,17 +185,17 @@ std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t
   return left;
 }
 
-/// Takes all samples, in order; the lanes behind the last one are copies of it.
+/// Takes the samples from `first` on, in order; the lanes behind the last one are copies of it.
 template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::load_all() {
+void BlockKernel<T, Shape, Measure>::load_all(std::size_t first) {
   const std::size_t count = samples_.count;
   for (std::size_t v = 0; v < samples_.varied; ++v) {
     const double* from = samples_.values + v * samples_.stride;
     double* to = value_ + v * capacity_;
-    for (std::size_t b = 0; b < count; ++b) to[b] = from[b];
+    for (std::size_t b = first; b < count; ++b) to[b] = from[b];
     for (std::size_t b = count; b % kLanes != 0; ++b) to[b] = from[count - 1];
   }
-  for (std::size_t b = 0; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
+  for (std::size_t b = first; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
 }
 
 template <class T, class Shape, class Measure>
