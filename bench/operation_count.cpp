@@ -7,13 +7,18 @@
 #include "models/chain/block_kernel.h"
 #include "models/chain/block_kernels.h"
 
-// The kernel "plain" of this program counts. The linker finds it here and leaves the library's own alone, so that
+// The kernels "plain" of this program count. The linker finds it here and leaves the library's own alone, so that
 // everything around the kernel is what the other programs run, too.
 namespace poesy::chain {
 
 void solve_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
                        const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
   solve_block<bench::CountingNumber>(chain, samples, start, options, outcome, scratch);
+}
+
+void map_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
+                     const KernelOutcome& outcome, double* scratch) {
+  map_block<bench::CountingNumber>(chain, samples, map, outcome, scratch);
 }
 
 }  // namespace poesy::chain
@@ -81,8 +86,12 @@ int main() {
   count_units("newton", published, Method::newton, 200);
   count_units("platform gauss-newton", platform, Method::gauss_newton, 50);
   count_units("platform newton", platform, Method::newton, 200);
+  count_units("platform first-order", bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples, 1),
+              Method::newton, 200);
   count_all_errors("published/all_errors/1_mm_1_deg", published, 1.0);
   count_all_errors("published/all_errors/0.1_mm_0.1_deg", published, 0.1);
   count_all_errors("platform/all_errors/1_mm_1_deg", platform, 1.0);
   count_all_errors("platform/all_errors/0.1_mm_0.1_deg", platform, 0.1);
+  count_all_errors("first-order/all_errors", bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples, 1),
+                   1.0);
 }

@@ -17,7 +17,7 @@ void add_models(CLI::App& program, Action& action) {
                               {"errors, poses and responses of one", "poesy models 2upr-rpu"}}));
   command->callback([name, &action] {
     action = [name] {
-      std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name).description)).c_str(), stdout);
+      std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name))).c_str(), stdout);
       return kDone;
     };
   });

@@ -50,11 +50,12 @@ void read_fidelity(const StudySection& section, const ModelDescription& model, M
 PlatformPoint read_point(const StudyValue& value) {
   const std::vector<StudyValue> coordinates = value.list();
   if (coordinates.size() != 3) {
-    value.fail("has " + std::to_string(coordinates.size()) + " values",
-               "a point has three, [\"60 mm\", \"0 mm\", \"0 mm\"]");
+    value.fail("has " + std::to_string(coordinates.size()) + " values", "a point has three, [\"60 mm\", 0, 0]");
   }
   PlatformPoint point{};
-  for (std::size_t c = 0; c < point.size(); ++c) point[c] = coordinates[c].quantity(Dimension::length);
+  for (std::size_t c = 0; c < point.size(); ++c) {
+    point[c] = coordinates[c].is_zero() ? 0.0 : coordinates[c].quantity(Dimension::length);
+  }
   return point;
 }
 
@@ -69,12 +70,12 @@ void read_metric(const StudySection& solver, MechanismChoice& choice) {
   }
   const auto value = solver.find("metric");
   const bool by_platform = value && value->word(std::array<std::string_view, 2>{"platform", "published"}) == 0;
+  const auto points = solver.find("points");
   if (!by_platform) {
-    solver.refuse("points", "the published metric; write metric = \"platform\" too");
+    if (points) points->fail("is for metric = \"platform\"", "write metric = \"platform\" too, or remove it");
     return;
   }
   choice.entry = choice.entry->by_platform.get();
-  const auto points = solver.find("points");
   if (!points) return;
   choice.points_place = points->place();
   for (const StudyValue& point : points->list()) choice.points.push_back(read_point(point));

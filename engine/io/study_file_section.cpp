@@ -107,6 +107,8 @@ double StudyValue::quantity(Dimension dimension) const {
        "write it like " + example(dimension));
 }
 
+bool StudyValue::is_zero() const { return node_->is_number() && number() == 0.0; }
+
 double StudyValue::positive_quantity(Dimension dimension) const {
   const double value = quantity(dimension);
   if (value > 0.0) return value;

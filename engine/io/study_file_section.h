@@ -41,6 +41,8 @@ class StudyValue {
   double number() const;
   /// SI.
   double quantity(Dimension dimension) const;
+  /// Whether it is the number 0, which needs no unit.
+  bool is_zero() const;
   /// SI, above zero.
   double positive_quantity(Dimension dimension) const;
   /// The position among these words.

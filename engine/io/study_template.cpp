@@ -266,18 +266,20 @@ std::string analysis_section(const ModelDescription& model, Analysis::Kind kind)
   return text + coupling_keys(model);
 }
 
-std::string metric_keys(const ModelDescription& model) {
+std::string metric_keys(const CatalogEntry& entry) {
+  const ModelDescription& model = entry.description;
   if (model.metric.empty()) return {};
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : model.geometry) geometry.push_back(parameter.published);
   return explained("solver", "metric", "metric = " + in_quotes(model.metric)) +
-         explained(
-             "solver", "points",
-             "# points = [[\"60 mm\", \"0 mm\", \"0 mm\"], [\"-60 mm\", \"0 mm\", \"0 mm\"], [\"0 mm\", \"60 mm\", "
-             "\"0 mm\"]]");
+         explained("solver", "points",
+                   "# points = " + points_text(entry.build(geometry, 0)->metric_points(), readable_value));
 }
 
-std::string solver_and_run_sections(const ModelDescription& model) {
+std::string solver_and_run_sections(const CatalogEntry& entry) {
+  const ModelDescription& model = entry.description;
   const double tolerance = model.metric == "platform" ? kToleranceByPlatform : SolverOptions().tolerance;
-  return "\n[solver]\n" + metric_keys(model) + explained("solver", "method", "method = \"newton\"") +
+  return "\n[solver]\n" + metric_keys(entry) + explained("solver", "method", "method = \"newton\"") +
          explained("solver", "tolerance", "tolerance = " + shortest(tolerance)) +
          explained("solver", "max_iterations", "max_iterations = 50") +
          explained("solver", "not_converged", "not_converged = \"exclude\"") +
@@ -288,10 +290,11 @@ std::string solver_and_run_sections(const ModelDescription& model) {
 }  // namespace
 
 std::string template_text(const CatalogEntry& entry, Analysis::Kind kind) {
-  const ModelDescription& model = entry.by_platform ? entry.by_platform->description : entry.description;
+  const CatalogEntry& chosen = entry.by_platform ? *entry.by_platform : entry;
+  const ModelDescription& model = chosen.description;
   POESY_EXPECTS(kind != Analysis::Kind::coupling || !model.sources.empty());
   return head(model, kind) + mechanism_section(model, kind) + poses_section(model) + errors_section(model) +
-         analysis_section(model, kind) + solver_and_run_sections(model);
+         analysis_section(model, kind) + solver_and_run_sections(chosen);
 }
 
 }  // namespace poesy

@@ -69,18 +69,11 @@ std::string mechanism_text(const Study& study) {
   return text;
 }
 
-std::string point_text(const PlatformPoint& point) {
-  return fmt::format("[{}, {}, {}]", exact_value(point[0], Dimension::length), exact_value(point[1], Dimension::length),
-                     exact_value(point[2], Dimension::length));
-}
-
 std::string metric_text(const Study& study) {
   if (study.model().metric.empty()) return {};
-  std::string text = "metric = " + in_quotes(study.model().metric) + "\n";
+  const std::string text = "metric = " + in_quotes(study.model().metric) + "\n";
   if (study.mechanism.points.empty()) return text;
-  text += "points = [";
-  for (const PlatformPoint& point : study.mechanism.points) text += "\n  " + point_text(point) + ",";
-  return text + "\n]\n";
+  return text + "points = " + points_text(study.mechanism.points, exact_value) + "\n";
 }
 
 std::string grid_text(const PoseSelection& poses, const ModelDescription& model) {
@@ -255,6 +248,15 @@ std::string analysis_text(const Study& study) {
 }
 
 }  // namespace
+
+std::string points_text(std::span<const PlatformPoint> points, std::string (*value)(double si, Dimension dimension)) {
+  std::string text;
+  for (const PlatformPoint& point : points) {
+    const auto coordinate = [&](std::size_t c) { return value(point[c], Dimension::length); };
+    text += fmt::format("{}[{}, {}, {}]", text.empty() ? "[" : ", ", coordinate(0), coordinate(1), coordinate(2));
+  }
+  return text + "]";
+}
 
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";

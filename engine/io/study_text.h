@@ -25,6 +25,9 @@ std::string readable_value(double si, Dimension dimension);
 /// A range as a TOML list, with one of the functions above for its ends.
 std::string range_text(const Range& range, Dimension dimension, std::string (*value)(double si, Dimension dimension));
 
+/// Points as a TOML list of lists, with one of the functions above for their coordinates.
+std::string points_text(std::span<const PlatformPoint> points, std::string (*value)(double si, Dimension dimension));
+
 /// The workspace of a study as a TOML inline table, with one of the functions above for its numbers.
 std::string workspace_text(std::span<const Range> workspace, const ModelDescription& model,
                            std::string (*value)(double si, Dimension dimension));

@@ -23,11 +23,23 @@ std::span<const double> changes_of(const StoredResult& result, std::size_t respo
   return std::span(found.index_change).subspan(response * found.factors, found.factors);
 }
 
-/// The first of the error's tolerances that is of another size than was studied; none where all are of that size.
-std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::size_t factor, double studied) {
+/// Where an index grows with a power of the size, a tolerance counted from it would be this multiple of the size
+/// studied if it had been studied there. ratio: of the tolerance to the size studied; change: of the index at a tenth.
+double corrected_ratio(double ratio, double change) {
+  constexpr double kFallsTooFast = -0.9;
+  const double power = -std::log10(1.0 + change);
+  return std::isfinite(power) && power > kFallsTooFast ? std::pow(ratio, 1.0 / (1.0 + power)) : ratio;
+}
+
+/// A size that is about that of the first of the error's tolerances that is of another size than was studied; none
+/// where all are of that size.
+std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::size_t factor, double studied,
+                                    double change) {
   for (const std::span<const double> proposed : proposed_tolerances(tolerances)) {
     const double ratio = proposed[factor] / studied;
-    if (std::isfinite(ratio) && (ratio > kSameSize || ratio < 1.0 / kSameSize)) return proposed[factor];
+    if (std::isfinite(ratio) && (ratio > kSameSize || ratio < 1.0 / kSameSize)) {
+      return studied * corrected_ratio(ratio, change);
+    }
   }
   return std::nullopt;
 }
@@ -84,17 +96,22 @@ std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerance
   std::vector<std::string> list;
   for (std::size_t p = 0; p < changes.size(); ++p) {
     if (!changes_with_size(changes[p])) continue;
-    const auto size = size_to_study(tolerances, p, result.factor_sigma[p]);
+    const auto size = size_to_study(tolerances, p, result.factor_sigma[p], changes[p]);
     if (!size) continue;
     const NamedUnit& factor = result.factors[p];
     list.push_back(fmt::format("{} ({}; study it at {:.3g} {})", factor.name, change_text(changes[p]),
                                *size / display(factor).si, unit_text(factor)));
   }
   if (list.empty()) return {};
+  const std::size_t errors = list.size();
+  if (errors > kMostNames) {
+    list.resize(kMostNames);
+    list.back() += fmt::format(" and {} more", errors - kMostNames);
+  }
   return fmt::format(
       "{} on {} that changes with size, by so much at a tenth of it, and a tolerance of another size than was studied: "
       "{}",
-      counted(list.size(), "error has an index", "errors have an index"), result.responses[tolerances.response].name,
+      counted(errors, "error has an index", "errors have an index"), result.responses[tolerances.response].name,
       fmt::join(list, ", "));
 }
 

@@ -79,10 +79,10 @@ Json tables_json(std::span<const Table> tables) {
 
 /// A result without its tables.
 Json summary_json(const StoredResult& result) {
-  const std::string metric = metric_text(result);
   return {{"kind", result.kind},
           {"model", result.model},
-          {"metric", metric.empty() ? Json(nullptr) : Json(metric)},
+          {"metric", result.metric.empty() ? Json(nullptr) : Json(result.metric)},
+          {"metric_points", result.metric_points.empty() ? Json(nullptr) : Json(result.metric_points)},
           {"title", result.title},
           {"poesy_version", result.poesy_version},
           {"git_commit", result.git_commit},

@@ -119,8 +119,9 @@ std::string radius_note(const StoredResult& result, std::size_t response) {
   const std::size_t responses = result.responses.size();
   if (tau.empty() || std::isnan(tau[response])) return {};
   return fmt::format(
-      "the metric's points at half and at twice their distance from their middle give rankings by {} whose Kendall's "
-      "tau with this one is {:.2f} and {:.2f} (1: the same order), to first order",
+      "ranked by {} to first order, with the metric's points as they are and at half and twice their distance from "
+      "their "
+      "middle: Kendall's tau of both rankings with the first is {:.2f} and {:.2f} (1: the same order)",
       result.responses[response].name, tau[response], tau[responses + response]);
 }
 

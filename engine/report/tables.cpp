@@ -46,6 +46,17 @@ std::vector<Table> sensitivity_tables(const StoredResult& result, const RankedEr
   return tables;
 }
 
+/// The responses, by which metric where there is one.
+std::string responses_text(const ModelDescription& model) {
+  std::string text = "\nresponses";
+  if (!model.metric.empty()) text += fmt::format(" by [solver] metric = \"{}\"", model.metric);
+  text += model.metric == "published" ? ", which a study without the key has\n" : "\n";
+  for (const Response& response : model.responses) {
+    text += fmt::format("  {:<20} {:>4} {}\n", response.name, si_unit(response.dimension), response.description);
+  }
+  return text;
+}
+
 }  // namespace
 
 SolveCounts solves_of(const StoredResult& result) {
@@ -115,7 +126,8 @@ std::string models_text(const Catalog& catalog) {
   return text;
 }
 
-std::string model_text(const ModelDescription& model) {
+std::string model_text(const CatalogEntry& entry) {
+  const ModelDescription& model = entry.description;
   std::string text = fmt::format("{}: {}\n\ngeometry (change it in [mechanism] geometry)\n", model.name, model.title);
   for (const GeometryParameter& parameter : model.geometry) {
     const Unit& unit = display_unit(parameter.dimension);
@@ -148,10 +160,8 @@ std::string model_text(const ModelDescription& model) {
   for (const Factor& factor : model.factors) {
     text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
   }
-  text += "\nresponses\n";
-  for (const Response& response : model.responses) {
-    text += fmt::format("  {:<20} {:>4} {}\n", response.name, si_unit(response.dimension), response.description);
-  }
+  text += responses_text(model);
+  if (entry.by_platform) text += responses_text(entry.by_platform->description);
   text += "\ndetails (given by `poesy evaluate`)\n";
   for (const Detail& detail : model.details) {
     text += fmt::format("  {:<20} {:>4} {}\n", detail.name, detail.components.size(), detail.description);

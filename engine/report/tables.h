@@ -80,6 +80,6 @@ void keep_first(std::size_t most, std::span<Table> tables);
 std::string models_text(const Catalog& catalog);
 
 /// One mechanism: geometry, pose coordinates, workspace, factors, factor sets, responses, details.
-std::string model_text(const ModelDescription& model);
+std::string model_text(const CatalogEntry& entry);
 
 }  // namespace poesy

@@ -54,7 +54,16 @@ void add_cells(std::vector<Cell>& row, const Ranking& ranking, std::size_t at) {
   row.push_back(number_cell(ranking.effects[at] / display(ranking.response).si));
 }
 
+/// How many errors have a known effect in both.
+std::size_t known_in_both(const Ranking& a, const Ranking& b) {
+  std::size_t known = 0;
+  for (std::size_t n = 0; n < a.effects.size(); ++n) known += !std::isnan(a.effects[n]) && !std::isnan(b.effects[n]);
+  return known;
+}
+
 std::string tau_text(double tau, std::size_t errors) {
+  if (std::isnan(tau))
+    return "Kendall's tau of the two rankings is not known: too few errors have a known effect in both.";
   return fmt::format(
       "Kendall's tau of the two rankings is {}, over {}: 1 where they have the same order, 0 where one says nothing of "
       "the other, -1 where one is the other reversed.",
@@ -65,9 +74,18 @@ constexpr std::string_view kWhyMetricsDiffer =
     "The published metric weighs radians against metres, so its ranking depends on the unit of length and on where the "
     "base frame is; the platform's metric measures how far its points move, which depends on neither.";
 
+/// Of two that are known; files of older versions do not say theirs.
+bool differ_in_metric(const StoredResult& a, const StoredResult& b) {
+  return !a.metric.empty() && !b.metric.empty() && a.metric != b.metric;
+}
+
 std::vector<std::string> remarks(const RankedResult& a, const RankedResult& b, double tau, std::size_t errors) {
   std::vector<std::string> list{tau_text(tau, errors)};
-  if (a.result.metric != b.result.metric) list.emplace_back(kWhyMetricsDiffer);
+  if (differ_in_metric(a.result, b.result)) {
+    list.emplace_back(kWhyMetricsDiffer);
+  } else if (a.result.metric_points != b.result.metric_points) {
+    list.emplace_back("The two metrics have different points of the platform, and so different effects.");
+  }
   const auto names_a = names_of(a.result.factors);
   const auto names_b = names_of(b.result.factors);
   for (const auto& [letter, only] : {std::pair('A', only_in(names_a, names_b)), {'B', only_in(names_b, names_a)}}) {
@@ -100,7 +118,7 @@ TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder 
   }
   const Ranking first = ranking_of(a, of_a);
   const Ranking second = ranking_of(b, of_b);
-  const bool by_metric = first.metric != second.metric;
+  const bool by_metric = differ_in_metric(a.result, b.result);
   Table table{.name = "rankings",
               .caption = "Two rankings: the effect of each error at the size that its study gives it",
               .columns = {text_column("error", "error")},
@@ -116,13 +134,14 @@ TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder 
     table.rows.push_back(std::move(row));
   }
   const double tau = kendall_tau(first.effects, second.effects);
-  return {std::move(table), tau, remarks(a, b, tau, of_a.size())};
+  return {std::move(table), tau, remarks(a, b, tau, known_in_both(first, second))};
 }
 
 std::string ranked_text(char letter, const RankedResult& ranked) {
   const StoredResult& result = ranked.result;
   const SolveCounts solves = solves_of(result);
-  std::string text = fmt::format("{}: {} ({})", letter, result.title, ranked.path);
+  std::string text = result.title.empty() ? fmt::format("{}: {}", letter, ranked.path)
+                                          : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
   if (!result.metric.empty()) text += "; metric: " + metric_text(result);
   return text + fmt::format("; ranked by {}; {} of {} did not converge", ranked.response,
                             count_text(solves.not_converged()), counted(solves.total(), "solve", "solves"));

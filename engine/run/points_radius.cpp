@@ -6,7 +6,6 @@
 #include <span>
 
 #include "engine/base/contract.h"
-#include "engine/run/counts.h"
 #include "engine/run/some_poses.h"
 #include "engine/stats/rank_correlation.h"
 #include "engine/stats/rounding.h"

@@ -25,7 +25,7 @@ struct Kernels {
 
 /// Solves blocks of samples with the fastest kernel this machine has. Owns the scratch of one thread.
 /// The methods and their guarantees are those of BlockKernel; gauss_newton is Scheme I as DeformationSolver states it,
-/// by a metric or as published.
+/// as published from nominal displacements, by a metric from those to which constant errors push the joints.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.

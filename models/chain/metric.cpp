@@ -47,10 +47,11 @@ bool are_on_a_line(std::span<const Vector3> points) {
   const Vector3 middle = middle_of(points);
   Vector3 farthest = Vector3::Zero();
   for (const Vector3& point : points) {
-    if ((point - middle).norm() > farthest.norm()) farthest = point - middle;
+    if ((point - middle).stableNorm() > farthest.stableNorm()) farthest = point - middle;
   }
+  const Vector3 direction = farthest.stableNormalized();
   return std::ranges::none_of(points, [&](const Vector3& point) {
-    return (point - middle).cross(farthest).norm() > kOnLine * farthest.squaredNorm();
+    return (point - middle).cross(direction).stableNorm() > kOnLine * farthest.stableNorm();
   });
 }
 

@@ -98,6 +98,18 @@ class Metric(ProgramTest):
             with self.result(f"all_{method}", study(MONTE_CARLO.format("all", 1000), 1, 60, solver=f'method = "{method}"')) as file:
                 self.assertLessEqual(np.sum(file["solver/not_converged"][:]), 60 * 1000 / 10_000)
 
+    def test_newton_solves_what_gauss_newton_solves(self):
+        # Also near singular poses and with large errors, where Newton's step is often not safe.
+        wide = 'workspace = { z = ["-300 mm", "-60 mm"], beta = ["-1.2 rad", "1.2 rad"], gamma = ["-1.4 rad", "1.4 rad"] }'
+        text = study(SENSITIVITY.format(40), 3, 20, BACKGROUND.replace('"1 ', '"3 ')).replace("count = 20", f"count = 20\n{wide}")
+        with self.result("newton", text) as one:
+            newton = one["solver/not_converged"][:].astype(int)
+        with self.result("gauss_newton", text.replace("[run]", 'method = "gauss-newton"\nmax_iterations = 500\n[run]')) as other:
+            gauss_newton = other["solver/not_converged"][:].astype(int)
+        self.assertGreater(np.sum(gauss_newton), 100)
+        self.assertTrue(np.all(newton <= gauss_newton))
+        self.assertLess(np.sum(newton), 0.1 * np.sum(gauss_newton))
+
     def test_first_order_is_the_limit_of_small_errors(self):
         for size, most in ((0.001, 1e-4), (1, 0.2)):
             exact = study(MONTE_CARLO.format("all", 500), size, 10)
@@ -161,6 +173,9 @@ class Metric(ProgramTest):
             self.assertEqual(done.returncode, 2)
             for part in ("points.toml:", *parts):
                 self.assertIn(part, done.stderr.decode())
+
+        self.write("zero.toml", study(SENSITIVITY.format(10), 1, 2, BACKGROUND, 'points = [["60 mm", 0, 0], ["-60 mm", 0, 0], [0, "60 mm", 0]]'))
+        self.succeeds("check", "zero.toml")  # 0 needs no unit
 
         refused('[["1 mm", "0 mm", "0 mm"], ["2 mm", "0 mm", "0 mm"], ["9 mm", "0 mm", "0 mm"]]', "on one line", "joints")
         refused('[["1 mm", "0 mm", "0 mm"], ["2 mm", "0 mm", "0 mm"]]', "has 2 points", "three or more")

@@ -62,11 +62,19 @@ TEST(WrongSizes, AreTolerancesOfAnotherSizeWhereTheIndexChanges) {
   EXPECT_EQ(wrong_sizes_text(stored, tolerances({0.6e-3, 1e-6, 1e-3, kNaN})), "");
   EXPECT_EQ(wrong_sizes_text(stored, tolerances({2.5e-3, 1e-6, 0.9e-3, kNaN})),
             "2 errors have an index on x that changes with size, by so much at a tenth of it, and a tolerance of "
-            "another size than was studied: delta_b (-50.0 %; study it at 2.5 mm), delta_c (-99.1 %; study it at 0.9 "
-            "mm)");
+            "another size than was studied: delta_b (-50.0 %; study it at 2.02 mm), delta_c (-99.1 %; study it at "
+            "1.54 mm)");
   EXPECT_EQ(wrong_sizes_text(ranked_result(), tolerances({1.0, 1.0, 1.0, 1.0})), "") << "an older result";
   EXPECT_EQ(wrong_sizes_text(stored, tolerances({std::numeric_limits<double>::infinity(), 1e-3, 2e-3, kNaN})), "")
       << "no effect";
+}
+
+// At the size of the tolerance a quadratic error would be found a hundred times smaller, and so its tolerance be again
+// that of the first study.
+TEST(WrongSizes, OfAQuadraticErrorAreStudiedInTheMiddle) {
+  const StoredResult stored = result({-0.9, 0.01, 0.0});
+  const std::string text = wrong_sizes_text(stored, tolerances({0.01e-3, 1e-6, 2e-3, kNaN}));
+  EXPECT_NE(text.find("delta_b (-90.0 %; study it at 0.1 mm)"), std::string::npos) << text;
 }
 
 TEST(WrongSizes, OfALimitAreThoseOfEitherWayToShareIt) {
@@ -75,7 +83,7 @@ TEST(WrongSizes, OfALimitAreThoseOfEitherWayToShareIt) {
   found.limit = LimitTolerances{1e-4, {1e-3, 1e-3, 1e-3, 1e-3}, {1e-3, 1e-3, 1e-3, 1e-3}};
   EXPECT_EQ(wrong_sizes_text(stored, found), "");
   found.limit->equal_tolerance[0] = 1e-4;
-  EXPECT_NE(wrong_sizes_text(stored, found).find("delta_b (-50.0 %; study it at 0.1 mm)"), std::string::npos);
+  EXPECT_NE(wrong_sizes_text(stored, found).find("delta_b (-50.0 %; study it at 0.17 mm)"), std::string::npos);
 }
 
 TEST(WrongSizes, StandBelowTheTolerances) {

@@ -86,11 +86,38 @@ TEST(TwoRankings, LeaveOutWhatIsNotKnown) {
   const StoredResult b = with_effects({1e-3, 9e-3, 2e-3, 3e-3});
   const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {b, "b.h5", "x"});
   EXPECT_EQ(rankings.tau, 1.0);
+  EXPECT_NE(rankings.remarks[0].find("over 3 errors"), std::string::npos);
   const std::vector<Cell>& last = rankings.table.rows.back();
   EXPECT_EQ(last[0].text, "epsilon_a");
   EXPECT_EQ(last[1].text, "-");
   EXPECT_EQ(last[2].text, "-");
   EXPECT_EQ(last[3].text, "1");
+}
+
+TEST(TwoRankings, SayWhenNoTauIsKnown) {
+  const StoredResult a = with_effects({1e-3, kNaN, kNaN, kNaN});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {a, "b.h5", "x"});
+  EXPECT_TRUE(std::isnan(rankings.tau));
+  EXPECT_NE(rankings.remarks[0].find("is not known"), std::string::npos);
+}
+
+TEST(TwoRankings, SayWhenTheMetricsPointsDiffer) {
+  const StoredResult a = by_platform();
+  StoredResult b = by_platform();
+  EXPECT_EQ(two_rankings({a, "a.h5", "gap"}, {b, "b.h5", "gap"}).remarks.size(), 1U);
+  b.metric_points[0][0] = 0.2;
+  const TwoRankings rankings = two_rankings({a, "a.h5", "gap"}, {b, "b.h5", "gap"});
+  ASSERT_EQ(rankings.remarks.size(), 2U);
+  EXPECT_NE(rankings.remarks[1].find("different points"), std::string::npos);
+}
+
+// A file of an older version does not say by which metric it is.
+TEST(TwoRankings, ClaimNothingOfAMetricThatIsNotKnown) {
+  const StoredResult a = by_platform();
+  const StoredResult b = with_effects({1e-3, 2e-3, 3e-3, 0.0});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "gap"}, {b, "b.h5", "x"});
+  EXPECT_EQ(rankings.table.columns[1].heading, "rank in A");
+  EXPECT_EQ(rankings.remarks.size(), 1U);
 }
 
 TEST(TwoRankings, AreOfTheErrorsThatBothHave) {
@@ -142,7 +169,8 @@ TEST(TwoRankings, AsJsonHaveBothResultsAndTheTau) {
   EXPECT_EQ(all["kendall_tau"].get<double>(), rankings.tau);
   EXPECT_EQ(all["results"][0]["path"], "a.h5");
   EXPECT_EQ(all["results"][1]["response"], "gap");
-  EXPECT_EQ(all["results"][1]["metric"], "platform, by displacement of 3 points");
+  EXPECT_EQ(all["results"][1]["metric"], "platform");
+  EXPECT_EQ(all["results"][1]["metric_points"][0][0], 0.1);
   EXPECT_EQ(all["tables"][0]["rows"][2]["rank_a"], 3);
   EXPECT_EQ(all["tables"][0]["rows"][2]["rank_b"], 1);
   EXPECT_TRUE(nlohmann::json::parse(json_of(ranked_result(), {}))["metric"].is_null());

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/run/some_poses.h"
 #include "engine/stats/sensitivity_index.h"
 #include "tests/engine/run/study_kinds.h"
 #include "tests/support/fake_ranks.h"
