@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/contract.h"
+#include "engine/base/units.h"
 
 namespace poesy::chain {
 namespace {
@@ -53,6 +54,22 @@ bool are_on_a_line(std::span<const Vector3> points) {
   return std::ranges::none_of(points, [&](const Vector3& point) {
     return (point - middle).cross(direction).stableNorm() > kOnLine * farthest.stableNorm();
   });
+}
+
+std::string why_no_metric(std::span<const Vector3> points, double reach) {
+  constexpr double kFarthest = 3.0;
+  constexpr double kSmallest = 1e-3;
+  double farthest = 0.0;
+  for (const Vector3& point : points) farthest = std::max(farthest, point.stableNorm());
+  const auto length = [](double metres) { return readable_text({metres, Dimension::length}); };
+  if (!(farthest <= kFarthest * reach)) {
+    return "a point is " + length(farthest) +
+           " from the platform's origin, more than three times the mechanism's reach of " + length(reach);
+  }
+  if (are_on_a_line(points)) return "the points are on one line, about which the platform may turn unseen";
+  if (radius_of(points) >= kSmallest * reach) return {};
+  return "the points are " + length(radius_of(points)) +
+         " from their middle, less than a thousandth of the mechanism's reach of " + length(reach);
 }
 
 Metric platform_metric(const ParallelChain& chain, std::span<const Vector3> points,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "models/chain/limb.h"
 
@@ -24,6 +25,10 @@ double radius_of(std::span<const lie::Vector3<double>> points);
 /// Whether a rotation leaves all points where they are, up to a millionth of the largest distance from their middle:
 /// then their metric is not positive.
 bool are_on_a_line(std::span<const lie::Vector3<double>> points);
+
+/// Why a chain of this reach (m) has no metric of these points of the platform, in its frame: a clause; empty where it
+/// has one. They must not be on a line, nor so far away or so close together that angles or lengths drown in the other.
+std::string why_no_metric(std::span<const lie::Vector3<double>> points, double reach);
 
 /// The metric of points of the platform (in its frame), where the perfect limbs hold it at these displacements
 /// [all joints] (rad, m).

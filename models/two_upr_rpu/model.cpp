@@ -186,8 +186,11 @@ std::unique_ptr<Model> build_with_points(std::span<const double> values, std::si
                                          std::span<const PlatformPoint> points) {
   std::vector<Vector3> own;
   for (const PlatformPoint& point : points) own.emplace_back(point[0], point[1], point[2]);
-  require(!chain::are_on_a_line(own), "the points are on one line, about which the platform may turn unseen");
-  return std::make_unique<TwoUprRpu>(checked_geometry(values), own, static_cast<chain::Fidelity>(fidelity));
+  const Geometry geometry = checked_geometry(values);
+  if (const std::string why = chain::why_no_metric(own, parallel_chain(geometry).reach()); !why.empty()) {
+    throw std::invalid_argument(why);
+  }
+  return std::make_unique<TwoUprRpu>(geometry, own, static_cast<chain::Fidelity>(fidelity));
 }
 
 }  // namespace

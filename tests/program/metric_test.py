@@ -129,14 +129,14 @@ class Metric(ProgramTest):
             return file.attrs["content_sha256"]
 
     def test_shards_have_the_bits_of_one_run(self):
-        text = study(SENSITIVITY.format(700), 1, 9, BACKGROUND, 'points = [["1 mm", "0 m", "0 m"], ["0 m", "1 mm", "0 m"], ["0 m", "0 m", "0 m"]]')
+        text = study(SENSITIVITY.format(700), 1, 9, BACKGROUND, 'points = [["10 mm", "0 m", "0 m"], ["0 m", "10 mm", "0 m"], ["0 m", "0 m", "0 m"]]')
         self.result("whole", text).close()
         shards = [f"s{n}.h5" for n in (1, 2, 3)]
         for n, shard in enumerate(shards, 1):
             self.succeeds("run", "whole.toml", "--shard", f"{n}/3", "--threads", n, "-o", shard, "--quiet")
         self.succeeds("merge", *shards, "-o", "all.h5")
         self.assertEqual(self.content_hash("all.h5"), self.content_hash("whole.h5"))
-        for what, old, new in (("metric", 'metric = "platform"', 'metric = "published"'), ("points", '"1 mm", "0 m"', '"2 mm", "0 m"')):
+        for what, old, new in (("metric", 'metric = "platform"', 'metric = "published"'), ("points", '"10 mm", "0 m"', '"20 mm", "0 m"')):
             other = text.replace(old, new, 1)
             if what == "metric":
                 other = "".join(line for line in other.splitlines(True) if not line.startswith("points"))
@@ -174,6 +174,9 @@ class Metric(ProgramTest):
             for part in ("points.toml:", *parts):
                 self.assertIn(part, done.stderr.decode())
 
+        refused('[["60 mm", 0, 0], ["-60 mm", 0, 0], [0, "60 m", 0]]', "a point is 60000 mm from", "three times", "reach of")
+        refused('[["60 um", 0, 0], ["-60 um", 0, 0], [0, "60 um", 0]]', "mm from their middle", "a thousandth")
+        refused('[["1e200 m", 0, 0], ["-60 mm", 0, 0], [0, "60 mm", 0]]', "three times")
         self.write("zero.toml", study(SENSITIVITY.format(10), 1, 2, BACKGROUND, 'points = [["60 mm", 0, 0], ["-60 mm", 0, 0], [0, "60 mm", 0]]'))
         self.succeeds("check", "zero.toml")  # 0 needs no unit
 
