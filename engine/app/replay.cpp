@@ -198,7 +198,7 @@ std::string agreement_text(const ModelDescription& model, const ReplayedSample& 
 
 std::string reference_text(const ModelDescription& model, const ReplayedSample& sample,
                            const std::optional<SolveTrace>& trace) {
-  if (!trace) return "this way to solve a sample has no iterations to show\n";
+  if (!trace) return "this mechanism shows no iterations\n";
   return fmt::format(
       "\nby the reference solver, whose iterations these are and not those above ({}): {}\n{}compared with the run, {}",
       trace->solver, end_text(trace->status, trace->iterations), iterations_text(*trace),

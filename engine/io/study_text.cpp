@@ -1,6 +1,7 @@
 #include "engine/io/study_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -250,12 +251,12 @@ std::string analysis_text(const Study& study) {
 }  // namespace
 
 std::string points_text(std::span<const PlatformPoint> points, std::string (*value)(double si, Dimension dimension)) {
-  std::string text;
+  std::vector<std::string> list;
   for (const PlatformPoint& point : points) {
     const auto coordinate = [&](std::size_t c) { return value(point[c], Dimension::length); };
-    text += fmt::format("{}[{}, {}, {}]", text.empty() ? "[" : ", ", coordinate(0), coordinate(1), coordinate(2));
+    list.push_back(fmt::format("[{}, {}, {}]", coordinate(0), coordinate(1), coordinate(2)));
   }
-  return text + "]";
+  return fmt::format("[{}]", fmt::join(list, ", "));
 }
 
 std::string in_quotes(std::string_view text) {

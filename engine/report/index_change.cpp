@@ -94,8 +94,7 @@ std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerance
   if (!has_index_changes(result)) return {};
   const std::span<const double> changes = changes_of(result, tolerances.response);
   std::vector<std::string> list;
-  for (std::size_t p = 0; p < changes.size(); ++p) {
-    if (!changes_with_size(changes[p])) continue;
+  for (const std::size_t p : changing_errors(result, tolerances.response)) {
     const auto size = size_to_study(tolerances, p, result.factor_sigma[p], changes[p]);
     if (!size) continue;
     const NamedUnit& factor = result.factors[p];

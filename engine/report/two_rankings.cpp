@@ -83,7 +83,7 @@ std::vector<std::string> remarks(const RankedResult& a, const RankedResult& b, d
   std::vector<std::string> list{tau_text(tau, errors)};
   if (differ_in_metric(a.result, b.result)) {
     list.emplace_back(kWhyMetricsDiffer);
-  } else if (a.result.metric_points != b.result.metric_points) {
+  } else if (a.result.metric == b.result.metric && a.result.metric_points != b.result.metric_points) {
     list.emplace_back("The two metrics have different points of the platform, and so different effects.");
   }
   const auto names_a = names_of(a.result.factors);

@@ -6,6 +6,7 @@
 
 #include "engine/base/contract.h"
 #include "models/chain/deformation_solver.h"
+#include "models/chain/first_order.h"
 #include "models/chain/passive_condition.h"
 
 namespace poesy::chain {
@@ -82,7 +83,36 @@ std::vector<double> responses_of(std::span<const double> delta_mu) {
   return responses;
 }
 
+/// The position of the limb's first frame among all.
+std::size_t first_frame(const ParallelChain& chain, std::size_t limb) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < limb; ++i) first += chain.limbs[i].frames();
+  return first;
+}
+
 }  // namespace
+
+SolveTrace first_order_trace(const DeformationModel& model, std::span<const double> pose,
+                             std::span<const double> errors) {
+  POESY_EXPECTS(errors.size() == model.slots.size());
+  const std::vector<double> displacements = model.joint_displacements(pose);
+  const std::optional<Metric> metric = model.metric(displacements);
+  SolveTrace trace;
+  trace.solver = "the closed form of first order, in plain double precision, which iterates nothing";
+  trace.iterations = 1;
+  FirstOrder first_order(model.chain);
+  if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) trace.status = SolveStatus::singular;
+  std::vector<double> delta_mu(6 * model.chain.pairs.size(), 0.0);
+  std::vector<double> effect(delta_mu.size());
+  std::vector<double> moved(model.chain.passive_joints());
+  for (std::size_t f = 0; f < errors.size() && trace.status == SolveStatus::converged; ++f) {
+    const ErrorSlot& slot = model.slots[f];
+    first_order.effect({first_frame(model.chain, slot.limb) + slot.frame, slot.component}, effect, moved);
+    for (std::size_t n = 0; n < effect.size(); ++n) delta_mu[n] += errors[f] * effect[n];
+  }
+  trace.responses = metric ? responses_by(*metric, delta_mu) : responses_of(delta_mu);
+  return trace;
+}
 
 SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors, const SolverOptions& options) {

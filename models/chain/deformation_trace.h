@@ -11,4 +11,8 @@ namespace poesy::chain {
 SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors, const SolverOptions& options);
 
+/// The same to first order, which iterates nothing: the closed form, error by error.
+SolveTrace first_order_trace(const DeformationModel& model, std::span<const double> pose,
+                             std::span<const double> errors);
+
 }  // namespace poesy::chain

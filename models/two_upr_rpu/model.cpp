@@ -110,7 +110,7 @@ class TwoUprRpu final : public Model {
 
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
-    if (fidelity_ == chain::Fidelity::first_order) return std::nullopt;
+    if (fidelity_ == chain::Fidelity::first_order) return chain::first_order_trace(deformation_, pose, errors);
     return chain::deformation_trace(deformation_, pose, errors, options);
   }
 

@@ -38,7 +38,8 @@ std::vector<Choice> choices() {
 
 std::string name_of(const testing::TestParamInfo<Choice>& info) {
   const ModelDescription& model = info.param.entry->description;
-  std::string name = model.name + "_" + model.metric + "_" + std::to_string(info.param.fidelity);
+  const std::string by = model.metric == "platform" ? "_w_" : "_";  // W, the metric's weights
+  std::string name = model.name + by + std::to_string(info.param.fidelity);
   std::ranges::replace(name, '-', '_');
   return name;
 }

@@ -259,7 +259,7 @@ class TwoRankings(ProgramTest):
         self.assertEqual(both["results"][0]["metric"], "published")
         self.assertEqual(both["tables"][0]["rows"][-1]["error"], "epsilon_3_3_x")  # no effect as published
         text = self.succeeds("show", "published.h5", "platform.h5")
-        for words in ("A: ", "(published.h5); metric: published, radians", "(platform.h5); metric: platform, by",
+        for words in ("A: ", "A: published.h5; metric: published, radians", "B: platform.h5; metric: platform, by",
                       f"Kendall's tau of the two rankings is {both['kendall_tau']:.2g}, over 6 errors", "unit of length"):
             self.assertIn(words, " ".join(text.split()))
         lines = [line.split() for line in text.splitlines()]

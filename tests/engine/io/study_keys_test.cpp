@@ -17,10 +17,22 @@
 namespace poesy {
 namespace {
 
-/// The fake mechanism with two fidelities, which make no difference.
+/// The fake mechanism as if its platform had points.
+class FakeByPlatform final : public test::FakeModel {
+ public:
+  std::vector<PlatformPoint> metric_points() const override { return {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}; }
+};
+
+/// The fake mechanism with two fidelities and two metrics, which make no difference.
 Catalog catalog() {
   Catalog two = test::fake_catalog();
   two.front().description.fidelities = {"exact", "first-order"};
+  CatalogEntry by_platform = two.front();
+  by_platform.description.metric = "platform";
+  by_platform.build = [](auto, auto) { return std::make_unique<FakeByPlatform>(); };
+  by_platform.build_with_points = [](auto, auto, auto) { return std::make_unique<FakeByPlatform>(); };
+  two.front().description.metric = "published";
+  two.front().by_platform = std::make_shared<const CatalogEntry>(std::move(by_platform));
   return two;
 }
 
@@ -38,6 +50,7 @@ linear = { distribution = "normal", sigma = "2 mm" }
 angular = { distribution = "truncated-normal", sigma = "1 deg", half_width = "2 deg" }
 override = { delta_1 = { distribution = "uniform", half_width = "1 mm" }, delta_2 = { distribution = "triangular", half_width = "1 mm" } }
 [solver]
+metric = "published"
 method = "newton"
 tolerance = 1e-12
 max_iterations = 40
@@ -59,10 +72,16 @@ std::vector<std::string> studies() {
   const std::string box(kBox);
   std::string both = head;
   both.replace(both.find("\"exact\""), 7, "\"both\"");
+  // Without a tolerance, whose default is another one by the platform's metric.
+  std::string by_platform = head;
+  by_platform.replace(by_platform.find("tolerance = 1e-12"), 17, "");
+  by_platform.replace(by_platform.find("\"published\""), 11,
+                      "\"platform\"\npoints = [[\"1 m\", 0, 0], [0, \"1 m\", 0], [0, 0, \"1 m\"]]");
   const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
   return {head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
               "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" +
               background + "reference = { factor = \"delta_1\", tolerance = \"2 mm\" }\n",
+          by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
           both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
           head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
               "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\nconf_level = 0.95\nquantiles = [0.1, 0.2]\n" +
@@ -205,7 +224,7 @@ std::string refusal(const std::string& text) {
 }
 
 std::string literal(std::string_view usual) {
-  return usual.starts_with('`') ? std::string(usual.substr(1, usual.size() - 2)) : std::string();
+  return usual.starts_with('`') ? std::string(usual.substr(1, usual.find('`', 1) - 1)) : std::string();
 }
 
 TEST(StudyKeys, AreAllUsedByTheStudiesOfThisTest) {

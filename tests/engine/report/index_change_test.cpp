@@ -62,8 +62,8 @@ TEST(WrongSizes, AreTolerancesOfAnotherSizeWhereTheIndexChanges) {
   EXPECT_EQ(wrong_sizes_text(stored, tolerances({0.6e-3, 1e-6, 1e-3, kNaN})), "");
   EXPECT_EQ(wrong_sizes_text(stored, tolerances({2.5e-3, 1e-6, 0.9e-3, kNaN})),
             "2 errors have an index on x that changes with size, by so much at a tenth of it, and a tolerance of "
-            "another size than was studied: delta_b (-50.0 %; study it at 2.02 mm), delta_c (-99.1 %; study it at "
-            "1.54 mm)");
+            "another size than was studied: delta_c (-99.1 %; study it at 1.54 mm), delta_b (-50.0 %; study it at "
+            "2.02 mm)");
   EXPECT_EQ(wrong_sizes_text(ranked_result(), tolerances({1.0, 1.0, 1.0, 1.0})), "") << "an older result";
   EXPECT_EQ(wrong_sizes_text(stored, tolerances({std::numeric_limits<double>::infinity(), 1e-3, 2e-3, kNaN})), "")
       << "no effect";

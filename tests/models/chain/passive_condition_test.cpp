@@ -86,7 +86,7 @@ double condition_by_metric(const ParallelChain& chain, std::span<const double> q
   return passive_condition(chain, q, &metric);
 }
 
-TEST_P(PassiveCondition, ByAMetricIsThatOfThePointsDisplacements) {
+TEST_P(PassiveCondition, ByMetricIsOfThePoints) {
   std::mt19937_64 engine(15);
   for (int n = 0; n < 50; ++n) {
     const std::vector<double> q = random_displacements(12, 0.8, engine);
@@ -109,7 +109,7 @@ TEST_P(PassiveCondition, ByAMetricIsThatOfThePointsDisplacements) {
   }
 }
 
-TEST_P(PassiveCondition, ByAMetricDependsNeitherOnTheUnitNorOnTheBaseFrame) {
+TEST_P(PassiveCondition, ByMetricHasNoUnitNorFrame) {
   std::mt19937_64 engine(16);
   const std::vector<double> q = random_displacements(12, 0.8, engine);
   const ParallelChain chain = closed_chain(std::vector<std::size_t>{4, 4, 4}, GetParam(), q, engine);
