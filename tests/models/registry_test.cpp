@@ -108,7 +108,7 @@ std::vector<std::string> names_of(const std::vector<Named>& things) {
   return names;
 }
 
-TEST_P(EveryMechanism, NamesThingsPlainlyAndOnce) {
+TEST_P(EveryMechanism, NamesThingsOnce) {
   const ModelDescription& model = description();
   expect_plain_and_different({model.name});
   expect_plain_and_different(names_of(model.geometry));
@@ -135,7 +135,7 @@ void expect_words(const std::vector<Described>& things) {
   }
 }
 
-TEST_P(EveryMechanism, DescribesErrorsAndResponses) {
+TEST_P(EveryMechanism, DescribesWhatItHas) {
   expect_words(description().factors);
   expect_words(description().responses);
   for (const Factor& factor : description().factors) {

@@ -57,9 +57,9 @@ constexpr Kind kKinds[] = {{"single", kHard, true, 0.0, 0.3},
                            {"all", kHard, false, 0.0, 0.5},
                            {"all_large", kEasy, false, 0.0, 3.0},
                            {"by_metric", kHard, true, 0.0, 0.3, true},
-                           {"by_metric_predicted", kEasy, true, 4.0, 0.1, true},
+                           {"metric_predicted", kEasy, true, 4.0, 0.1, true},
                            {"by_metric_all", kHard, false, 0.0, 1.0, true},
-                           {"by_metric_every_pass", kFar, false, 0.0, 3.0, true}};
+                           {"metric_every_pass", kFar, false, 0.0, 3.0, true}};
 
 BlockSamples samples_of(const Kind& kind) {
   constexpr std::size_t kFactor = 60;
