@@ -95,8 +95,8 @@ struct AnyShape {
 ///   direct   Newton from a start in proportion to the errors, or from a fit, where a step with N at nominal
 ///            displacements comes first and is the last one if s < 10 tolerance. Newton's matrix is made in every third
 ///            round and used in three; a lane is refused where one is not safe, and after 12 rounds;
-///   follow   as above, Newton as soon as its s < 0.01, from the start of Gauss-Newton; where its s < tolerance,
-///            Gauss-Newton has found a root by itself;
+///   follow   as above, with s for the size of steps, from the start of Gauss-Newton; where that rests though Newton
+///            is not safe, it has found a root by itself;
 ///   rescue   as above, with 0.5 of the reach for 0.5 (rad, m).
 /// A Newton step is the last one where s < sqrt(tolerance) / 100, but at least 1e-10, with a new matrix, or where s^2
 /// over the step before is below tolerance / 10.
@@ -117,7 +117,6 @@ class BlockKernel {
   static constexpr double kSafePivot = 1e-5;
   static constexpr double kFollowStep = 1e-3;
   static constexpr double kNearStep = 2e-3;
-  static constexpr double kFollowLength = 1e-2;
   static constexpr double kRestingStep = 1e-12;
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;

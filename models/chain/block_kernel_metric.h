@@ -146,24 +146,28 @@ auto BlockKernel<T, Shape, Measure>::careful_by_metric(std::size_t at) -> Verdic
   if constexpr (follows) safe = safe & contracts();
   safe = safe & newton_step(step_);
   const T newton_length = step_length(step_, diagonal);
-  if constexpr (follows) safe = safe & (newton_length < T(kFollowLength));
-  auto converged = safe & (newton_length < T(options_.last_step));
-  const auto by_newton = converged;
   if constexpr (follows) {
-    // Where Gauss-Newton rests though Newton is not safe.
-    converged = converged | (regular & finite & (step_length(gauss_newton_, diagonal) < T(options_.tolerance)));
+    safe = safe & (newton_length < T(kFollowStep)) & (step_length(gauss_newton_, diagonal) < T(kNearStep));
+  }
+  auto converged = safe & (newton_length < T(options_.last_step));
+  Verdict verdict;
+  if constexpr (follows) {
+    // Where Gauss-Newton rests though Newton is not safe: by the change of the residual that it is about to make.
+    T change2(0.0);
+    for (std::size_t j = 0; j < joints(); ++j) change2 = madd(gauss_newton_[j], f_[j], change2);
+    const T change = sqrt(change2 * T(1.0 / static_cast<double>(pairs()))) * T(1.0 / chain_.reach);
+    verdict.stagnated = bits(regular & finite & !(change > T(options_.rounding_level)));
   } else {
     for (std::size_t j = 0; j < joints(); ++j) f_[j] = joint_[j] - T(chain_.joint[j].nominal);
     converged = converged & (step_length(f_, diagonal) < T(kSameBranch));
   }
-  Verdict verdict;
   verdict.converged = bits(converged);
   verdict.singular = bits((!safe) & (!regular));
   verdict.non_finite = bits(!finite);
   const T damping(follows ? 1.0 : 0.5);
   for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
   take_step(at, step_);
-  if (any(by_newton)) carry_residual(step_, by_newton);
+  if (any(converged)) carry_residual(step_, converged);
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
   return verdict;
 }

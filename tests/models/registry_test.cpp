@@ -208,7 +208,7 @@ TEST_P(EveryMechanism, RespondsNothingToNoError) {
 }
 
 /// In every bit: a sample does not depend on its neighbours, nor on what was solved before.
-TEST_P(EveryMechanism, SolvesSamplesOfABlockAsAlone) {
+TEST_P(EveryMechanism, SolvesABlockAsItsSamples) {
   constexpr std::size_t kCount = 21;
   const ModelDescription& model = description();
   std::vector<FactorIndex> varied;
@@ -234,7 +234,7 @@ TEST_P(EveryMechanism, SolvesSamplesOfABlockAsAlone) {
   }
 }
 
-TEST_P(EveryMechanism, ShowsASolveThatGivesTheSame) {
+TEST_P(EveryMechanism, ShowsASolveWithTheSameEnd) {
   const std::unique_ptr<Evaluator> evaluator = model_->evaluator({});
   const std::vector<double> pose = poses().front();
   std::vector<double> errors(description().factors.size(), 0.0);
