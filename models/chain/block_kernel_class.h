@@ -98,8 +98,8 @@ struct AnyShape {
 ///   follow   as above, with s for the size of steps, from the start of Gauss-Newton; where that rests though Newton
 ///            is not safe, it has found a root by itself;
 ///   rescue   as above, with 0.5 of the reach for 0.5 (rad, m).
-/// A Newton step is the last one where s < sqrt(tolerance) / 100, but at least 1e-10, with a new matrix, or where s^2
-/// over the step before is below tolerance / 10.
+/// A Newton step is the last one where s < sqrt(tolerance) / 100, but at least 1e-10, with a new matrix, or where s is
+/// below 1000 tolerance and s^2 over the step before below tolerance / 10.
 template <class T, class Shape, class Measure>
 class BlockKernel {
  public:
@@ -120,6 +120,7 @@ class BlockKernel {
   static constexpr double kRestingStep = 1e-12;
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
+  static constexpr double kShort = 1e3;
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;

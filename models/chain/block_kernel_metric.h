@@ -117,7 +117,7 @@ auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint3
     newton_step_again(step_);
   }
   const T length = step_length(step_, [&](std::size_t a) { return n_[a * joints() + a]; });
-  auto small = length * length < T(0.1 * options_.tolerance) * before;
+  auto small = (length * length < T(0.1 * options_.tolerance) * before) & (length < T(kShort * options_.tolerance));
   if (is_new) small = small | (length < T(options_.last_step));
   const auto converged = safe & finite_residual() & small;
   before = length;
