@@ -35,8 +35,8 @@ inline constexpr double kSameSize = 2.0;
 /// Which errors have an index that changes with size and a tolerance of another size than what was studied, by either
 /// way to share a limit, and at which size to study them: "2 errors have an index on gap that changes with size, by so
 /// much at a tenth of it, and a tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at 0.02
-/// deg), ...", the largest change first, ten at the most. The size is where the tolerance will be about the size, if the index grows with a power
-/// of it. Empty where there is none, or the result does not say how indices change.
+/// deg), ...", the largest change first, ten at the most. The size is where the tolerance will be about the size, if
+/// the index grows with a power of it. Empty where there is none, or the result does not say how indices change.
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
 }  // namespace poesy

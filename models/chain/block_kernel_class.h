@@ -93,8 +93,8 @@ struct AnyShape {
 /// step is the largest distance that one joint's part of it moves the platform's points, over the reach. Nearly every
 /// sample is solved by the first pass, so that a batch of samples is iterated until its last lane is done:
 ///   direct   Newton from a start in proportion to the errors, or from a fit, where a step with N at nominal
-///            displacements comes first and is the last one if s < 10 tolerance. Newton's matrix is made in every fourth
-///            round and used in four; a lane is refused where one is not safe, and after 12 rounds;
+///            displacements comes first and is the last one if s < 10 tolerance. Newton's matrix is made in every
+///            fourth round and used in four; a lane is refused where one is not safe, and after 12 rounds;
 ///   follow   as above, with s for the size of steps, from the start of Gauss-Newton; where that rests though Newton
 ///            is not safe, it has found a root by itself;
 ///   rescue   as above, with 0.5 of the reach for 0.5 (rad, m).
