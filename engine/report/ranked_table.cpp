@@ -117,11 +117,10 @@ std::vector<std::string> notes(const StoredResult& result, const RankedErrors& r
 std::string radius_note(const StoredResult& result, std::size_t response) {
   const std::vector<double>& tau = result.sensitivity.radius_tau;
   const std::size_t responses = result.responses.size();
-  if (tau.empty() || std::isnan(tau[response])) return {};
+  if (tau.empty() || std::isnan(tau[response]) || std::isnan(tau[responses + response])) return {};
   return fmt::format(
       "ranked by {} to first order, with the metric's points as they are and at half and twice their distance from "
-      "their "
-      "middle: Kendall's tau of both rankings with the first is {:.2f} and {:.2f} (1: the same order)",
+      "their middle: Kendall's tau of both rankings with the first is {:.2f} and {:.2f} (1: the same order)",
       result.responses[response].name, tau[response], tau[responses + response]);
 }
 

@@ -6,6 +6,8 @@
 #include <span>
 
 #include "engine/base/contract.h"
+#include "engine/base/error.h"
+#include "engine/base/nan.h"
 #include "engine/run/some_poses.h"
 #include "engine/stats/rank_correlation.h"
 #include "engine/stats/rounding.h"
@@ -34,6 +36,16 @@ std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   mechanism.fidelity = static_cast<std::size_t>(found - fidelities.begin());
   mechanism.compared.reset();
   return mechanism;
+}
+
+/// The mechanism with these points; null where it refuses them.
+std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<PlatformPoint> points) {
+  mechanism.points = std::move(points);
+  try {
+    return build_model(mechanism);
+  } catch (const InputError&) {
+    return nullptr;
+  }
 }
 
 /// Effects of all errors on all responses, [R x P], by the published estimator.
@@ -87,14 +99,14 @@ class Effects {
 
 std::vector<double> radius_rank_correlations(const Study& study, const Plan& plan) {
   POESY_EXPECTS(plan.slots() == plan.factors().size());
-  std::optional<MechanismChoice> mechanism = to_first_order(study.mechanism);
+  const std::optional<MechanismChoice> mechanism = to_first_order(study.mechanism);
   if (!mechanism || !mechanism->entry->build_with_points) return {};
   const std::unique_ptr<Model> own = build_model(*mechanism);
   const std::vector<double> effects = Effects(plan, *own).all();
   std::vector<double> correlations;
   for (const double multiple : kPointsRadii) {
-    mechanism->points = at_radius(own->metric_points(), multiple);
-    const std::vector<double> others = Effects(plan, *build_model(*mechanism)).all();
+    const std::unique_ptr<Model> other = model_with(*mechanism, at_radius(own->metric_points(), multiple));
+    const std::vector<double> others = other ? Effects(plan, *other).all() : std::vector(effects.size(), kNaN);
     for (std::size_t r = 0; r < own->description().responses.size(); ++r) {
       const std::size_t from = r * plan.slots();
       correlations.push_back(

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "tests/engine/run/study_kinds.h"
 
@@ -27,8 +28,8 @@ double radius_of(const Points& points) {
   return std::sqrt(squares);
 }
 
-/// Effects of its three errors on its first response stand as 1, rho and 2 rho^2, rho = radius / 0.2 m times `own`; on
-/// its second as 1, 2 and 3 whatever the radius.
+/// Its three errors have effects in the ratio of 1, rho and 2 rho^2 on the first response, with rho = radius / 0.2 m
+/// times `own`, and of 1, 2 and 3 on the second, whatever the radius.
 class RadiusModel final : public FakeModel {
  public:
   explicit RadiusModel(const Points& points, double own) : points_(points), rho_(own * radius_of(points) / 0.2) {}
@@ -92,6 +93,19 @@ TEST(PointsRadius, IsNothingToAResponseThatDoesNotDependOnIt) {
   const std::vector<double> tau = correlations(radius_entry(0.7));
   EXPECT_DOUBLE_EQ(tau[1], 1.0);
   EXPECT_DOUBLE_EQ(tau[3], 1.0);
+}
+
+// The run has its result by then, which must not be lost.
+TEST(PointsRadius, IsNotKnownWhereTheMechanismRefusesThePoints) {
+  CatalogEntry entry = radius_entry(0.7);
+  entry.build_with_points = [](auto, std::size_t, std::span<const PlatformPoint> points) {
+    if (radius_of(Points(points.begin(), points.end())) > 0.3) throw std::invalid_argument("too far apart");
+    return std::make_unique<RadiusModel>(Points(points.begin(), points.end()), 0.7);
+  };
+  const std::vector<double> tau = correlations(entry);
+  ASSERT_EQ(tau.size(), 4U);
+  EXPECT_DOUBLE_EQ(tau[0], 1.0 / 3.0);
+  EXPECT_TRUE(std::isnan(tau[2]) && std::isnan(tau[3]));
 }
 
 TEST(PointsRadius, IsNothingToAMechanismWithoutPointsOrFirstOrder) {
