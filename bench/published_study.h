@@ -35,7 +35,7 @@ inline Study platform_study(std::size_t poses, std::size_t samples, std::size_t 
   Study study = published_study(poses, samples);
   study.mechanism.entry = study.mechanism.entry->by_platform.get();
   study.mechanism.fidelity = fidelity;
-  study.solver.tolerance = kToleranceByPlatform;
+  study.solver.tolerance = study.model().tolerance;
   return study;
 }
 

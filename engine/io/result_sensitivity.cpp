@@ -24,11 +24,11 @@ void add_global_indices(ResultBuilder& result, const SensitivityResult& found) {
              {"SI: response unit, see /responses/unit",
               "Up to this an effect, index x sigma, cannot be told from the rounding of solves"});
   if (found.index_change.empty()) return;
-  result.add("/sensitivity/index_change", axes, found.index_change,
-             {"1",
-              "Change of 'global' where the error is a tenth as large, by the same few draws at up to 32 poses: index "
-              "there / index "
-              "here - 1; 0: the index holds at other sizes; NaN: not known, or no effect at either size"});
+  result.add(
+      "/sensitivity/index_change", axes, found.index_change,
+      {"1",
+       "Change of 'global' where the error is a tenth as large, by the same few draws at up to 32 poses: index "
+       "there / index here - 1; 0: the index holds at other sizes; NaN: not known, or no effect at either size"});
 }
 
 void add_local_indices(ResultBuilder& result, const SensitivityResult& found) {

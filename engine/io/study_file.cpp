@@ -80,7 +80,7 @@ SolverOptions::Method read_method(const StudyValue& value) {
 
 SolverOptions read_solver(const StudySection& section, const ModelDescription& model) {
   SolverOptions solver;
-  if (model.metric == "platform") solver.tolerance = kToleranceByPlatform;
+  solver.tolerance = model.tolerance;
   if (const auto value = section.find("method")) solver.method = read_method(*value);
   if (const auto value = section.find("tolerance")) {
     solver.tolerance = value->number();

@@ -278,9 +278,8 @@ std::string metric_keys(const CatalogEntry& entry) {
 
 std::string solver_and_run_sections(const CatalogEntry& entry) {
   const ModelDescription& model = entry.description;
-  const double tolerance = model.metric == "platform" ? kToleranceByPlatform : SolverOptions().tolerance;
   return "\n[solver]\n" + metric_keys(entry) + explained("solver", "method", "method = \"newton\"") +
-         explained("solver", "tolerance", "tolerance = " + shortest(tolerance)) +
+         explained("solver", "tolerance", "tolerance = " + shortest(model.tolerance)) +
          explained("solver", "max_iterations", "max_iterations = 50") +
          explained("solver", "not_converged", "not_converged = \"exclude\"") +
          explained("solver", "max_not_converged", "max_not_converged = 1") + "\n[run]\n" +

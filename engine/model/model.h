@@ -135,15 +135,12 @@ struct SolverOptions {
 
   Method method = Method::newton;  ///< a model with one iteration takes it for both
   /// A solve has converged once the largest component of the change of the residual is below this (rad, m); by the
-  /// platform's metric, once the change's length is below this share of the mechanism's reach (kToleranceByPlatform).
-  /// Default 1e-15, Du et al. 2022, Section 5.1.
+  /// platform's metric, once the change's length is below this share of the mechanism's reach. Default 1e-15, Du et al.
+  /// 2022, Section 5.1; a study's default is ModelDescription::tolerance.
   double tolerance = 1e-15;
   /// Default 50, Du et al. 2022, Section 5.1.
   int max_iterations = 50;
 };
-
-/// The tolerance where a study by the platform's metric names none: some fifty times what solves round to.
-inline constexpr double kToleranceByPlatform = 1e-14;
 
 /// A factor set that the literature judges as one source of errors.
 struct CouplingSource {
@@ -171,6 +168,7 @@ struct ModelDescription {
   /// How mismatch of angle is weighed against mismatch of position: "platform", by the displacement of its points, or
   /// "published", radians against metres at the base's origin. Empty: nothing is weighed.
   std::string metric = {};
+  double tolerance = SolverOptions().tolerance;     ///< of solves, where a study names none
   std::vector<PoseChart> charts;                    ///< other coordinates of poses
   std::vector<NamedCurve> curves;                   ///< trajectories of the literature
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors

@@ -59,6 +59,12 @@ std::vector<std::string> names_of(const std::vector<NamedUnit>& things) {
   return list;
 }
 
+std::string some_names(const std::vector<std::string>& names, std::size_t most) {
+  std::string text;
+  for (std::size_t n = 0; n < std::min(names.size(), most); ++n) text += (n == 0 ? "" : ", ") + names[n];
+  return names.size() > most ? text + fmt::format(" and {} more", names.size() - most) : text;
+}
+
 std::string metric_text(const StoredResult& result) {
   if (result.metric == "platform") {
     return fmt::format("platform, by displacement of {}", counted(result.metric_points.size(), "point", "points"));

@@ -31,6 +31,9 @@ std::string unit_text(const NamedUnit& named);
 /// The names, in order.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things);
 
+/// The first of these, "a, b, c and 3 more".
+std::string some_names(const std::vector<std::string>& names, std::size_t most = 5);
+
 /// By what mismatch of angle was weighed against mismatch of position: "platform, by displacement of 3 points". Empty
 /// where nothing is weighed, and for results of older versions.
 std::string metric_text(const StoredResult& result);

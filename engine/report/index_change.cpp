@@ -1,7 +1,6 @@
 #include "engine/report/index_change.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +22,12 @@ std::span<const double> changes_of(const StoredResult& result, std::size_t respo
   return std::span(found.index_change).subspan(response * found.factors, found.factors);
 }
 
-/// Where an index grows with a power of the size, a tolerance counted from it would be this multiple of the size
-/// studied if it had been studied there. ratio: of the tolerance to the size studied; change: of the index at a tenth.
+/// Of a change that is known: "-99.1 %".
+std::string change_text(double change) { return fmt::format("{:+.1f} %", 100.0 * change); }
+
+/// The size to study, as a multiple of the size studied. At this size the tolerance counted from the index is the size
+/// itself, if the index grows with a power of the size. ratio: tolerance over size studied; change: of the index at a
+/// tenth of the size.
 double corrected_ratio(double ratio, double change) {
   constexpr double kFallsTooFast = -0.9;
   const double power = -std::log10(1.0 + change);
@@ -47,8 +50,6 @@ std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::s
 }  // namespace
 
 bool has_index_changes(const StoredResult& result) { return !result.sensitivity.index_change.empty(); }
-
-std::string change_text(double change) { return std::isnan(change) ? "-" : fmt::format("{:+.1f} %", 100.0 * change); }
 
 Cell change_cell(double change) {
   if (std::isnan(change)) return text_cell("");
@@ -82,12 +83,11 @@ std::string index_change_text(const StoredResult& result, std::size_t response) 
                   result.responses[response].name, 100.0 * kIndexHolds, effects - unknown - changing.size(),
                   counted(effects, "error with an effect", "errors with an effect"));
   if (unknown > 0) text += fmt::format("; not known for {}", unknown);
-  const std::size_t shown = std::min(changing.size(), kMostNames);
-  for (std::size_t n = 0; n < shown; ++n) {
-    text += fmt::format("{} {} ({})", n == 0 ? "; not for" : ",", result.factors[changing[n]].name,
-                        change_text(changes[changing[n]]));
+  std::vector<std::string> list;
+  for (const std::size_t p : changing) {
+    list.push_back(fmt::format("{} ({})", result.factors[p].name, change_text(changes[p])));
   }
-  return changing.size() > shown ? text + fmt::format(" and {} more", changing.size() - shown) : text;
+  return list.empty() ? text : text + "; not for " + some_names(list, kMostNames);
 }
 
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances) {
@@ -102,16 +102,11 @@ std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerance
                                *size / display(factor).si, unit_text(factor)));
   }
   if (list.empty()) return {};
-  const std::size_t errors = list.size();
-  if (errors > kMostNames) {
-    list.resize(kMostNames);
-    list.back() += fmt::format(" and {} more", errors - kMostNames);
-  }
   return fmt::format(
       "{} on {} that changes with size, by so much at a tenth of it, and a tolerance of another size than was studied: "
       "{}",
-      counted(errors, "error has an index", "errors have an index"), result.responses[tolerances.response].name,
-      fmt::join(list, ", "));
+      counted(list.size(), "error has an index", "errors have an index"), result.responses[tolerances.response].name,
+      some_names(list, kMostNames));
 }
 
 }  // namespace poesy

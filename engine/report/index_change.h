@@ -14,9 +14,7 @@ namespace poesy {
 /// Whether the result says it; those of older versions do not.
 bool has_index_changes(const StoredResult& result);
 
-/// By which share the index changes where the error is a tenth as large: "-99.1 %"; "-" where that is not known.
-std::string change_text(double change);
-/// The same for a percent_column.
+/// By which share the index changes where the error is a tenth as large, for a percent_column.
 Cell change_cell(double change);
 
 /// The errors that have an effect on the response and whose index changes with size, the largest change first.
@@ -25,8 +23,7 @@ std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t
 
 /// For how many of the errors that have an effect the response's index holds, and for which not, the largest change
 /// first: "the index on gap holds at a tenth of the size, within 2 %: 15 of 25 errors with an effect; not for
-/// epsilon_3_4_z (-99.1 %), ...". Precondition:
-/// has_index_changes.
+/// epsilon_3_4_z (-99.1 %), ...". Precondition: has_index_changes.
 std::string index_change_text(const StoredResult& result, std::size_t response);
 
 /// Beyond this ratio to the size studied, in either direction, a tolerance is of another size.

@@ -11,11 +11,13 @@ namespace poesy {
 
 /// A result's summary and its tables as one JSON object, for programs:
 ///
-///     kind, model, metric (name, null where nothing is weighed), metric_points (m, null where it has none), title,
-///     poesy_version, git_commit, content_sha256, seed (where the study has one), poses errors, responses: [{name, unit
-///     (SI), description}], the description empty in files of older versions solves: total, not_converged, by_status:
-///     {converged, stagnated, ...} run: created, threads, wall_seconds tables: [{name, caption, columns: [{name,
-///     heading, unit, kind}], rows, shown, notes}]
+/// - kind, model, title, poesy_version, git_commit, content_sha256
+/// - metric: name, null where nothing is weighed; metric_points: [[x, y, z]] in m, null where it has none
+/// - seed, where the study has one; poses
+/// - errors, responses: [{name, unit (SI), description}], the description empty in files of older versions
+/// - solves: total, not_converged, by_status: {converged, stagnated, ...}
+/// - run: created, threads, wall_seconds
+/// - tables: [{name, caption, columns: [{name, heading, unit, kind}], rows, shown, notes}]
 ///
 /// A row of `rows` has the values by the names of the columns: numbers so that they read back as the same double, in
 /// the column's unit, null where there is none; text as it is. `shown` has the texts of the same cells, as a list for

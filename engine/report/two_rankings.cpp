@@ -74,11 +74,6 @@ constexpr std::string_view kWhyMetricsDiffer =
     "The published metric weighs radians against metres, so its ranking depends on the unit of length and on where the "
     "base frame is; the platform's metric measures how far its points move, which depends on neither.";
 
-/// Of two that are known; files of older versions do not say theirs.
-bool differ_in_metric(const StoredResult& a, const StoredResult& b) {
-  return !a.metric.empty() && !b.metric.empty() && a.metric != b.metric;
-}
-
 std::vector<std::string> remarks(const RankedResult& a, const RankedResult& b, double tau, std::size_t errors) {
   std::vector<std::string> list{tau_text(tau, errors)};
   if (differ_in_metric(a.result, b.result)) {
@@ -107,6 +102,10 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
 }
 
 }  // namespace
+
+bool differ_in_metric(const StoredResult& a, const StoredResult& b) {
+  return !a.metric.empty() && !b.metric.empty() && a.metric != b.metric;
+}
 
 TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order) {
   check_comparable(a.result, a.path, b.result, b.path);

@@ -20,14 +20,17 @@ struct RankedResult {
 struct TwoRankings {
   Table table;  ///< of each error its rank and effect in A and in B, in an order of A
   double tau;   ///< Kendall's, of the effects; NaN where it is not known
-  std::vector<std::string>
-      remarks;  ///< sentences for people: the tau, what differs between the metrics, what is left out
+  /// Sentences for people: the tau, how the metrics differ, what is left out.
+  std::vector<std::string> remarks;
 };
 
 /// A beside B, of the errors that both have. Errors without effect share the last rank; those whose effect cannot be
 /// told from rounding have none and do not count for the tau. Throws InputError where the results are of two kinds or
 /// mechanisms, or have no error in common.
 TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order = RowOrder::effect);
+
+/// Whether two results are by different metrics, as far as both say it; files of older versions do not.
+bool differ_in_metric(const StoredResult& a, const StoredResult& b);
 
 /// What a reader must know of one of them, on one line: "A: title (path); metric: ...; ranked by gap; 5 of 1 000 solves
 /// did not converge".

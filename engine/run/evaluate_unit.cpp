@@ -80,7 +80,7 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   const FactorIndex factor = plan_->factors()[unit.slot];
   fill_uniforms({plan_->seed(), Purpose::error_samples, factor, unit.pose}, unit.first, draws);
   plan_->distributions()[unit.slot].transform(draws);
-  for (std::size_t k = scales.size(); k-- > 0;) {  // the draws themselves stand first, and are scaled last
+  for (std::size_t k = scales.size(); k-- > 0;) {  // the first ones last, because the others are made of them
     for (std::size_t b = 0; b < unit.count; ++b) values[k * unit.count + b] = scales[k] * draws[b];
   }
   const std::span status = std::span(status_).first(count);

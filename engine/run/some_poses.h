@@ -7,10 +7,10 @@
 
 namespace poesy {
 
-/// Poses at which a study is looked at a second time, at the most.
+/// The most poses at which a sensitivity study is checked a second time.
 inline constexpr std::size_t kSomePoses = 32;
 
-/// How many those are, of a study with so many.
+/// The number of such poses in a study with this many poses.
 constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses, poses); }
 
 /// The n-th of them: evenly spaced over the order of the study's poses. Precondition: n < some_poses(poses).

@@ -96,7 +96,7 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
-  std::unique_ptr<Model> model;
+  std::unique_ptr<Model> model;  // first without the study's points, so that each message names the right key
   try {
     model = entry.build(mechanism.geometry, mechanism.fidelity);
   } catch (const std::invalid_argument& reason) {

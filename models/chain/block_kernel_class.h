@@ -68,9 +68,9 @@ struct AnyShape {
 };
 
 /// Solves blocks of samples of a parallel chain for J(q)^T delta_mu(q) = 0 (Du et al. 2022, Eqs. 40-44), T::kLanes
-/// samples at a time, T being simd::Number or a SIMD batch
-/// (models/simd), for chains of a Shape and by a Measure. Samples are independent: each is iterated until it is done,
-/// those that are not done close ranks after every round, and no operation mixes lanes.
+/// samples at a time, T being simd::Number or a SIMD batch (models/simd), for chains of a Shape and by a Measure.
+/// Samples are independent: no operation mixes lanes. As published each sample is iterated until it is done, and those
+/// that are not done close ranks after every round; by a metric a batch is iterated until its last sample is done.
 ///
 /// published: x = N^-1 f with f = J^T delta_mu and N = J^T J, stopping rule as in DeformationSolver.
 ///
@@ -90,8 +90,8 @@ struct AnyShape {
 /// is carried along it to first order instead of being evaluated again.
 ///
 /// By a metric (Weighted) the equation is J^T W delta_mu = 0, f = J^T W delta_mu and N = J^T W J. The length s of a
-/// step is the largest distance that one joint's part of it moves the platform's points, over the reach. Nearly every
-/// sample is solved by the first pass, so that a batch of samples is iterated until its last lane is done:
+/// step is the largest distance by which one joint's part of it moves the platform's points, over the reach. The first
+/// pass solves nearly every sample:
 ///   direct   Newton from a start in proportion to the errors, or from a fit, where a step with N at nominal
 ///            displacements comes first and is the last one if s < 10 tolerance. Newton's matrix is made in every
 ///            fourth round and used in four; a lane is refused where one is not safe, and after 12 rounds;
@@ -120,7 +120,7 @@ class BlockKernel {
   static constexpr double kRestingStep = 1e-12;
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
-  static constexpr double kShort = 1e3;
+  static constexpr double kShortLength = 1e3;  ///< times the tolerance
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;

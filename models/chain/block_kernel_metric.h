@@ -65,7 +65,8 @@ unsigned BlockKernel<T, Shape, Measure>::iterate(std::size_t at, unsigned open, 
   return left;
 }
 
-/// From fits, or in proportion to the errors, or as Gauss-Newton does, from nominal displacements.
+/// Where a pass starts: the first one from a fit, or in proportion to the errors; the others, as Gauss-Newton, from
+/// nominal displacements.
 template <class T, class Shape, class Measure>
 template <KernelPass pass>
 void BlockKernel<T, Shape, Measure>::start(std::size_t at) {
@@ -78,8 +79,8 @@ void BlockKernel<T, Shape, Measure>::start(std::size_t at) {
   vary_segments(at);
 }
 
-/// A fit is mostly exact to rounding: a step with the matrix at nominal displacements shows it. Finishes lanes where it
-/// is, and returns those that are left.
+/// Finishes the lanes whose fit is exact to rounding, and returns the others. One step with the matrix at nominal
+/// displacements shows which they are.
 template <class T, class Shape, class Measure>
 unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned open) {
   residuals();
@@ -117,7 +118,8 @@ auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint3
     newton_step_again(step_);
   }
   const T length = step_length(step_, [&](std::size_t a) { return n_[a * joints() + a]; });
-  auto small = (length * length < T(0.1 * options_.tolerance) * before) & (length < T(kShort * options_.tolerance));
+  auto small =
+      (length * length < T(0.1 * options_.tolerance) * before) & (length < T(kShortLength * options_.tolerance));
   if (is_new) small = small | (length < T(options_.last_step));
   const auto converged = safe & finite_residual() & small;
   before = length;
@@ -221,7 +223,7 @@ void BlockKernel<T, Shape, Measure>::judge_by_metric(std::size_t at) {
     linear2 = linear2 + kernel::dot3(mu.v, mu.v);
   }
   const T share(1.0 / static_cast<double>(pairs()));
-  // Rounding may leave a gap of nothing below nothing.
+  // Rounding may make a sum that should be 0 negative.
   sqrt(select(gap2 < T(0.0), T(0.0), gap2) * share).store(outcome_.responses + at);
   sqrt(angular2 * share).store(outcome_.responses + outcome_.stride + at);
   sqrt(linear2 * share).store(outcome_.responses + 2 * outcome_.stride + at);

@@ -93,11 +93,12 @@ void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::map_lanes(const KernelMap& map, const double* values, std::size_t stride) {
   if constexpr (Shape::kEveryPairOnce) {
-    // The third pair compares limbs that the first two compare with another one.
+    // A residual is the motion of limb k less that of limb i, so that the third is the sum or difference of the others:
+    // one that shares a limb with it in the same role counts with +.
     map_rows<12>(map, 0, values, stride);
-    const bool is_started = chain_.pair[0].k == chain_.pair[2].k || chain_.pair[0].i == chain_.pair[2].i;
-    const bool is_ended = chain_.pair[1].k == chain_.pair[2].k || chain_.pair[1].i == chain_.pair[2].i;
-    const T first(is_started ? 1.0 : -1.0), second(is_ended ? 1.0 : -1.0);
+    const KernelPair& third = chain_.pair[2];
+    const auto sign = [&](const KernelPair& pair) { return T(pair.k == third.k || pair.i == third.i ? 1.0 : -1.0); };
+    const T first = sign(chain_.pair[0]), second = sign(chain_.pair[1]);
     for (int k = 0; k < 3; ++k) {
       mu_[2].w[k] = madd(first, mu_[0].w[k], second * mu_[1].w[k]);
       mu_[2].v[k] = madd(first, mu_[0].v[k], second * mu_[1].v[k]);
@@ -116,7 +117,7 @@ void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map, std::size_t 
   for (std::size_t n = 0; n < rows; ++n) sum[n] = T(map.constant[first + n]);
   for (std::size_t v = 0; v < samples_.varied; ++v) {
     const T value = T::load(values + v * stride);
-    __builtin_prefetch(values + v * stride + 4 * kLanes);  // rows are too many for the processor to foresee
+    __builtin_prefetch(values + v * stride + 4 * kLanes);  // too many rows for the processor to do it by itself
     const double* effects = map.effects + 6 * pairs() * v + first;
     for (std::size_t n = 0; n < rows; ++n) sum[n] = madd(T(effects[n]), value, sum[n]);
   }

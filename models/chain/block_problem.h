@@ -83,7 +83,7 @@ struct KernelStart {
   const KernelFit* fit;  ///< [fits], with ranges that do not overlap
   std::size_t fits;      ///< how many
   const double* slopes;  ///< [varied x joints] by how much joints give way to an error, to first order; or null
-  /// By a metric, of N at nominal displacements without errors, for a first step from fits: or null.
+  /// Of N at nominal displacements without errors, for the first step from a fit by a metric; null as published.
   /// @{
   const double* inverse;   ///< [joints x joints]
   const double* diagonal;  ///< [joints], of N itself

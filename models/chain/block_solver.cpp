@@ -130,8 +130,8 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
   metric_ = metric;
   options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
-  // Newton's error falls with the square of its steps, of which rounding alone makes about 1e-14. By a metric nothing
-  // else tells how near to a singular pose a chain is, where it falls a thousandfold less: hence the hundredth.
+  // The error that a Newton step leaves is about its square; rounding alone makes steps of about 1e-14. By a metric the
+  // bound is lower, because near a singular pose a step may leave a thousand times its square.
   const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
   options_.last_step = std::max(last, 1e-10);
   fits_.clear();

@@ -65,7 +65,7 @@ void FirstOrder::matrix(std::span<double> inverse, std::span<double> diagonal) {
   }
 }
 
-/// A limb's platform moves: so much more in the pairs where it is compared, so much less where it is compared with.
+/// Adds the motion of a limb's platform to the pairs in which the limb is k, and takes it from those in which it is i.
 void FirstOrder::add_motion(std::size_t limb, const lie::Screw<double>& motion, std::span<double> delta_mu) const {
   for (std::size_t n = 0; n < chain_->pairs.size(); ++n) {
     Eigen::Map<lie::Screw<double>> mu(delta_mu.data() + 6 * n);

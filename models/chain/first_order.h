@@ -17,7 +17,7 @@ class FirstOrder {
   explicit FirstOrder(const ParallelChain& chain);
 
   /// At these nominal displacements [all joints] (rad, m); W: null for W = 1. Returns false where the passive joints'
-  /// motion is singular; there is no first order then.
+  /// motion is singular: then the first order does not exist.
   bool prepare(std::span<const double> displacements, const lie::Matrix6<double>* W);
 
   /// Of a unit of one entry of a frame's error: delta_mu [6 x pairs] and what the passive joints [passive joints] give

@@ -7,6 +7,9 @@
 
 namespace poesy::chain {
 
+/// The tolerance of solves by a metric where a study names none: some fifty times what they round to.
+inline constexpr double kToleranceByMetric = 1e-14;
+
 /// By what the mismatch of two limbs is judged, at one pose and in the base frame: |xi|_W = sqrt(xi^T W xi), a length,
 /// for a twist xi = [omega; v] (rad, m). The solvers make sum |delta_mu|_W^2 stationary: J^T W delta_mu = 0.
 struct Metric {

@@ -52,6 +52,7 @@ ModelDescription describe(const chain::DeformationModel& deformation) {
   description.factor_sets = factor_sets();
   const bool by_platform = !deformation.points.empty();
   description.metric = by_platform ? "platform" : "published";
+  if (by_platform) description.tolerance = chain::kToleranceByMetric;
   description.responses = by_platform ? chain::responses_by_metric() : chain::deformation_responses();
   description.deformation = chain::deformation_measure(deformation);
   description.details = chain::deformation_details(deformation.chain);

@@ -128,7 +128,7 @@ def check_table(output):
 
 
 def check_comparison(output):
-    """That all errors stand there with the rank that each metric gives them, and how well the rankings agree."""
+    """All errors are listed with the rank that each metric gives them, and how well the rankings agree."""
     _, found, text = output.partition("== The published ranking beside it")
     rows = [line.split() for line in text.splitlines() if re.match(r"(delta|epsilon)_\d_\d_[xyz] +\d", line)]
     tau = re.search(r"Kendall's tau of the two rankings is (-?[\d.]+),", text)

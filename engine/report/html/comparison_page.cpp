@@ -99,7 +99,7 @@ void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) 
   section.paragraph(ranked_text('B', ranked_b) + ".");
   for (const std::string& remark : rankings.remarks) section.paragraph(remark);
   section.table(rankings.table);
-  if (a.stored.metric != b.stored.metric) {
+  if (differ_in_metric(a.stored, b.stored)) {
     section.paragraph("Below, responses of the same name are compared. Two metrics do not mean the same by them.");
   }
   page.sections.push_back(std::move(section));

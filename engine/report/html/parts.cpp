@@ -55,13 +55,6 @@ std::vector<std::size_t> response_order(const StoredResult& result) {
   return order;
 }
 
-std::string some_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 5;
-  std::string text;
-  for (std::size_t n = 0; n < std::min(names.size(), kMost); ++n) text += (n == 0 ? "" : ", ") + names[n];
-  return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
-}
-
 std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
                                                   std::span<const std::size_t> factors) {
   std::vector<std::vector<std::string>> units;

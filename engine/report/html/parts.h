@@ -22,9 +22,6 @@ std::vector<std::size_t> headline_order(const StoredResult& result);
 /// The same, then all others.
 std::vector<std::size_t> response_order(const StoredResult& result);
 
-/// "a, b, c and 3 more".
-std::string some_names(const std::vector<std::string>& names);
-
 /// "mm/deg", for each of these responses and each of these errors.
 std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
                                                   std::span<const std::size_t> factors);

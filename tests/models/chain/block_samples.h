@@ -124,9 +124,15 @@ inline SolverOptions platform_options(SolverOptions::Method method = SolverOptio
                                       int max_iterations = 50) {
   SolverOptions options;
   options.method = method;
-  options.tolerance = kToleranceByPlatform;
+  options.tolerance = kToleranceByMetric;
   options.max_iterations = max_iterations;
   return options;
+}
+
+/// Largest difference of the residuals of sample b.
+inline double distance(const BlockOutcome& one, const BlockOutcome& other, std::size_t b) {
+  const auto column = static_cast<Eigen::Index>(b);
+  return (one.delta_mu.col(column) - other.delta_mu.col(column)).cwiseAbs().maxCoeff();
 }
 
 /// The samples of these positions, in this order.

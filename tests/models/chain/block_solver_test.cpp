@@ -33,12 +33,6 @@ std::vector<BlockSamples> every_chain(std::size_t count) {
   return all;
 }
 
-/// Largest difference of the residuals of sample b.
-double distance(const BlockOutcome& one, const BlockOutcome& other, std::size_t b) {
-  const auto column = static_cast<Eigen::Index>(b);
-  return (one.delta_mu.col(column) - other.delta_mu.col(column)).cwiseAbs().maxCoeff();
-}
-
 class EveryKernel : public test::WithIsa {};
 
 TEST_P(EveryKernel, GaussNewtonIsTheReference) {

@@ -70,11 +70,6 @@ std::vector<BlockSamples> every_chain(std::size_t count, double size) {
   return all;
 }
 
-double distance(const BlockOutcome& one, const BlockOutcome& other, std::size_t b) {
-  const auto column = static_cast<Eigen::Index>(b);
-  return (one.delta_mu.col(column) - other.delta_mu.col(column)).cwiseAbs().maxCoeff();
-}
-
 class EveryKernelByMetric : public test::WithIsa {};
 
 TEST_P(EveryKernelByMetric, GaussNewtonIsTheReference) {
