@@ -125,6 +125,7 @@ class BlockKernel {
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;
   static constexpr std::uint32_t kMatrixRounds = 4;
+  static constexpr std::size_t kMapErrors = 8;
 
   std::size_t limbs() const {
     if constexpr (Shape::kFixed) return Shape::kLimbs;
@@ -178,9 +179,10 @@ class BlockKernel {
   template <KernelPass pass>
   std::size_t run(std::size_t count, std::uint32_t rounds);
   void load_all(std::size_t first = 0);
-  void map_lanes(const KernelMap& map, const double* values, std::size_t stride);
-  template <std::size_t rows>
-  void map_rows(const KernelMap& map, std::size_t first, const double* values, std::size_t stride);
+  template <std::size_t errors>
+  void add_mapped(const KernelMap& map, std::size_t first, std::size_t v);
+  template <std::size_t known_rows>
+  void finish_mapped(const KernelMap& map, std::size_t at);
   void begin(std::size_t count, bool predicted);
   void predict(std::size_t at);
   void pad(std::size_t count);

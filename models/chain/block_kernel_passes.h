@@ -69,60 +69,78 @@ void BlockKernel<T, Shape, Measure>::solve() {
 
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
-  const std::size_t whole = samples_.count - samples_.count % kLanes;
-  load_all(whole);  // whole batches are read where they are
+  load_all(samples_.count - samples_.count % kLanes);  // whole batches are read where they are
+  for (std::size_t first = 0; first < map.rows; first += kMapRows) {
+    for (std::size_t row = first; row < first + kMapRows; ++row) {
+      for (std::size_t at = 0; at < samples_.count; at += kLanes) {
+        T(map.constant[row]).store(memory_ + row * capacity_ + at);
+      }
+    }
+    std::size_t v = 0;
+    for (; v + kMapErrors <= samples_.varied; v += kMapErrors) add_mapped<kMapErrors>(map, first, v);
+    for (; v < samples_.varied; ++v) add_mapped<1>(map, first, v);
+  }
   for (std::size_t at = 0; at < samples_.count; at += kLanes) {
-    if (at < whole) {
-      map_lanes(map, samples_.values + at, samples_.stride);
-    } else {
-      map_lanes(map, value_ + at, capacity_);
-    }
-    const unsigned finite = bits(finite_residual());
-    const T* mu = reinterpret_cast<const T*>(mu_);
-    for (std::size_t n = 0; n < 6 * pairs(); ++n) mu[n].store(outcome_.delta_mu + n * outcome_.stride + at);
-    for (std::size_t lane = 0; lane < kLanes && at + lane < samples_.count; ++lane) {
-      const bool is_finite = (finite >> lane & 1u) != 0;
-      outcome_.status[at + lane] = is_finite ? SolveStatus::converged : SolveStatus::non_finite;
-      outcome_.iterations[at + lane] = 1;
-    }
-    judge(at);
+    map.rows == kMapRows ? finish_mapped<kMapRows>(map, at) : finish_mapped<0>(map, at);
   }
 }
 
-/// The residuals of one batch. values: its first lane, rows are `stride` apart.
+/// Adds to these rows of all samples what some of the errors do, from the v-th on. So few rows of samples at a time are
+/// read that the processor fetches them ahead by itself.
 template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::map_lanes(const KernelMap& map, const double* values, std::size_t stride) {
-  if constexpr (Shape::kEveryPairOnce) {
-    // A residual is the motion of limb k less that of limb i, so that the third is the sum or difference of the others:
-    // one that shares a limb with it in the same role counts with +.
-    map_rows<12>(map, 0, values, stride);
-    const KernelPair& third = chain_.pair[2];
-    const auto sign = [&](const KernelPair& pair) { return T(pair.k == third.k || pair.i == third.i ? 1.0 : -1.0); };
-    const T first = sign(chain_.pair[0]), second = sign(chain_.pair[1]);
-    for (int k = 0; k < 3; ++k) {
-      mu_[2].w[k] = madd(first, mu_[0].w[k], second * mu_[1].w[k]);
-      mu_[2].v[k] = madd(first, mu_[0].v[k], second * mu_[1].v[k]);
-    }
-  } else {
-    for (std::size_t n = 0; n < pairs(); ++n) map_rows<6>(map, 6 * n, values, stride);
+template <std::size_t errors>
+void BlockKernel<T, Shape, Measure>::add_mapped(const KernelMap& map, std::size_t first, std::size_t v) {
+  T effect[errors][kMapRows];
+  for (std::size_t e = 0; e < errors; ++e) {
+    for (std::size_t n = 0; n < kMapRows; ++n) effect[e][n] = T(map.effects[(v + e) * map.rows + first + n]);
   }
+  const auto add = [&](const double* values, std::size_t stride, std::size_t at) {
+    double* rows = memory_ + first * capacity_ + at;
+    T sum[kMapRows];
+    for (std::size_t n = 0; n < kMapRows; ++n) sum[n] = T::load(rows + n * capacity_);
+    for (std::size_t e = 0; e < errors; ++e) {
+      const T value = T::load(values + e * stride);
+      for (std::size_t n = 0; n < kMapRows; ++n) sum[n] = madd(effect[e][n], value, sum[n]);
+    }
+    for (std::size_t n = 0; n < kMapRows; ++n) sum[n].store(rows + n * capacity_);
+  };
+  std::size_t at = 0;
+  for (; at + kLanes <= samples_.count; at += kLanes)
+    add(samples_.values + v * samples_.stride + at, samples_.stride, at);
+  if (at < samples_.count) add(value_ + v * capacity_ + at, capacity_, at);
 }
 
-/// These rows of the residuals, in as many registers.
+/// Residuals, where they are wanted, responses and status of one batch, from its coordinates. known_rows: 0 if not
+/// known.
 template <class T, class Shape, class Measure>
-template <std::size_t rows>
-void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map, std::size_t first, const double* values,
-                                              std::size_t stride) {
-  T sum[rows];
-  for (std::size_t n = 0; n < rows; ++n) sum[n] = T(map.constant[first + n]);
-  for (std::size_t v = 0; v < samples_.varied; ++v) {
-    const T value = T::load(values + v * stride);
-    __builtin_prefetch(values + v * stride + 4 * kLanes);  // too many rows for the processor to do it by itself
-    const double* effects = map.effects + 6 * pairs() * v + first;
-    for (std::size_t n = 0; n < rows; ++n) sum[n] = madd(T(effects[n]), value, sum[n]);
+template <std::size_t known_rows>
+void BlockKernel<T, Shape, Measure>::finish_mapped(const KernelMap& map, std::size_t at) {
+  const std::size_t rows = known_rows != 0 ? known_rows : map.rows;
+  const auto y = [&](std::size_t row) { return T::load(memory_ + row * capacity_ + at); };
+  T size(0.0);
+  for (std::size_t row = 0; row < rows; ++row) size = size + abs(y(row));
+  const unsigned finite = bits(size < T(1e300));
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const bool is_finite = (finite >> lane & 1u) != 0;
+    outcome_.status[at + lane] = is_finite ? SolveStatus::converged : SolveStatus::non_finite;
+    outcome_.iterations[at + lane] = 1;
   }
-  T* mu = reinterpret_cast<T*>(mu_) + first;
-  for (std::size_t n = 0; n < rows; ++n) mu[n] = sum[n];
+  for (std::size_t n = 0; map.delta_mu != nullptr && n < 6 * pairs(); ++n) {
+    T sum(0.0);
+    for (std::size_t row = 0; row < rows; ++row) sum = madd(T(map.delta_mu[n * rows + row]), y(row), sum);
+    sum.store(outcome_.delta_mu + n * outcome_.stride + at);
+  }
+  if constexpr (!Measure::kWeighted) return judge(at);
+  for (std::size_t response = 0; response < 3; ++response) {
+    const double* R = map.norms + response * rows * rows;
+    T square(0.0);
+    for (std::size_t row = 0; row < rows; ++row) {
+      T sum(0.0);
+      for (std::size_t column = row; column < rows; ++column) sum = madd(T(R[row * rows + column]), y(column), sum);
+      square = madd(sum, sum, square);
+    }
+    sqrt(square).store(outcome_.responses + response * outcome_.stride + at);
+  }
 }
 
 /// By a metric see judge_by_metric(). As published Eqs. 45-50: mean of the angular and of the linear norms over the

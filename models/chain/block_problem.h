@@ -90,10 +90,16 @@ struct KernelStart {
   /// @}
 };
 
-/// Residuals to first order: constant + sum over v of effects[v] x value v.
+/// Rows of a map are a multiple of this, the last ones zero.
+inline constexpr std::size_t kMapRows = 3;
+
+/// Residuals to first order, by their coordinates y = constant + sum over v of effects[v] x value v; see ResidualSpace.
 struct KernelMap {
-  const double* constant;  ///< [6 pairs]
-  const double* effects;   ///< [varied x 6 pairs]
+  std::size_t rows;        ///< of y
+  const double* constant;  ///< [rows]
+  const double* effects;   ///< [varied x rows]
+  const double* delta_mu;  ///< [6 pairs x rows] of a unit of each row; null by a metric: not wanted
+  const double* norms;     ///< [3 x rows x rows] upper triangles R: each response is |R y|; null as published
 };
 
 enum class KernelMethod {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "models/chain/block_kernels.h"
 #include "models/chain/deformation_solver.h"
 #include "models/simd/isa.h"
@@ -79,7 +80,8 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
                kLargestStep,
                static_cast<std::uint32_t>(options.max_iterations)},
       kernels_(best_kernels()),
-      first_order_(chain) {
+      first_order_(chain),
+      residual_space_(chain) {
   std::size_t joint = 0;
   for (const Limb& limb : chain.limbs) {
     limbs_.push_back({joint, limb.passive_joints(), 0.0});
@@ -103,11 +105,37 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
 void BlockSolver::prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                           std::span<const FrameEntry> varied, double range, const Metric* metric) {
   POESY_EXPECTS(displacements.size() == chain_->joints() && errors.size() == chain_->frames());
+  varied_ = varied.size();
+  metric_ = metric;
+  const bool is_linear = fidelity_ == Fidelity::first_order;
+  if (metric != nullptr || is_linear) {
+    is_singular_ = !first_order_.prepare(displacements, metric == nullptr ? nullptr : &metric->W);
+  }
+  if (is_linear) {
+    if (!is_singular_) find_map(errors, varied);
+    return;
+  }
+  find_segments(displacements, errors, varied);
+  options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
+  // The error that a Newton step leaves is about its square; rounding alone makes steps of about 1e-14. By a metric the
+  // bound is lower, because near a singular pose a step may leave a thousand times its square.
+  const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
+  options_.last_step = std::max(last, 1e-10);
+  if (metric != nullptr && !is_singular_) find_slopes(errors, varied);
+  fits_.clear();
+  fits_made_ = 0;
+  if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) {
+    predict_starts(0.0, range, kSplits);
+  }
+}
+
+/// The motions between the passive joints, and these with their nominal displacements.
+void BlockSolver::find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
+                                std::span<const FrameEntry> varied) {
   joints_.clear();
   segments_.clear();
   pieces_.clear();
   first_piece_ = 0;
-  varied_ = varied.size();
   std::size_t frame = 0;
   std::size_t joint = 0;
   for (const Limb& limb : chain_->limbs) {
@@ -127,19 +155,6 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
     }
     ++frame;
     close_segment();
-  }
-  metric_ = metric;
-  options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
-  // The error that a Newton step leaves is about its square; rounding alone makes steps of about 1e-14. By a metric the
-  // bound is lower, because near a singular pose a step may leave a thousand times its square.
-  const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
-  options_.last_step = std::max(last, 1e-10);
-  fits_.clear();
-  fits_made_ = 0;
-  if (metric != nullptr || fidelity_ == Fidelity::first_order) find_slopes(displacements, errors, varied);
-  if (fidelity_ == Fidelity::first_order) return;
-  if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) {
-    predict_starts(0.0, range, kSplits);
   }
 }
 
@@ -187,36 +202,65 @@ void BlockSolver::close_segment() {
   first_piece_ = pieces_.size();
 }
 
-/// What each varied entry does to first order, and what all constant errors do together. By a metric solves start so.
-void BlockSolver::find_slopes(std::span<const double> displacements, std::span<const FrameError<double>> errors,
-                              std::span<const FrameEntry> varied) {
-  const std::size_t rows = 6 * pairs_.size();
+/// Calls act(entry, error) for every error that is constant and not zero.
+template <class Act>
+void for_each_constant(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied, Act act) {
+  for (std::size_t frame = 0; frame < errors.size(); ++frame) {
+    for (std::size_t component = 0; component < 6; ++component) {
+      const double error = errors[frame][static_cast<Eigen::Index>(component)];
+      if (error == 0.0) continue;
+      const bool varies = std::ranges::any_of(
+          varied, [&](const FrameEntry& entry) { return entry.frame == frame && entry.component == component; });
+      if (!varies) act(FrameEntry{frame, component}, error);
+    }
+  }
+}
+
+/// By how much joints give way to each varied entry to first order, where solves by a metric start; constant errors
+/// move their nominal displacements.
+void BlockSolver::find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
+  effect_.resize(6 * pairs_.size());
+  slope_.resize(joints_.size());
   slopes_.assign(varied.size() * joints_.size(), 0.0);
-  effects_.assign(varied.size() * rows, 0.0);
-  constant_.assign(rows, 0.0);
-  is_singular_ = !first_order_.prepare(displacements, metric_ == nullptr ? nullptr : &metric_->W);
-  if (is_singular_) return;
   inverse_.resize(joints_.size() * joints_.size());
   diagonal_.resize(joints_.size());
   first_order_.matrix(inverse_, diagonal_);
   for (std::size_t v = 0; v < varied.size(); ++v) {
-    first_order_.effect(varied[v], std::span(effects_).subspan(v * rows, rows),
-                        std::span(slopes_).subspan(v * joints_.size(), joints_.size()));
+    first_order_.effect(varied[v], effect_, std::span(slopes_).subspan(v * joints_.size(), joints_.size()));
   }
-  std::vector<double> effect(rows);
-  std::vector<double> slope(joints_.size());
-  for (std::size_t frame = 0; frame < errors.size(); ++frame) {
-    for (std::size_t component = 0; component < 6; ++component) {
-      const double error = errors[frame][static_cast<Eigen::Index>(component)];
-      const bool varies = std::ranges::any_of(
-          varied, [&](const FrameEntry& entry) { return entry.frame == frame && entry.component == component; });
-      if (error == 0.0 || varies) continue;
-      first_order_.effect({frame, component}, effect, slope);
-      for (std::size_t n = 0; n < rows; ++n) constant_[n] += error * effect[n];
-      if (metric_ == nullptr) continue;
-      for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].nominal += error * slope[j];
+  for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
+    first_order_.effect(entry, effect_, slope_);
+    for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].nominal += error * slope_[j];
+  });
+}
+
+/// The same errors in coordinates of the residuals, padded to whole groups of rows.
+void BlockSolver::find_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
+  residual_space_.prepare(first_order_, metric_);
+  const std::size_t used = residual_space_.dimensions();
+  const std::size_t rows = (used + kMapRows - 1) / kMapRows * kMapRows;
+  const auto first_of = [used](std::vector<double>& numbers, std::size_t at) {
+    return std::span(numbers).subspan(at, used);
+  };
+  map_constant_.assign(rows, 0.0);
+  map_effects_.assign(varied.size() * rows, 0.0);
+  map_delta_mu_.assign(6 * pairs_.size() * rows, 0.0);
+  map_norms_.assign(3 * rows * rows, 0.0);
+  for (std::size_t v = 0; v < varied.size(); ++v) {
+    residual_space_.add(first_order_, varied[v], 1.0, first_of(map_effects_, v * rows));
+  }
+  for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
+    residual_space_.add(first_order_, entry, error, first_of(map_constant_, 0));
+  });
+  const auto copy = [&](const Eigen::MatrixXd& from, std::vector<double>& to, std::size_t at) {
+    for (Eigen::Index row = 0; row < from.rows(); ++row) {
+      for (Eigen::Index y = 0; y < from.cols(); ++y) {
+        to[at + static_cast<std::size_t>(row) * rows + static_cast<std::size_t>(y)] = from(row, y);
+      }
     }
-  }
+  };
+  copy(residual_space_.delta_mu(), map_delta_mu_, 0);
+  for (std::size_t r = 0; r < 3; ++r) copy(residual_space_.norms()[r], map_norms_, r * rows * rows);
 }
 
 /// Fits a range of the varied error; where the fit is not as good as it should be, fits its halves.
@@ -264,18 +308,27 @@ double BlockSolver::fit_starts(double center, double half_width) {
   return tail;
 }
 
-void BlockSolver::solve(std::span<const double> values, std::size_t count) {
-  if (fidelity_ == Fidelity::first_order) return map(values, count);
+void BlockSolver::solve(std::span<const double> values, std::size_t count, bool wants_residuals) {
+  if (fidelity_ == Fidelity::first_order) return map(values, count, wants_residuals);
   run(values, count, options_, nullptr);
 }
 
-void BlockSolver::map(std::span<const double> values, std::size_t count) {
+void BlockSolver::map(std::span<const double> values, std::size_t count, bool wants_residuals) {
   const KernelChain chain = kernel_chain();
   POESY_EXPECTS(values.size() == varied_ * count);
   const KernelSamples samples{values.data(), varied_, count, count};
   double* scratch = make_room(chain, samples);
-  kernels_.map(chain, samples, {constant_.data(), effects_.data()}, outcome(nullptr), scratch);
-  if (is_singular_) std::ranges::fill(status_, SolveStatus::singular);
+  if (is_singular_) {
+    std::ranges::fill(status_, SolveStatus::singular);
+    std::ranges::fill(iterations_, 1u);
+    std::ranges::fill(delta_mu_, kNaN);
+    std::ranges::fill(responses_, kNaN);
+    return;
+  }
+  const bool maps_residuals = metric_ == nullptr || wants_residuals;
+  const KernelMap map{map_constant_.size(), map_constant_.data(), map_effects_.data(),
+                      maps_residuals ? map_delta_mu_.data() : nullptr, map_norms_.data()};
+  kernels_.map(chain, samples, map, outcome(nullptr), scratch);
 }
 
 void BlockSolver::run(std::span<const double> values, std::size_t count, const KernelOptions& options,

@@ -8,6 +8,7 @@
 #include "models/chain/first_order.h"
 #include "models/chain/limb.h"
 #include "models/chain/metric.h"
+#include "models/chain/residual_space.h"
 
 namespace poesy::chain {
 
@@ -37,8 +38,9 @@ class BlockSolver {
   void prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                std::span<const FrameEntry> varied, double range, const Metric* metric = nullptr);
 
-  /// values: [varied x count], row-major. To first order (FirstOrder) a singular pose makes every sample singular.
-  void solve(std::span<const double> values, std::size_t count);
+  /// values: [varied x count], row-major. To first order a singular pose makes every sample singular, and by a metric
+  /// there are residuals only where they are wanted.
+  void solve(std::span<const double> values, std::size_t count, bool wants_residuals = true);
 
   /// Row n of the last block's residuals, [6 x pairs], of [count].
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
@@ -57,12 +59,14 @@ class BlockSolver {
   void add_frame(const Limb& limb, std::size_t j, std::size_t frame, const FrameError<double>& error,
                  std::span<const FrameEntry> varied);
   void close_segment();
-  void find_slopes(std::span<const double> displacements, std::span<const FrameError<double>> errors,
-                   std::span<const FrameEntry> varied);
+  void find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
+                     std::span<const FrameEntry> varied);
+  void find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
+  void find_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
   void predict_starts(double center, double half_width, int splits_left);
   double fit_starts(double center, double half_width);
   void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);
-  void map(std::span<const double> values, std::size_t count);
+  void map(std::span<const double> values, std::size_t count, bool wants_residuals);
   double* make_room(const KernelChain& chain, const KernelSamples& samples);
   KernelOutcome outcome(double* displacements);
   KernelChain kernel_chain() const;
@@ -72,13 +76,19 @@ class BlockSolver {
   KernelOptions options_;
   Kernels kernels_;
   FirstOrder first_order_;
+  ResidualSpace residual_space_;
   const Metric* metric_ = nullptr;
   bool is_singular_ = false;      ///< the first order does not exist
   std::vector<double> slopes_;    ///< [varied x joints]
   std::vector<double> inverse_;   ///< [joints x joints] of J^T W J at nominal displacements
   std::vector<double> diagonal_;  ///< [joints], of J^T W J itself
-  std::vector<double> effects_;   ///< [varied x 6 pairs]
-  std::vector<double> constant_;  ///< [6 pairs], of constant errors
+  std::vector<double> effect_;    ///< [6 pairs], of one error
+  std::vector<double> slope_;     ///< [joints], of one error
+  // To first order, in coordinates of the residual space; see KernelMap.
+  std::vector<double> map_effects_;   ///< [varied x rows]
+  std::vector<double> map_constant_;  ///< [rows], of constant errors
+  std::vector<double> map_delta_mu_;  ///< [6 pairs x rows]
+  std::vector<double> map_norms_;     ///< [3 x rows x rows]
   std::vector<KernelLimb> limbs_;
   std::vector<KernelPair> pairs_;
   std::vector<KernelJoint> joints_;

@@ -25,7 +25,7 @@ class DeformationEvaluator final : public Evaluator {
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     POESY_EXPECTS(outcomes.responses.size() == kResponses * samples.count);
     prepare(samples);
-    solver_.solve(samples.values, samples.count);
+    solver_.solve(samples.values, samples.count, !outcomes.details.empty());
     for (std::size_t r = 0; r < kResponses; ++r) {
       std::ranges::copy(solver_.response(r), outcomes.responses.data() + r * samples.count);
     }

@@ -6,7 +6,8 @@
 
 namespace poesy::chain {
 
-FirstOrder::FirstOrder(const ParallelChain& chain) : chain_(&chain), equations_(chain) {
+FirstOrder::FirstOrder(const ParallelChain& chain)
+    : chain_(&chain), no_mismatch_(6 * chain.pairs.size(), 0.0), equations_(chain) {
   for (std::size_t i = 0; i < chain.limbs.size(); ++i) {
     limb_of_frame_.insert(limb_of_frame_.end(), chain.limbs[i].frames(), i);
     limb_of_joint_.insert(limb_of_joint_.end(), chain.limbs[i].passive_joints(), i);
@@ -36,15 +37,13 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
     from_error_[frame++] = -lie::adjoint(g * limb.home.back());
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
-  const std::vector<double> none(6 * chain_->pairs.size(), 0.0);
-  return equations_.solve(columns_, none, W);
+  return equations_.solve(columns_, no_mismatch_, W);
 }
 
 void FirstOrder::effect(const FrameEntry& entry, std::span<double> delta_mu, std::span<double> displacements) {
   POESY_EXPECTS(delta_mu.size() == 6 * chain_->pairs.size() && displacements.size() == columns_.size());
   std::ranges::fill(delta_mu, 0.0);
-  add_motion(limb_of_frame_[entry.frame], from_error_[entry.frame].col(static_cast<Eigen::Index>(entry.component)),
-             delta_mu);
+  add_motion(limb_of_frame_[entry.frame], motion(entry), delta_mu);
   equations_.solve_again(delta_mu);
   std::ranges::copy(equations_.solution(), displacements.begin());
   for (std::size_t a = 0; a < columns_.size(); ++a) {
@@ -55,12 +54,12 @@ void FirstOrder::effect(const FrameEntry& entry, std::span<double> delta_mu, std
 void FirstOrder::matrix(std::span<double> inverse, std::span<double> diagonal) {
   const std::size_t size = columns_.size();
   POESY_EXPECTS(inverse.size() == size * size && diagonal.size() == size);
-  std::vector<double> unit(size, 0.0);
+  unit_.assign(size, 0.0);
   for (std::size_t a = 0; a < size; ++a) {
-    unit[a] = 1.0;
-    equations_.solve_for(unit);
+    unit_[a] = 1.0;
+    equations_.solve_for(unit_);
     std::ranges::copy(equations_.solution(), inverse.begin() + static_cast<std::ptrdiff_t>(a * size));
-    unit[a] = 0.0;
+    unit_[a] = 0.0;
     diagonal[a] = meetings_[a] * columns_[a].dot(W_ * columns_[a]);
   }
 }

@@ -24,6 +24,17 @@ class FirstOrder {
   /// way, SI per rad or m. Precondition: prepare() returned true.
   void effect(const FrameEntry& entry, std::span<double> delta_mu, std::span<double> displacements);
 
+  /// What a unit of a frame's error does to its limb's platform where no joint gives way, and a passive joint's column
+  /// of J; with the limbs of both. Precondition: as above.
+  /// @{
+  lie::Screw<double> motion(const FrameEntry& entry) const {
+    return from_error_[entry.frame].col(static_cast<Eigen::Index>(entry.component));
+  }
+  std::size_t limb_of_frame(std::size_t frame) const { return limb_of_frame_[frame]; }
+  const lie::Screw<double>& column(std::size_t joint) const { return columns_[joint]; }
+  std::size_t limb_of_joint(std::size_t joint) const { return limb_of_joint_[joint]; }
+  /// @}
+
   /// (J^T W J)^-1 and the diagonal of J^T W J: [passive joints x passive joints] and [passive joints]. Precondition:
   /// prepare() returned true.
   void matrix(std::span<double> inverse, std::span<double> diagonal);
@@ -37,6 +48,8 @@ class FirstOrder {
   std::vector<lie::Matrix6<double>> from_error_;  ///< per frame: [omega; v] to the motion of the limb's platform
   std::vector<lie::Screw<double>> columns_;       ///< of each passive joint
   std::vector<double> meetings_;                  ///< of each passive joint: pairs in which its limb takes part
+  std::vector<double> no_mismatch_;               ///< [6 x pairs] zeros
+  std::vector<double> unit_;                      ///< [passive joints] a column of 1
   lie::Matrix6<double> W_;
   NormalEquations equations_;
 };

@@ -73,18 +73,30 @@ std::vector<chain::BlockSamples> blocks(std::size_t count) {
   return all;
 }
 
+/// Three corners of a platform (m).
+const std::vector<lie::Vector3<double>> kPoints{{0.1, 0.0, 0.0}, {0.0, 0.1, 0.0}, {-0.1, -0.1, 0.0}};
+
+void expect_no_allocations(const std::vector<chain::BlockSamples>& all, const SolverOptions& options,
+                           chain::Fidelity fidelity) {
+  chain::BlockSolver solver(all[0].chain, options, fidelity);
+  const auto solve_all = [&] {
+    for (const chain::BlockSamples& samples : all) {
+      chain::prepare(solver, samples);
+      solver.solve(samples.values, samples.count);
+    }
+  };
+  EXPECT_GT(allocations_of(solve_all), 0u);
+  EXPECT_EQ(allocations_of(solve_all), 0u);
+}
+
 TEST(Allocation, NoneInAWarmBlockSolver) {
-  const std::vector<chain::BlockSamples> all = blocks(1000);
-  for (const SolverOptions& options : {SolverOptions{}, chain::gauss_newton()}) {
-    chain::BlockSolver solver(all[0].chain, options);
-    const auto solve_all = [&] {
-      for (const chain::BlockSamples& samples : all) {
-        chain::prepare(solver, samples);
-        solver.solve(samples.values, samples.count);
-      }
-    };
-    EXPECT_GT(allocations_of(solve_all), 0u);
-    EXPECT_EQ(allocations_of(solve_all), 0u);
+  std::vector<chain::BlockSamples> all = blocks(1000);
+  const chain::Metric metric = chain::platform_metric(all[0].chain, kPoints, all[0].displacements);
+  for (const bool weighted : {false, true}) {
+    for (chain::BlockSamples& samples : all) samples.metric = weighted ? std::optional(metric) : std::nullopt;
+    expect_no_allocations(all, {}, chain::Fidelity::exact);
+    expect_no_allocations(all, chain::gauss_newton(), chain::Fidelity::exact);
+    expect_no_allocations(all, {}, chain::Fidelity::first_order);
   }
 }
 

@@ -64,6 +64,12 @@ TEST(KendallTau, LeavesOutWhatIsEqual) {
   EXPECT_DOUBLE_EQ(kendall_tau(x, y), (6.0 - 1.0) / std::sqrt(9.0 * 7.0));
 }
 
+TEST(KendallTau, TakesWhatOnlyRoundingTellsApartForEqual) {
+  const std::array x{5.0, 4.0, 3.0, 1e-3, std::nextafter(1e-3, 1.0)};
+  const std::array y{4.0, 5.0, 1.0, 1.0, std::nextafter(1.0, 0.0)};
+  EXPECT_DOUBLE_EQ(kendall_tau(x, y), (6.0 - 1.0) / std::sqrt(9.0 * 7.0));
+}
+
 TEST(KendallTau, LeavesOutWhatIsNotKnown) {
   const std::array x{1.0, kNaN, 2.0, 3.0};
   const std::array y{2.0, -9.0, 3.0, kNaN};

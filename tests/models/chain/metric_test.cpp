@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "models/chain/first_order.h"
+#include "models/chain/residual_space.h"
 #include "tests/models/chain/block_samples.h"
 #include "tests/support/isa.h"
 
@@ -270,6 +271,46 @@ TEST(FirstOrderOfAChain, IsTheDerivativeOfTheSolution) {
         first_order.effect(samples.varied[v], {effect.data(), rows}, displacements);
         const Eigen::VectorXd truth = (solved_at(v, kStep) - solved_at(v, -kStep)) / (2.0 * kStep);
         EXPECT_LE((effect - truth).cwiseAbs().maxCoeff(), 1e-7) << "entry " << v;
+      }
+    }
+  }
+}
+
+/// Gap, angular and linear deformation of residuals [6 x pairs], by their definition.
+std::array<double, 3> responses_by(const Metric& metric, const Eigen::VectorXd& delta_mu) {
+  std::array<double, 3> squares{};
+  for (Eigen::Index n = 0; n < delta_mu.size(); n += 6) {
+    const lie::Screw<double> mu = delta_mu.segment<6>(n);
+    const lie::Vector3<double> at_origin = mu.tail<3>() + mu.head<3>().cross(metric.origin);
+    squares[0] += mu.dot(metric.W * mu);
+    squares[1] += mu.head<3>().squaredNorm();
+    squares[2] += at_origin.squaredNorm();
+  }
+  for (double& square : squares) square = std::sqrt(square / (static_cast<double>(delta_mu.size()) / 6.0));
+  return squares;
+}
+
+/// Three of twelve independent mismatches are left to the 2UPR-RPU's nine passive joints: it is over-constrained
+/// thrice.
+TEST(FirstOrderOfAChain, HasAsManyCoordinatesAsTheChainIsOverConstrained) {
+  for (const bool weighted : {true, false}) {
+    for (const BlockSamples& samples : every_chain(1, 0.0)) {
+      const Metric* metric = weighted ? &*samples.metric : nullptr;
+      FirstOrder first_order(samples.chain);
+      ASSERT_TRUE(first_order.prepare(samples.displacements, weighted ? &samples.metric->W : nullptr));
+      ResidualSpace space(samples.chain);
+      space.prepare(first_order, metric);
+      ASSERT_EQ(space.dimensions(), 6 * (samples.chain.limbs.size() - 1) - samples.chain.passive_joints());
+      Eigen::VectorXd effect(static_cast<Eigen::Index>(6 * samples.chain.pairs.size()));
+      std::vector<double> displacements(samples.chain.passive_joints());
+      for (const FrameEntry& entry : samples.varied) {
+        Eigen::VectorXd y = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(space.dimensions()));
+        space.add(first_order, entry, 1.0, {y.data(), space.dimensions()});
+        first_order.effect(entry, {effect.data(), static_cast<std::size_t>(effect.size())}, displacements);
+        EXPECT_LE((space.delta_mu() * y - effect).cwiseAbs().maxCoeff(), 1e-11 * (1.0 + effect.norm()));
+        if (!weighted) continue;
+        const std::array<double, 3> responses = responses_by(*metric, effect);
+        for (std::size_t r = 0; r < 3; ++r) EXPECT_NEAR((space.norms()[r] * y).norm(), responses[r], 1e-11);
       }
     }
   }

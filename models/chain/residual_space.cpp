@@ -1,0 +1,123 @@
+#include "models/chain/residual_space.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "engine/base/contract.h"
+
+namespace poesy::chain {
+namespace {
+
+Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
+  Eigen::MatrixXd incidence = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(chain.pairs.size()),
+                                                    static_cast<Eigen::Index>(chain.limbs.size()));
+  for (std::size_t n = 0; n < chain.pairs.size(); ++n) {
+    incidence(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(chain.pairs[n].k)) = 1.0;
+    incidence(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(chain.pairs[n].i)) = -1.0;
+  }
+  return incidence;
+}
+
+/// Rows that are the motions of two limbs as a pair sees them, without what all limbs have in common.
+Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(incidence.transpose() * incidence);
+  const Eigen::Index limbs = incidence.cols();
+  Eigen::MatrixXd rows(limbs - 1, limbs);
+  for (Eigen::Index row = 0; row + 1 < limbs; ++row) {
+    rows.row(row) = std::sqrt(solver.eigenvalues()[row + 1]) * solver.eigenvectors().col(row + 1).transpose();
+  }
+  return rows;
+}
+
+/// The upper triangle R [D, D] with |R y| = |rows y| for every y, in place.
+void triangle(Eigen::HouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& rows, double factor,
+              Eigen::MatrixXd& R) {
+  qr.compute(rows);
+  R.setZero();
+  for (Eigen::Index row = 0; row < std::min(R.rows(), rows.rows()); ++row) {
+    for (Eigen::Index column = row; column < R.cols(); ++column) R(row, column) = factor * qr.matrixQR()(row, column);
+  }
+}
+
+}  // namespace
+
+ResidualSpace::ResidualSpace(const ParallelChain& chain)
+    : chain_(&chain),
+      incidence_(incidence_of(chain)),
+      independent_(independent_rows(incidence_)),
+      of_pairs_(incidence_ * independent_.completeOrthogonalDecomposition().pseudoInverse()),
+      of_limb_(chain.limbs.size()) {
+  const std::size_t rows = 6 * (chain.limbs.size() - 1);
+  const std::size_t joints = chain.passive_joints();
+  dimensions_ = rows > joints ? rows - joints : 0;
+  columns_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(joints));
+  basis_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(dimensions_));
+  workspace_.resize(static_cast<Eigen::Index>(dimensions_));
+  for (Eigen::MatrixXd& of_limb : of_limb_) of_limb.resize(static_cast<Eigen::Index>(dimensions_), 6);
+  delta_mu_.resize(6 * incidence_.rows(), static_cast<Eigen::Index>(dimensions_));
+  rows_.resize(3 * incidence_.rows(), static_cast<Eigen::Index>(dimensions_));
+  for (Eigen::MatrixXd& R : norms_)
+    R.setZero(static_cast<Eigen::Index>(dimensions_), static_cast<Eigen::Index>(dimensions_));
+}
+
+void ResidualSpace::prepare(const FirstOrder& first_order, const Metric* metric) {
+  if (dimensions_ == 0) return;
+  root_ = lie::Matrix6<double>::Identity();
+  if (metric != nullptr) root_ = metric->W.llt().matrixU();
+  inverse_ = root_.triangularView<Eigen::Upper>().solve(lie::Matrix6<double>(lie::Matrix6<double>::Identity()));
+  find_basis(first_order);
+  for (std::size_t limb = 0; limb < of_limb_.size(); ++limb) {
+    of_limb_[limb].setZero();
+    for (Eigen::Index row = 0; row < independent_.rows(); ++row) {
+      of_limb_[limb].noalias() += independent_(row, static_cast<Eigen::Index>(limb)) *
+                                  (basis_.middleRows<6>(6 * row).transpose().lazyProduct(root_));
+    }
+  }
+  delta_mu_.setZero();
+  for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) {
+    for (Eigen::Index row = 0; row < of_pairs_.cols(); ++row) {
+      delta_mu_.middleRows<6>(6 * n).noalias() +=
+          of_pairs_(n, row) * (inverse_.lazyProduct(basis_.middleRows<6>(6 * row)));
+    }
+  }
+  if (metric != nullptr) find_norms(*metric);
+}
+
+void ResidualSpace::find_basis(const FirstOrder& first_order) {
+  for (Eigen::Index a = 0; a < columns_.cols(); ++a) {
+    const lie::Screw<double> column = root_ * first_order.column(static_cast<std::size_t>(a));
+    const auto limb = static_cast<Eigen::Index>(first_order.limb_of_joint(static_cast<std::size_t>(a)));
+    for (Eigen::Index row = 0; row < independent_.rows(); ++row) {
+      columns_.col(a).segment<6>(6 * row) = independent_(row, limb) * column;
+    }
+  }
+  qr_.compute(columns_);
+  basis_.setZero();
+  basis_.bottomRows(basis_.cols()).setIdentity();
+  qr_.householderQ().applyThisOnTheLeft(basis_, workspace_);
+}
+
+void ResidualSpace::find_norms(const Metric& metric) {
+  const double share = std::sqrt(1.0 / static_cast<double>(chain_->pairs.size()));
+  norms_[0].setIdentity();
+  norms_[0] *= share;
+  for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) rows_.middleRows<3>(3 * n) = delta_mu_.middleRows<3>(6 * n);
+  triangle(norm_qr_, rows_, share, norms_[1]);
+  for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) {
+    for (Eigen::Index y = 0; y < rows_.cols(); ++y) {
+      const auto screw = delta_mu_.col(y).segment<6>(6 * n);
+      rows_.col(y).segment<3>(3 * n) = screw.tail<3>() + screw.head<3>().cross(metric.origin);
+    }
+  }
+  triangle(norm_qr_, rows_, share, norms_[2]);
+}
+
+void ResidualSpace::add(const FirstOrder& first_order, const FrameEntry& entry, double error,
+                        std::span<double> y) const {
+  POESY_EXPECTS(y.size() == dimensions_);
+  Eigen::Map<Eigen::VectorXd> sum(y.data(), static_cast<Eigen::Index>(y.size()));
+  sum.noalias() += error * of_limb_[first_order.limb_of_frame(entry.frame)].lazyProduct(first_order.motion(entry));
+}
+
+}  // namespace poesy::chain
