@@ -11,14 +11,9 @@
 // everything around the kernel is what the other programs run, too.
 namespace poesy::chain {
 
-void solve_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
-                       const KernelOptions& options, const KernelOutcome& outcome, double* scratch) {
-  solve_block<bench::CountingNumber>(chain, samples, start, options, outcome, scratch);
-}
-
-void map_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
-                     const KernelOutcome& outcome, double* scratch) {
-  map_block<bench::CountingNumber>(chain, samples, map, outcome, scratch);
+template <>
+Kernels kernels<simd::Isa::plain>() {
+  return {solve_block<bench::CountingNumber>, map_block<bench::CountingNumber>};
 }
 
 }  // namespace poesy::chain

@@ -2,7 +2,7 @@
 #
 # Files share a group when no two of them define the same name in their namespaces without a name; the same alias of the
 # same type may be in several. So nobody needs to mind which files are compiled together. Compiled alone are files with
-# options of their own (kernels and what must have the same bits everywhere), generated files, and those with
+# options of their own (what must have the same bits everywhere), kernels, generated files, and those with
 # `using namespace`.
 set(POESY_UNITY_FILES 20)  # of a group, at most: more save little and take memory
 
@@ -79,7 +79,7 @@ function(poesy_unity target)
   foreach(source IN LISTS sources)
     get_filename_component(path ${source} ABSOLUTE BASE_DIR ${folder})
     get_source_file_property(generated ${path} TARGET_DIRECTORY ${target} GENERATED)
-    if(generated)
+    if(generated OR source MATCHES "TARGET_OBJECTS")
       continue()
     endif()
     file(READ ${path} text)

@@ -1,26 +1,27 @@
 #pragma once
 
 #include "models/chain/block_problem.h"
+#include "models/simd/isa.h"
 
 namespace poesy::chain {
 
-// Two per instruction set, each set compiled in a translation unit of its own. See best_kernels().
-void solve_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
-                       const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
-void solve_block_avx2(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
-                      const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
-void solve_block_avx512(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
-                        const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
-void solve_block_neon(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
-                      const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
+/// What there is for an instruction set.
+struct Kernels {
+  KernelSolve solve;   ///< of a block
+  KernelMapBlock map;  ///< of a block
+};
 
-void map_block_plain(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
-                     const KernelOutcome& outcome, double* scratch);
-void map_block_avx2(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
-                    const KernelOutcome& outcome, double* scratch);
-void map_block_avx512(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
-                      const KernelOutcome& outcome, double* scratch);
-void map_block_neon(const KernelChain& chain, const KernelSamples& samples, const KernelMap& map,
-                    const KernelOutcome& outcome, double* scratch);
+/// Of one instruction set. Each is a translation unit of its own, block_kernels.cpp compiled for that set; see
+/// simd::for_selected_isa().
+template <simd::Isa isa>
+Kernels kernels();
+template <>
+Kernels kernels<simd::Isa::plain>();
+template <>
+Kernels kernels<simd::Isa::avx2>();
+template <>
+Kernels kernels<simd::Isa::avx512>();
+template <>
+Kernels kernels<simd::Isa::neon>();
 
 }  // namespace poesy::chain

@@ -9,9 +9,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "models/chain/block_kernels.h"
 #include "models/chain/deformation_solver.h"
-#include "models/simd/isa.h"
 
 namespace poesy::chain {
 namespace {
@@ -27,23 +25,6 @@ constexpr double kTrustedTail = 1e-4;
 /// How often a range may be halved for better fits.
 constexpr int kSplits = 2;
 constexpr std::size_t kMostFits = (std::size_t{2} << kSplits) - 1;
-
-Kernels best_kernels() {
-  switch (simd::selected_isa()) {
-#ifdef POESY_KERNELS_X86
-    case simd::Isa::avx512:
-      return {solve_block_avx512, map_block_avx512};
-    case simd::Isa::avx2:
-      return {solve_block_avx2, map_block_avx2};
-#endif
-#ifdef POESY_KERNELS_ARM
-    case simd::Isa::neon:
-      return {solve_block_neon, map_block_neon};
-#endif
-    default:
-      return {solve_block_plain, map_block_plain};
-  }
-}
 
 std::array<double, 12> rows_of(const lie::Transform<double>& g) {
   std::array<double, 12> rows{};
@@ -79,7 +60,7 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
                0.0,
                kLargestStep,
                static_cast<std::uint32_t>(options.max_iterations)},
-      kernels_(best_kernels()),
+      kernels_(simd::for_selected_isa([]<simd::Isa isa> { return kernels<isa>(); })),
       first_order_(chain),
       residual_space_(chain) {
   std::size_t joint = 0;

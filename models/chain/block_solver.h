@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
-#include "models/chain/block_problem.h"
+#include "models/chain/block_kernels.h"
 #include "models/chain/first_order.h"
 #include "models/chain/limb.h"
 #include "models/chain/metric.h"
@@ -16,12 +16,6 @@ namespace poesy::chain {
 enum class Fidelity : std::size_t {
   exact,       ///< solved
   first_order  ///< linear in the errors, in closed form; see FirstOrder
-};
-
-/// What there is for an instruction set.
-struct Kernels {
-  KernelSolve solve;   ///< of a block
-  KernelMapBlock map;  ///< of a block
 };
 
 /// Solves blocks of samples with the fastest kernel this machine has. Owns the scratch of one thread.

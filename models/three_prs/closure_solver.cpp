@@ -60,7 +60,7 @@ std::array<LimbWithErrors, kLimbs> limbs_of_sample(const Geometry& geometry, con
 ClosureSolver::ClosureSolver(const Geometry& geometry, const SolverOptions& options)
     : geometry_(geometry),
       options_(options),
-      kernels_(selected_kernels()),
+      kernels_(simd::for_selected_isa([]<simd::Isa isa> { return kernels<isa>(); })),
       // One alignment's worth more than needed, so that an aligned start fits.
       scratch_(kClosureScratch + kMostLanes) {}
 

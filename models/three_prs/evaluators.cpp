@@ -22,7 +22,8 @@ Configuration configuration_at(const Geometry& geometry, std::span<const double>
 
 class FirstOrderEvaluator final : public Evaluator {
  public:
-  explicit FirstOrderEvaluator(const Geometry& geometry) : geometry_(geometry), kernels_(selected_kernels()) {}
+  explicit FirstOrderEvaluator(const Geometry& geometry)
+      : geometry_(geometry), kernels_(simd::for_selected_isa([]<simd::Isa isa> { return kernels<isa>(); })) {}
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     const Effects effects = first_order_effects(geometry_, configuration_at(geometry_, samples.pose));

@@ -1,24 +1,15 @@
+// Compiled once for each instruction set.
 #include "models/three_prs/kernels.h"
 
-#include "models/simd/isa.h"
+#include "models/simd/lanes.h"
+#include "models/three_prs/closure_kernel.h"
+#include "models/three_prs/first_order_kernel.h"
 
 namespace poesy::three_prs {
 
-Kernels selected_kernels() {
-  switch (simd::selected_isa()) {
-#ifdef POESY_KERNELS_X86
-    case simd::Isa::avx512:
-      return avx512_kernels();
-    case simd::Isa::avx2:
-      return avx2_kernels();
-#endif
-#ifdef POESY_KERNELS_ARM
-    case simd::Isa::neon:
-      return neon_kernels();
-#endif
-    default:
-      return plain_kernels();
-  }
+template <>
+Kernels kernels<simd::Isa::POESY_KERNEL_ISA>() {
+  return {map_tile<simd::Lanes>, close_tile<simd::Lanes>};
 }
 
 }  // namespace poesy::three_prs

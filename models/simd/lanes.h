@@ -1,0 +1,23 @@
+#pragma once
+
+// The numbers of the instruction set that a kernel's source is being compiled for (models/CMakeLists.txt).
+
+#ifdef POESY_KERNEL_OF_NUMBERS
+#include "models/simd/number.h"
+
+namespace poesy::simd {
+
+/// One number at a time.
+using Lanes = Number;
+
+}  // namespace poesy::simd
+#else
+#include "models/simd/pack.h"
+
+namespace poesy::simd {
+
+/// A batch of numbers.
+using Lanes = HWY_NAMESPACE::Pack;
+
+}  // namespace poesy::simd
+#endif
