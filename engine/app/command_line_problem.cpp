@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "engine/app/description.h"
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 namespace poesy::app {
 namespace {

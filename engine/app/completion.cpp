@@ -9,7 +9,7 @@
 #include "engine/app/shell_scripts.h"
 #include "engine/app/shells.h"
 #include "engine/base/error.h"
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 namespace poesy::app {
 namespace {

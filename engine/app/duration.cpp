@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/io/wording.h"
 
 namespace poesy::app {
 namespace {

@@ -1,8 +1,7 @@
 #include "engine/app/find_model.h"
 
 #include "engine/base/error.h"
-#include "engine/base/letters.h"
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 #include "models/registry.h"
 
 namespace poesy::app {

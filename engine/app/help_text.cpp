@@ -1,12 +1,15 @@
 #include "engine/app/help_text.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <sstream>
 
 #include "engine/app/description.h"
 #include "engine/app/output_width.h"
 #include "engine/app/reference.h"
 #include "engine/app/terminal.h"
+#include "engine/base/text.h"
 #include "engine/report/text_table.h"
 
 namespace poesy::app {
@@ -18,21 +21,10 @@ constexpr std::size_t kTwoColumns = 72;  ///< narrower: what a thing means stand
 constexpr std::size_t kMeanings = 28;    ///< column where meanings begin
 constexpr std::size_t kBelow = 6;
 
-/// Text broken at spaces. Its first line begins at column `at`, the others at column `indent`.
-std::string wrapped(const std::string& text, std::size_t at, std::size_t indent, std::size_t width) {
-  std::string lines;
-  std::istringstream words(text);
-  bool begins = true;
-  for (std::string word; words >> word; begins = false) {
-    if (!begins && at + 1 + word.size() > width) {
-      lines += "\n" + std::string(indent, ' ');
-      at = indent;
-      begins = true;
-    }
-    lines += (begins ? "" : " ") + word;
-    at += word.size() + (begins ? 0 : 1);
-  }
-  return lines + "\n";
+/// Text in lines that end before column `width`. Its first line begins at column `at`, the others at column `indent`.
+std::string wrapped(std::string_view text, std::size_t at, std::size_t indent, std::size_t width) {
+  const std::vector<std::string> lines = poesy::wrapped(text, width - indent, width - at);
+  return fmt::format("{}\n", fmt::join(lines, "\n" + std::string(indent, ' ')));
 }
 
 std::string entry(const std::string& name, const std::string& meaning, std::size_t width) {

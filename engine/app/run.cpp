@@ -15,10 +15,10 @@
 #include "engine/app/run_study.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/io/held_errors.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
-#include "engine/io/wording.h"
 #include "models/registry.h"
 
 namespace poesy::app {

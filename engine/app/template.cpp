@@ -5,9 +5,9 @@
 #include "engine/app/exit_code.h"
 #include "engine/app/find_model.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/io/study_file.h"
 #include "engine/io/study_keys.h"
-#include "engine/io/wording.h"
 
 namespace poesy::app {
 namespace {

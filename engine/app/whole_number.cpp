@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "engine/base/error.h"
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 namespace poesy::app {
 

@@ -1,4 +1,4 @@
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,26 @@ namespace poesy {
 namespace {
 
 const std::vector<std::string_view> kKnown{"sigma", "half_width", "distribution"};
+
+using Lines = std::vector<std::string>;
+
+TEST(Wrapped, BreaksBetweenWordsAndNowhereElse) {
+  EXPECT_EQ(wrapped("one two three", 7), (Lines{"one two", "three"}));
+  EXPECT_EQ(wrapped("unbreakable word", 4), (Lines{"unbreakable", "word"}));
+  EXPECT_EQ(wrapped("", 4), Lines());
+}
+
+TEST(Wrapped, KeepsNumbersTogether) {
+  EXPECT_EQ(wrapped("up to 12 000 solves", 8), (Lines{"up to", "12 000", "solves"}));
+  EXPECT_EQ(wrapped("at 5 % of", 4), (Lines{"at", "5 %", "of"}));
+}
+
+TEST(Wrapped, CountsCharactersNotBytes) { EXPECT_EQ(wrapped("5 \xC2\xB5m", 4), Lines{"5 \xC2\xB5m"}); }
+
+TEST(Wrapped, HasAWidthOfItsOwnForTheFirstLine) {
+  EXPECT_EQ(wrapped("a b c d e f", 5, 1), (Lines{"a", "b c d", "e f"}));
+  EXPECT_EQ(wrapped("a b c d e f", 1, 5), (Lines{"a b c", "d", "e", "f"}));
+}
 
 TEST(Suggestion, NamesTheClosestWord) {
   EXPECT_EQ(suggestion("sgima", kKnown), "did you mean 'sigma'?");

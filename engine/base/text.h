@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +9,20 @@
 #include <vector>
 
 namespace poesy {
+
+/// The text with a to z for A to Z, in any locale. Other characters stay as they are.
+std::string lower_case(std::string_view text);
+
+/// Bytes of the UTF-8 character at the start of this text, which is not empty; 0 where there is none: a cut or overlong
+/// form, a surrogate, a number above U+10FFFF.
+std::size_t character_length(std::string_view text);
+
+/// Characters of a UTF-8 text.
+std::size_t text_width(std::string_view text);
+
+/// Lines of a text, broken at blanks, but not within numbers ("12 000", "5 %"). Each has at most `width` characters,
+/// the first one `first` where that is given; a longer word has a line of its own.
+std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::optional<std::size_t> first = {});
 
 /// A user's text as a message may show it: on one line, valid UTF-8, no control characters, cut off after
 /// about `most` bytes.

@@ -1,4 +1,4 @@
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 #include <algorithm>
 #include <array>
@@ -32,19 +32,6 @@ bool is_written_in(std::size_t length, std::uint32_t code) {
   return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate;
 }
 
-/// Length of the UTF-8 character at the start of this text, 0 when it is not one.
-std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  if (byte(0) < 0x80) return 1;
-  auto [length, code] = lead_of(byte(0));
-  if (length == 0 || length > text.size()) return 0;
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((byte(k) & 0xC0U) != 0x80) return 0;
-    code = code << 6U | (byte(k) & 0x3FU);
-  }
-  return is_written_in(length, code) ? length : 0;
-}
-
 bool is_control(std::string_view character) {
   const auto lead = static_cast<unsigned char>(character[0]);
   const bool c1 = character.size() == 2 && lead == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
@@ -74,7 +61,58 @@ bool is_plain(const std::string& word) {
   });
 }
 
+/// Whether a number goes on behind the blank: "12 000", "5 %".
+bool within_number(std::string_view before, std::string_view after) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  return !before.empty() && !after.empty() && digit(before.back()) && (digit(after.front()) || after.front() == '%');
+}
+
+/// What is before the first blank at which a line may end.
+std::string_view first_word(std::string_view text) {
+  std::size_t end = text.find(' ');
+  while (end < text.size() && within_number(text.substr(0, end), text.substr(end + 1))) end = text.find(' ', end + 1);
+  return text.substr(0, end);
+}
+
 }  // namespace
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return lower;
+}
+
+std::size_t character_length(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  if (byte(0) < 0x80) return 1;
+  auto [length, code] = lead_of(byte(0));
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(k) & 0xC0U) != 0x80) return 0;
+    code = code << 6U | (byte(k) & 0x3FU);
+  }
+  return is_written_in(length, code) ? length : 0;
+}
+
+std::size_t text_width(std::string_view text) {
+  const auto begins_character = [](char c) { return (c & 0xC0) != 0x80; };
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::optional<std::size_t> first) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::string_view word = first_word(text);
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    const std::size_t room = lines.size() == 1 ? first.value_or(width) : width;
+    if (!lines.empty() && text_width(lines.back()) + 1 + text_width(word) <= room) {
+      lines.back().append(" ").append(word);
+    } else {
+      lines.emplace_back(word);
+    }
+  }
+  return lines;
+}
 
 std::string printable(std::string_view text, std::size_t most) {
   std::string shown;
