@@ -5,7 +5,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code.h"
+#include "engine/app/ending.h"
 #include "engine/app/shell_scripts.h"
 #include "engine/app/shells.h"
 #include "engine/base/error.h"

@@ -7,14 +7,10 @@
 
 #include "engine/app/command.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/facts.h"
-#include "engine/app/failure_limit.h"
-#include "engine/app/interrupt.h"
-#include "engine/app/limits.h"
-#include "engine/app/message.h"
-#include "engine/app/output_width.h"
+#include "engine/app/ending.h"
 #include "engine/app/progress.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
@@ -83,7 +79,9 @@ int evaluate(const EvaluateOptions& options) {
   {
     ProgressPrinter printer(options.quiet);
     result = run_evaluation(*model, study.solver, poses.poses, errors, pairing,
-                            {threads, [&](const Progress& progress) { printer(progress); }, &catch_interrupts()});
+                            {.threads = threads,
+                             .progress = [&](const Progress& progress) { printer(progress); },
+                             .stop = &catch_interrupts()});
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!result) {

@@ -3,8 +3,7 @@
 #include "engine/app/command.h"
 #include "engine/app/command_line_problem.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/exit_code_of.h"
+#include "engine/app/ending.h"
 #include "engine/app/help_text.h"
 
 namespace poesy::app {

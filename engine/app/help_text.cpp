@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "engine/app/description.h"
-#include "engine/app/output_width.h"
 #include "engine/app/reference.h"
 #include "engine/app/terminal.h"
 #include "engine/base/text.h"

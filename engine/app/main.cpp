@@ -5,10 +5,10 @@
 #include "engine/app/command.h"
 #include "engine/app/command_line_problem.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code_of.h"
+#include "engine/app/ending.h"
 #include "engine/app/help_text.h"
-#include "engine/app/launch.h"
-#include "engine/app/message.h"
+#include "engine/app/mpi_ranks.h"
+#include "engine/app/terminal.h"
 #include "engine/io/version.h"
 
 namespace poesy::app {
@@ -64,7 +64,7 @@ int parse_and_run(int argc, char** argv) {
   }
   if (const auto problem = empty_value(program)) return complain(*problem, kBadInput);
   // Nothing else knows how to share its work; under a launcher the first process does it.
-  if (!program.got_subcommand("run") && find_launch().value_or(Launch()).rank != 0) return kDone;
+  if (!program.got_subcommand("run") && !is_first_process()) return kDone;
   return action();
 }
 

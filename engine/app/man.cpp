@@ -2,7 +2,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code.h"
+#include "engine/app/ending.h"
 #include "engine/app/man_page.h"
 
 namespace poesy::app {

@@ -2,7 +2,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/description.h"
-#include "engine/app/run_study.h"
+#include "engine/app/results.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
@@ -45,17 +45,16 @@ int merge(const MergeOptions& options) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   // The whole run from here on: as one that is resumed when all its stages are done.
   Checkpoints done([] { return false; }, [](std::span<const Bytes>) {}, std::move(merged));
-  RunOptions run{.threads = 0, .progress = [](const Progress&) {}, .checkpoints = &done};
-  const Job job{study,
-                *model,
-                whole.poses,
-                options.result,
-                std::move(run),
-                [time = time_of(shards)] { return time; },
-                most(shards, &RunFacts::threads),
-                most(shards, &RunFacts::ranks)};
+  const Job job{.study = study,
+                .model = *model,
+                .poses = whole.poses,
+                .path = options.result,
+                .options = {.checkpoints = &done},
+                .time = [time = time_of(shards)] { return time; },
+                .threads = most(shards, &RunFacts::threads),
+                .ranks = most(shards, &RunFacts::ranks)};
   try {
-    return report_end(job, options.result, run_study(job).value());
+    return report_end(job, options.result, run_to_file(job).value());
   } catch (const BytesError& error) {
     throw FileError(first.path, std::string("or another shard ") + error.what(), "run the shards again");
   }

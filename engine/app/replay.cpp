@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/message.h"
+#include "engine/app/ending.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/io/stored_study.h"

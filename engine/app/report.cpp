@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code.h"
+#include "engine/app/ending.h"
+#include "engine/app/results.h"
 #include "engine/io/file_writer.h"
 #include "engine/io/output_path.h"
 #include "engine/report/html/report.h"

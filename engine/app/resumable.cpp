@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "engine/app/duration.h"
-#include "engine/app/interrupt.h"
-#include "engine/app/message.h"
+#include "engine/app/ending.h"
+#include "engine/app/progress.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 
 namespace poesy::app {
@@ -37,14 +37,15 @@ void ResumeOptions::add_to(CLI::App& command) {
   command.add_option("--max-wall", max_wall, "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\"")
       ->type_name("TIME")
       ->group(kGroup);
-  command.add_flag("--keep-checkpoint", keep, "keep RESULT.h5.part when done, so that --resume can add samples")
+  command
+      .add_flag("--keep-checkpoint", keep_checkpoint, "keep RESULT.h5.part when done, so that --resume can add samples")
       ->group(kGroup);
 }
 
 ResumableRun::ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
     : lock_(result_path),
       resume_(options.resume),
-      keep_(options.keep),
+      keep_checkpoint_(options.keep_checkpoint),
       command_(std::move(resume_command)),
       files_(result_path),
       every_(duration_of(parse_duration(options.every, "--checkpoint-every"))) {
@@ -111,7 +112,7 @@ void ResumableRun::save(std::span<const Bytes> stages) {
 }
 
 void ResumableRun::finish() {
-  if (keep_) {
+  if (keep_checkpoint_) {
     checkpoints_->save();
   } else {
     files_.remove();

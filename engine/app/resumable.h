@@ -15,7 +15,7 @@ namespace poesy::app {
 /// How a run keeps itself and ends early, as the command line says.
 struct ResumeOptions {
   bool resume = false;
-  bool keep = false;  ///< the last checkpoint stays beside a finished result
+  bool keep_checkpoint = false;  ///< the last checkpoint stays beside a finished result
   std::string every = "10 s";
   std::string max_wall;  ///< empty: no limit
 
@@ -58,7 +58,7 @@ class ResumableRun {
 
   RunLock lock_;
   bool resume_;
-  bool keep_;
+  bool keep_checkpoint_;
   std::string command_;
   CheckpointFiles files_;
   CheckpointIdentity identity_;

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/app/changed_result.h"
 #include "engine/app/command.h"
 #include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/output_width.h"
+#include "engine/app/ending.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"

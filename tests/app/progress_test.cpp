@@ -1,11 +1,24 @@
-#include "engine/app/progress_line.h"
+#include "engine/app/progress.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string_view>
+#include <utility>
+
+#include "engine/base/error.h"
 
 namespace poesy::app {
 namespace {
+
+TEST(ReadableDuration, HasOneOrTwoParts) {
+  constexpr std::pair<double, std::string_view> kExpected[] = {
+      {0.0, "0 s"},           {0.234, "0.23 s"}, {4.0, "4 s"},          {9.96, "10 s"},
+      {59.4, "59 s"},         {59.6, "1 min"},   {80.0, "1 min 20 s"},  {84.9, "1 min 20 s"},
+      {594.0, "9 min 50 s"},  {596.0, "10 min"}, {2100.0, "35 min"},    {3571.0, "1 h"},
+      {7800.0, "2 h 10 min"}, {86380.0, "1 d"},  {100800.0, "1 d 4 h"}, {864000.0, "10 d"}};
+  for (const auto& [seconds, text] : kExpected) EXPECT_EQ(readable_duration(seconds), text);
+}
 
 ProgressFacts facts() { return {{.solves = 432000, .total = 1000000, .not_converged = 12}, 7100.0}; }
 
@@ -85,6 +98,37 @@ TEST(LiveLine, KeepsTheBarWhileTheTimeChanges) {
   EXPECT_EQ(bar_end(7100.0), bar_end(8000.0));
   EXPECT_EQ(bar_end(7100.0), bar_end(100000.0));
   EXPECT_EQ(bar_end(7100.0), bar_end(123.0));
+}
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const RecentRate::Clock::time_point kStart{};
+
+TEST(RecentRate, IsZeroBeforeAnythingIsDone) { EXPECT_EQ(RecentRate(kStart).per_second(), 0.0); }
+
+TEST(RecentRate, CountsFromTheStartAtFirst) {
+  RecentRate rate(kStart);
+  rate.add(kStart + milliseconds(100), 50);
+  EXPECT_DOUBLE_EQ(rate.per_second(), 500.0);
+  rate.add(kStart + seconds(2), 1000);
+  EXPECT_DOUBLE_EQ(rate.per_second(), 500.0);
+}
+
+TEST(RecentRate, ForgetsWhatIsLongAgo) {
+  RecentRate rate(kStart);
+  std::uint64_t done = 0;
+  for (int second = 1; second <= 100; ++second) rate.add(kStart + seconds(second), done += 1000);
+  EXPECT_DOUBLE_EQ(rate.per_second(), 1000.0);
+  for (int second = 101; second <= 130; ++second) rate.add(kStart + seconds(second), done += 10);
+  EXPECT_DOUBLE_EQ(rate.per_second(), 10.0);
+}
+
+TEST(RecentRate, FollowsAStandstill) {
+  RecentRate rate(kStart);
+  rate.add(kStart + seconds(1), 1000);
+  for (int second = 2; second <= 30; ++second) rate.add(kStart + seconds(second), 1000);
+  EXPECT_EQ(rate.per_second(), 0.0);
 }
 
 }  // namespace
