@@ -6,8 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
+#include "engine/app/command_line.h"
 #include "engine/app/ending.h"
 #include "engine/app/progress.h"
 #include "engine/io/content_hash.h"
@@ -124,13 +123,14 @@ int check(const std::string& path) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Action& action) {
-  auto study = std::make_shared<std::string>();
-  CLI::App* command =
-      program.add_subcommand("check", "validate a study; print it resolved, with its solves, memory and time");
-  command->add_option("study", *study, "study file (TOML)")->required()->type_name("STUDY.toml");
-  command->footer(footer("", {{"is it valid, and how long will it take?", "poesy check study.toml"}}));
-  command->callback([study, &action] { action = [study] { return check(*study); }; });
+Command& add_check(Command& program) {
+  const auto study = std::make_shared<std::string>();
+  Command& command =
+      program.add_command("check", "validate a study; print it resolved, with its solves, memory and time");
+  command.add_value("study", *study, "STUDY.toml", "study file (TOML)")->required();
+  command.examples = {{"is it valid, and how long will it take?", "poesy check study.toml"}};
+  command.action = [study] { return check(*study); };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -1,7 +1,6 @@
 #include <algorithm>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
+#include "engine/app/command_line.h"
 #include "engine/app/results.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
@@ -62,18 +61,16 @@ int merge(const MergeOptions& options) {
 
 }  // namespace
 
-void add_merge(CLI::App& program, Action& action) {
-  auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = program.add_subcommand("merge", "put the shards of a study together (poesy run --shard)");
-  command->add_option("shards", options->shards, "all shards of one study, in any order")
-      ->required()
-      ->type_name("SHARD.h5");
-  command->add_option("-o,--output", options->result, "result file, the same as that of one run")
-      ->required()
-      ->type_name("RESULT.h5");
-  command->footer(footer("", {{"two shards", "poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5"},
-                              {"all that there are", "poesy merge study.*-of-*.h5 -o study.h5"}}));
-  command->callback([options, &action] { action = [options] { return merge(*options); }; });
+Command& add_merge(Command& program) {
+  const auto options = std::make_shared<MergeOptions>();
+  Command& command = program.add_command("merge", "put the shards of a study together (poesy run --shard)");
+  command.add_value("shards", options->shards, "SHARD.h5", "all shards of one study, in any order")->required();
+  command.add_value("-o,--output", options->result, "RESULT.h5", "result file, the same as that of one run")
+      ->required();
+  command.examples = {{"two shards", "poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5"},
+                      {"all that there are", "poesy merge study.*-of-*.h5 -o study.h5"}};
+  command.action = [options] { return merge(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -1,7 +1,6 @@
 #include <cstdio>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
+#include "engine/app/command_line.h"
 #include "engine/app/ending.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -52,41 +51,37 @@ int print_reference() {
 
 }  // namespace
 
-void add_models(CLI::App& program, Action& action) {
-  auto name = std::make_shared<std::string>();
-  CLI::App* command = program.add_subcommand("models", "list the mechanisms, or describe one");
-  command->add_option("model", *name, "mechanism")->type_name("MODEL");
-  command->footer(footer("", {{"which mechanisms are there?", "poesy models"},
-                              {"errors, poses and responses of one", "poesy models 2upr-rpu"}}));
-  command->callback([name, &action] {
-    action = [name] {
-      std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name))).c_str(), stdout);
-      return kDone;
-    };
-  });
+Command& add_models(Command& program) {
+  const auto name = std::make_shared<std::string>();
+  Command& command = program.add_command("models", "list the mechanisms, or describe one");
+  command.add_value("model", *name, "MODEL", "mechanism");
+  command.examples = {{"which mechanisms are there?", "poesy models"},
+                      {"errors, poses and responses of one", "poesy models 2upr-rpu"}};
+  command.action = [name] {
+    std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name))).c_str(), stdout);
+    return kDone;
+  };
+  return command;
 }
 
-void add_template(CLI::App& program, Action& action) {
-  auto model = std::make_shared<std::string>();
-  auto kind = std::make_shared<std::string>("sensitivity");
-  auto reference = std::make_shared<bool>(false);
-  CLI::App* command = program.add_subcommand("template", "print a complete, commented study file");
-  CLI::Option* named = command->add_option("model", *model, "mechanism")->type_name("MODEL");
-  command->add_option("kind", *kind, "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling")
-      ->type_name("KIND");
-  command->add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
+Command& add_template(Command& program) {
+  const auto model = std::make_shared<std::string>();
+  const auto kind = std::make_shared<std::string>("sensitivity");
+  const auto reference = std::make_shared<bool>(false);
+  Command& command = program.add_command("template", "print a complete, commented study file");
+  CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism");
+  command.add_value("kind", *kind, "KIND",
+                    "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling");
+  command.add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
-  command->footer(footer("", {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
-                              {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
-                              {"every key of a study file, as text", "poesy template --reference"}}));
-  command->callback([=, &action] {
-    if (*reference) {
-      action = print_reference;
-      return;
-    }
-    if (named->count() == 0) throw CLI::RequiredError(named->get_type_name());
-    action = [model, kind] { return print_template(*model, *kind); };
+  command.examples = {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
+                      {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
+                      {"every key of a study file, as text", "poesy template --reference"}};
+  command.callback([=] {
+    if (!*reference && named->count() == 0) throw CLI::RequiredError(named->get_type_name());
   });
+  command.action = [=] { return *reference ? print_reference() : print_template(*model, *kind); };
+  return command;
 }
 
 }  // namespace poesy::app

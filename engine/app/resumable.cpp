@@ -28,14 +28,13 @@ std::chrono::steady_clock::duration duration_of(double seconds) {
 
 }  // namespace
 
-void ResumeOptions::add_to(CLI::App& command) {
+void ResumeOptions::add_to(Command& command) {
   constexpr const char* kGroup = "Long runs";
   command.add_flag("--resume", resume, "continue the run that was stopped, from RESULT.h5.part")->group(kGroup);
-  command.add_option("--checkpoint-every", every, "time between checkpoints of the run; default: 10 s")
-      ->type_name("TIME")
+  command.add_value("--checkpoint-every", every, "TIME", "time between checkpoints of the run; default: 10 s")
       ->group(kGroup);
-  command.add_option("--max-wall", max_wall, "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\"")
-      ->type_name("TIME")
+  command
+      .add_value("--max-wall", max_wall, "TIME", "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\"")
       ->group(kGroup);
   command
       .add_flag("--keep-checkpoint", keep_checkpoint, "keep RESULT.h5.part when done, so that --resume can add samples")

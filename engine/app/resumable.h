@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <optional>
 #include <string>
 
+#include "engine/app/command_line.h"
 #include "engine/io/checkpoint_files.h"
 #include "engine/io/run_lock.h"
 #include "engine/run/checkpoints.h"
@@ -19,7 +19,7 @@ struct ResumeOptions {
   std::string every = "10 s";
   std::string max_wall;  ///< empty: no limit
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
 };
 
 /// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, for they

@@ -7,15 +7,13 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
+#include "engine/app/command_line.h"
 #include "engine/app/ending.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/app/progress.h"
 #include "engine/app/results.h"
 #include "engine/app/resumable.h"
 #include "engine/app/terminal.h"
-#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/io/held_errors.h"
@@ -265,34 +263,33 @@ int run_alone_or_on_ranks(const RunCommandOptions& options) {
 
 }  // namespace
 
-void add_run(CLI::App& program, Action& action) {
-  auto options = std::make_shared<RunCommandOptions>();
-  CLI::App* command = program.add_subcommand("run", "run a study and write its result");
-  command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY.toml");
-  command->add_option("-o,--output", options->result, "result file; default: the study's name with .h5, in this folder")
-      ->type_name("RESULT.h5");
-  add_whole_number(*command, "--threads", "--threads", options->threads,
-                   "number of threads, of each rank; default: one per processor", 1, 1024)
-      ->type_name("N");
-  add_whole_number(*command, "--seed", "--seed", options->seed, "seed, instead of the study's", 0, 0x7fffffffffffffff)
-      ->type_name("S");
-  options->resume.add_to(*command);
+Command& add_run(Command& program) {
+  const auto options = std::make_shared<RunCommandOptions>();
+  Command& command = program.add_command("run", "run a study and write its result");
+  command.add_value("study", options->study, "STUDY.toml", "study file (TOML)")->required();
+  command.add_value("-o,--output", options->result, "RESULT.h5",
+                    "result file; default: the study's name with .h5, in this folder");
+  command.add_whole_number("--threads", options->threads, "N",
+                           "number of threads, of each rank; default: one per processor", 1, 1024);
+  command.add_whole_number("--seed", options->seed, "S", "seed, instead of the study's", 0, 0x7fffffffffffffff);
+  options->resume.add_to(command);
   command
-      ->add_option_function<std::string>(
+      .add_option_function<std::string>(
           "--shard", [options](const std::string& text) { options->shard = parse_shard(text); },
           "run this one of N shards only, to be put together by poesy merge")
       ->type_name("K/N")
       ->group("On a cluster");
-  command->add_flag("--quiet", options->quiet, "no progress");
-  command->footer(footer("Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once.\n",
-                         {{"gives study.h5", "poesy run study.toml"},
-                          {"stops after two hours, exit code 4; the same with --resume goes on",
-                           "poesy run study.toml --max-wall \"2 h\""},
-                          {"on several ranks, over MPI", "mpirun -n 4 poesy run study.toml -o result.h5"}}));
-  command->callback([options, &program, &action] {
+  command.add_flag("--quiet", options->quiet, "no progress");
+  command.notes = {"Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once."};
+  command.examples = {
+      {"gives study.h5", "poesy run study.toml"},
+      {"stops after two hours, exit code 4; the same with --resume goes on", "poesy run study.toml --max-wall \"2 h\""},
+      {"on several ranks, over MPI", "mpirun -n 4 poesy run study.toml -o result.h5"}};
+  command.action = [options, &program] {
     options->program = program.get_name();
-    action = [options] { return run_alone_or_on_ranks(*options); };
-  });
+    return run_alone_or_on_ranks(*options);
+  };
+  return command;
 }
 
 }  // namespace poesy::app

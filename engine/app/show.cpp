@@ -8,12 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
+#include "engine/app/command_line.h"
 #include "engine/app/ending.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
-#include "engine/app/whole_number.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/io/held_errors.h"
@@ -148,41 +146,33 @@ int show_both(const ShowOptions& options) {
 
 }  // namespace
 
-void add_show(CLI::App& program, Action& action) {
-  auto options = std::make_shared<ShowOptions>();
-  CLI::App* command =
-      program.add_subcommand("show", "print a result as tables, or the rankings of two beside each other");
+Command& add_show(Command& program) {
+  const auto options = std::make_shared<ShowOptions>();
+  Command& command = program.add_command("show", "print a result as tables, or the rankings of two beside each other");
   command
-      ->add_option("results", options->results,
-                   "result file, or two sensitivity results whose rankings are shown beside each other")
+      .add_value("results", options->results, "RESULT.h5",
+                 "result file, or two sensitivity results whose rankings are shown beside each other")
       ->required()
-      ->expected(1, 2)
-      ->type_name("RESULT.h5");
-  command
-      ->add_option("--response", options->response,
-                   "response to rank by, or to show alone where nothing is ranked; A,B for one of each of two results")
-      ->type_name("RESPONSE");
-  command
-      ->add_option("--sort", options->sort,
-                   fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "
-                               "effect",
-                               fmt::join(kRowOrders, ", ")))
-      ->type_name("KEY");
-  add_whole_number(*command, "--top", "--top", options->top, "only the first N errors of a sensitivity result", 1,
-                   kMostNumber)
-      ->type_name("N");
-  add_whole_number(*command, "--width", "--width", options->width,
-                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostNumber)
-      ->type_name("N");
-  command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
-  command->footer(
-      footer("", {{"the tables of a result", "poesy show result.h5"},
-                  {"the ten errors that matter most to another response",
-                   "poesy show result.h5 --response angular_deformation --top 10"},
-                  {"the rankings of two studies beside each other", "poesy show platform.h5 published.h5"}}));
-  command->callback([options, &action] {
-    action = [options] { return options->results.size() == 1 ? show_one(*options) : show_both(*options); };
-  });
+      ->expected(1, 2);
+  command.add_value(
+      "--response", options->response, "RESPONSE",
+      "response to rank by, or to show alone where nothing is ranked; A,B for one of each of two results");
+  command.add_value("--sort", options->sort, "KEY",
+                    fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "
+                                "effect",
+                                fmt::join(kRowOrders, ", ")));
+  command.add_whole_number("--top", options->top, "N", "only the first N errors of a sensitivity result", 1,
+                           kMostNumber);
+  command.add_whole_number("--width", options->width, "N",
+                           "characters of a line; default: the terminal's, and where there is none, no limit", 1,
+                           kMostNumber);
+  command.add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
+  command.examples = {{"the tables of a result", "poesy show result.h5"},
+                      {"the ten errors that matter most to another response",
+                       "poesy show result.h5 --response angular_deformation --top 10"},
+                      {"the rankings of two studies beside each other", "poesy show platform.h5 published.h5"}};
+  command.action = [options] { return options->results.size() == 1 ? show_one(*options) : show_both(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -7,8 +7,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
+#include "engine/app/command_line.h"
 #include "engine/app/ending.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
@@ -257,33 +256,25 @@ int set_tolerances(const TolerancesOptions& options) {
 
 }  // namespace
 
-void add_tolerances(CLI::App& program, Action& action) {
-  auto options = std::make_shared<TolerancesOptions>();
-  CLI::App* command = program.add_subcommand("tolerances", "tolerances from the indices of a sensitivity result");
-  command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
-  command
-      ->add_option("--response", options->response,
-                   "response that the tolerances are for; without it, a message names those of the result")
-      ->type_name("RESPONSE");
-  command
-      ->add_option("--limit", options->limit,
-                   "tolerances that keep the root mean square of the response below this, e.g. \"0.05 mm\"")
-      ->type_name("LIMIT");
-  command
-      ->add_option("--reference", options->reference,
-                   "error from which equal effects are counted, with its tolerance; default: the study's")
-      ->type_name("FACTOR[=TOLERANCE]");
-  command->add_flag("--extrapolate", options->extrapolate,
-                    "go on where an index changes with size and its tolerance is of another size than was studied");
-  command
-      ->add_option("-d,--directory", options->folder,
-                   "folder for tolerances.csv and the studies that test them; default: RESULT_tolerances, here")
-      ->type_name("DIR");
-  command->footer(
-      footer("", {{"tolerances of equal effect", "poesy tolerances result.h5 --response linear_deformation"},
-                  {"that keep the response within a limit",
-                   "poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\""}}));
-  command->callback([options, &action] { action = [options] { return set_tolerances(*options); }; });
+Command& add_tolerances(Command& program) {
+  const auto options = std::make_shared<TolerancesOptions>();
+  Command& command = program.add_command("tolerances", "tolerances from the indices of a sensitivity result");
+  command.add_value("result", options->result, "RESULT.h5", "result file")->required();
+  command.add_value("--response", options->response, "RESPONSE",
+                    "response that the tolerances are for; without it, a message names those of the result");
+  command.add_value("--limit", options->limit, "LIMIT",
+                    "tolerances that keep the root mean square of the response below this, e.g. \"0.05 mm\"");
+  command.add_value("--reference", options->reference, "FACTOR[=TOLERANCE]",
+                    "error from which equal effects are counted, with its tolerance; default: the study's");
+  command.add_flag("--extrapolate", options->extrapolate,
+                   "go on where an index changes with size and its tolerance is of another size than was studied");
+  command.add_value("-d,--directory", options->folder, "DIR",
+                    "folder for tolerances.csv and the studies that test them; default: RESULT_tolerances, here");
+  command.examples = {{"tolerances of equal effect", "poesy tolerances result.h5 --response linear_deformation"},
+                      {"that keep the response within a limit",
+                       "poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\""}};
+  command.action = [options] { return set_tolerances(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

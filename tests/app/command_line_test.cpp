@@ -1,4 +1,4 @@
-#include "engine/app/whole_number.h"
+#include "engine/app/command_line.h"
 
 #include <gtest/gtest.h>
 
