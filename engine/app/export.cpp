@@ -13,7 +13,7 @@ struct ExportOptions {
 };
 
 int export_result(const ExportOptions& options) {
-  const StoredResult result = read_result_warily(options.result);
+  const StoredResult result = read_result_with_warning(options.result);
   for (const std::string& file : export_tables(result, options.folder)) std::puts(file.c_str());
   return kDone;
 }

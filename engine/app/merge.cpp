@@ -53,7 +53,7 @@ int merge(const MergeOptions& options) {
                 .threads = most(shards, &RunFacts::threads),
                 .ranks = most(shards, &RunFacts::ranks)};
   try {
-    return report_end(job, options.result, run_to_file(job).value());
+    return report_outcome(job, options.result, run_to_file(job).value());
   } catch (const BytesError& error) {
     throw FileError(first.path, std::string("or another shard ") + error.what(), "run the shards again");
   }

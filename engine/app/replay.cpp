@@ -204,7 +204,7 @@ std::string reference_text(const ModelDescription& model, const ReplayedSample& 
 }
 
 int replay(const ReplayOptions& options) {
-  const StoredResult result = read_result_warily(options.result);
+  const StoredResult result = read_result_with_warning(options.result);
   warn_of_other_program(options, result);
   check_number(options, "pose", options.pose, result.poses.size());
   const StoredStudy stored = stored_study(result, options.result, registry());

@@ -49,7 +49,7 @@ int report(const ReportOptions& options) {
   const std::string path = options.report.empty() ? default_path(options.results) : options.report;
   check_output_path(path, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
-  for (const std::string& result : options.results) results.push_back({read_result_warily(result), result});
+  for (const std::string& result : options.results) results.push_back({read_result_with_warning(result), result});
   write_whole(path, html_report(results));
   std::puts(path.c_str());
   return kDone;

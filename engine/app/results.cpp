@@ -10,12 +10,15 @@
 #include <fstream>
 
 #include "engine/app/terminal.h"
+#include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/io/shard_file.h"
+#include "engine/io/study_file.h"
 #include "engine/report/failure_share.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/run/study_run.h"
+#include "models/registry.h"
 
 namespace poesy::app {
 namespace {
@@ -51,13 +54,13 @@ std::string warning_text(const Study& study, double share) {
 }
 
 /// Once all solves are done.
-Ended ended(const Job& job) {
+RunOutcome outcome_of(const Job& job) {
   const RunTime time = job.time();
   const SolveCounts& solves = job.checkpoints().solves();
-  Ended ended{solves, run_facts(time.wall, job.threads, solves.total())};
-  ended.facts.checkpoint_seconds = time.checkpoints;
-  ended.facts.ranks = job.ranks;
-  return ended;
+  RunOutcome outcome{solves, run_facts(time.wall, job.threads, solves.total())};
+  outcome.facts.checkpoint_seconds = time.checkpoints;
+  outcome.facts.ranks = job.ranks;
+  return outcome;
 }
 
 }  // namespace
@@ -122,34 +125,42 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
   return result;
 }
 
-std::optional<Ended> run_to_file(const Job& job) {
+std::optional<RunOutcome> run_to_file(const Job& job) {
   const std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
   if (!job.checkpoints().complete()) return std::nullopt;
   const bool writes = job.options.team == nullptr || job.options.team->leads();
-  if (writes && result) write_result(job.path, job.study, job.poses, *result, ended(job).facts);
-  Ended end = ended(job);
-  if (result) end.verdicts = verdicts_of(*result);
+  if (writes && result) write_result(job.path, job.study, job.poses, *result, outcome_of(job).facts);
+  RunOutcome outcome = outcome_of(job);
+  if (result) outcome.verdicts = verdicts_of(*result);
   if (const auto& shard = job.options.shard; shard && writes) {
-    write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), end.facts);
+    write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), outcome.facts);
   }
-  return end;
+  return outcome;
 }
 
-int report_end(const Job& job, const std::string& study_path, const Ended& ended) {
-  const std::string ranks = ended.facts.ranks > 1 ? fmt::format(" of {} ranks", ended.facts.ranks) : std::string();
-  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, ended.facts.solves,
-                         ended.facts.wall_seconds, ended.facts.threads, ended.facts.threads == 1 ? "thread" : "threads",
-                         ranks, ended.solves.not_converged())
+int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome) {
+  const std::string ranks = outcome.facts.ranks > 1 ? fmt::format(" of {} ranks", outcome.facts.ranks) : std::string();
+  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, outcome.facts.solves,
+                         outcome.facts.wall_seconds, outcome.facts.threads,
+                         outcome.facts.threads == 1 ? "thread" : "threads", ranks, outcome.solves.not_converged())
                  .c_str(),
              stdout);
   if (job.options.shard) return kDone;  // the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
-  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, ended.verdicts), study_path, remedy);
-  const ExitCode failures = judge_failures(job.study, ended.solves, study_path, remedy);
+  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, outcome.verdicts), study_path, remedy);
+  const ExitCode failures = judge_failures(job.study, outcome.solves, study_path, remedy);
   return failures != kDone ? failures : limits;  // with so many failures no limit can be trusted
 }
 
-StoredResult read_result_warily(const std::string& path) {
+std::optional<Study> study_in(const StoredResult& result) {
+  try {
+    return study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+StoredResult read_result_with_warning(const std::string& path) {
   StoredResult result = read_result(path);
   if (result.changed) say(Message::warning, path + " was changed since it was written; see poesy verify");
   return result;

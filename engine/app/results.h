@@ -32,7 +32,7 @@ struct Job {
 };
 
 /// How a study's solves ended, what they took, in all parts of the run, and what became of its limits.
-struct Ended {
+struct RunOutcome {
   SolveCounts solves;
   RunFacts facts;
   std::optional<LimitVerdicts> verdicts = std::nullopt;
@@ -40,10 +40,10 @@ struct Ended {
 
 /// Runs a study of any kind, or a shard of it, and writes its result, on rank 0 if there are several. Empty when it was
 /// interrupted. Throws FileError.
-std::optional<Ended> run_to_file(const Job& job);
+std::optional<RunOutcome> run_to_file(const Job& job);
 
 /// Says what came out; the exit code.
-int report_end(const Job& job, const std::string& study_path, const Ended& ended);
+int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome);
 
 /// The exit code of a command that is done. Where more samples failed than the study allows, says so on stderr: the
 /// limit, the share reached, and `remedy`, where to look. study_path names the study.
@@ -58,7 +58,10 @@ ExitCode judge_limits(const StoredResult& result, const std::string& study_path,
 StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
                            const std::optional<LimitVerdicts>& verdicts);
 
+/// The study that a result holds; none where this program cannot read it.
+std::optional<Study> study_in(const StoredResult& result);
+
 /// Reads a result, and warns on stderr where it was changed since it was written. Throws FileError.
-StoredResult read_result_warily(const std::string& path);
+StoredResult read_result_with_warning(const std::string& path);
 
 }  // namespace poesy::app

@@ -54,7 +54,7 @@ int run_on_ranks(const Launch& launch, const RankBody& body) {
 }
 
 /// Says why a rank left, if one did; the run's exit code. Precondition: the run was interrupted.
-int explain_leaving(const Team& team) {
+int say_why_a_rank_left(const Team& team) {
   if (!team.left()) return kInterrupted;
   switch (team.left()->reason) {
     case LeaveReason::stopped:
@@ -149,11 +149,11 @@ void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
 }
 
 /// run_to_file, and what is left to say about its checkpoints when it fails.
-std::optional<Ended> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
+std::optional<RunOutcome> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
   try {
-    auto ended = run_to_file(job);
+    auto outcome = run_to_file(job);
     printer.finish();
-    return ended;
+    return outcome;
   } catch (const BytesError& error) {
     printer.finish();
     resumable.refuse_state(error);
@@ -199,7 +199,7 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
 /// The ranks never began. What an earlier run kept is kept; without one, a checkpoint of nothing is there to be
 /// resumed.
 int leave_before_the_start(const Team& team, ResumableRun& resumable) {
-  const int code = explain_leaving(team);
+  const int code = say_why_a_rank_left(team);
   if (code != kInterrupted) return code;
   resumable.checkpoints().save();
   resumable.explain_interruption();
@@ -240,14 +240,14 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
                 .time = [&] { return resumable.time(); },
                 .threads = team != nullptr ? team->threads() : threads,
                 .ranks = team != nullptr ? team->ranks().size() : 1};
-  const std::optional<Ended> ended = run_to_end(job, resumable, printer);
-  if (!ended) {
-    const int code = team != nullptr ? explain_leaving(*team) : kInterrupted;
+  const std::optional<RunOutcome> outcome = run_to_end(job, resumable, printer);
+  if (!outcome) {
+    const int code = team != nullptr ? say_why_a_rank_left(*team) : kInterrupted;
     resumable.explain_interruption();
     return code;
   }
   resumable.finish();
-  return report_end(job, options.study, *ended);
+  return report_outcome(job, options.study, *outcome);
 }
 
 int run_alone_or_on_ranks(const RunCommandOptions& options) {

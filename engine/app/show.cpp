@@ -16,13 +16,11 @@
 #include "engine/base/text.h"
 #include "engine/io/held_errors.h"
 #include "engine/io/result_file.h"
-#include "engine/io/study_file.h"
 #include "engine/report/display.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/report/two_rankings.h"
-#include "models/registry.h"
 
 namespace poesy::app {
 namespace {
@@ -80,13 +78,9 @@ void show_alone(const std::string& response, StoredResult& result) {
 /// and where this program cannot read the study.
 std::string held_errors_line(const StoredResult& result, std::size_t width) {
   if (result.kind == "evaluate" && result.cases.empty()) return {};
-  try {
-    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
-    const std::string held = held_errors_text(study);
-    return held.empty() ? held : prose_of(held, width);
-  } catch (const InputError&) {
-    return {};
-  }
+  const std::optional<Study> study = study_in(result);
+  const std::string held = study ? held_errors_text(*study) : std::string();
+  return held.empty() ? held : prose_of(held, width);
 }
 
 void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
@@ -96,7 +90,7 @@ std::size_t width_of(const ShowOptions& options) { return options.width.value_or
 int show_one(const ShowOptions& options) {
   const std::string& path = options.results.front();
   const RowOrder order = order_of(options);
-  StoredResult result = read_result_warily(path);
+  StoredResult result = read_result_with_warning(path);
   check_ranks(options, path, result);
   const std::string response = response_of(options.response, path, result);
   if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
@@ -121,8 +115,8 @@ int show_both(const ShowOptions& options) {
   const RowOrder order = order_of(options);
   const std::string& path_a = options.results.front();
   const std::string& path_b = options.results.back();
-  const StoredResult a = read_result_warily(path_a);
-  const StoredResult b = read_result_warily(path_b);
+  const StoredResult a = read_result_with_warning(path_a);
+  const StoredResult b = read_result_with_warning(path_b);
   check_sensitivity(path_a, a);
   check_sensitivity(path_b, b);
   const std::size_t comma = options.response.find(',');

@@ -14,7 +14,6 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/io/study_file.h"
 #include "engine/io/tolerance_files.h"
 #include "engine/report/index_change.h"
 #include "engine/report/ranking.h"
@@ -68,7 +67,7 @@ double positive(const std::string& text, std::string_view option, const NamedUni
 }
 
 StoredResult read_sensitivity_result(const std::string& path) {
-  StoredResult result = read_result_warily(path);
+  StoredResult result = read_result_with_warning(path);
   if (result.kind != "sensitivity") {
     throw InputError({path}, "tolerances need indices, but this is a result of kind '" + result.kind + "'",
                      "give the result of a sensitivity study");
@@ -149,8 +148,9 @@ void check_prediction(const StoredResult& result, const MeanSquare& response, co
   }
 }
 
-LimitTolerances within(const TolerancesOptions& options, const StoredResult& result, const ResponseStudy& study,
-                       const MeanSquare& response, const NamedUnit& named) {
+LimitTolerances tolerances_within_limit(const TolerancesOptions& options, const StoredResult& result,
+                                        const ResponseStudy& study, const MeanSquare& response,
+                                        const NamedUnit& named) {
   const double limit = positive(*options.limit, "--limit", named);
   check_prediction(result, response, named.name);
   if (limit * limit <= response.background) {
@@ -207,23 +207,20 @@ std::string explanation(const StoredResult& result, const ResponseTolerances& fo
 /// Errors of the mechanism that the study neither varies nor has in its background; none where this program has no such
 /// mechanism, or cannot read the stored study any more.
 std::optional<std::string> perfect_errors_note(const StoredResult& result) {
-  try {
-    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
-    std::vector<FactorIndex> present = study.analysis.factors;
-    if (const auto& background = study.analysis.background) {
-      present.insert(present.end(), background->factors.begin(), background->factors.end());
-    }
-    std::ranges::sort(present, {}, &FactorIndex::value);
-    const auto repeated = std::ranges::unique(present, {}, &FactorIndex::value);
-    present.erase(repeated.begin(), repeated.end());
-    const std::size_t all = study.model().factors.size();
-    if (present.size() == all) return std::nullopt;
-    const std::size_t absent = all - present.size();
-    return fmt::format("{} of the mechanism's {} errors {} not in this study, and {} as perfect here", absent, all,
-                       absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
-  } catch (const InputError&) {
-    return std::nullopt;
+  const std::optional<Study> study = study_in(result);
+  if (!study) return std::nullopt;
+  std::vector<FactorIndex> present = study->analysis.factors;
+  if (const auto& background = study->analysis.background) {
+    present.insert(present.end(), background->factors.begin(), background->factors.end());
   }
+  std::ranges::sort(present, {}, &FactorIndex::value);
+  const auto repeated = std::ranges::unique(present, {}, &FactorIndex::value);
+  present.erase(repeated.begin(), repeated.end());
+  const std::size_t all = study->model().factors.size();
+  if (present.size() == all) return std::nullopt;
+  const std::size_t absent = all - present.size();
+  return fmt::format("{} of the mechanism's {} errors {} not in this study, and {} as perfect here", absent, all,
+                     absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
 }
 
 /// Refuses tolerances for errors whose index does not hold at their size, or says why they may not hold.
@@ -244,7 +241,7 @@ int set_tolerances(const TolerancesOptions& options) {
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
-  if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
+  if (options.limit) found.limit = tolerances_within_limit(options, result, study, found.all.mean_square, named);
   found.caveat = caveat_of(options, result, found);
   Table table = tolerance_table(result, found);
   if (const auto note = perfect_errors_note(result)) table.notes.push_back(*note);
