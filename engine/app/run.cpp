@@ -124,30 +124,6 @@ Shard parse_shard(const std::string& text) {
   return parsed;
 }
 
-/// Cells or blocks that shards of the study can divide between them.
-std::size_t divisible(const Study& study, std::size_t poses) {
-  const bool by_factor = study.analysis.kind == Analysis::Kind::sensitivity;
-  return by_factor ? study.analysis.factors.size() * poses : poses;
-}
-
-/// Throws unless this study can be divided so.
-void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
-  if (study.analysis.kind == Analysis::Kind::identification) {
-    throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
-                     "run it whole, for it is small, or with mpirun");
-  }
-  if (study.analysis.adaptive) {
-    throw InputError(
-        {}, "--shard divides no study with adaptive samples: when an error has enough is decided over all poses",
-        "write samples = N, or run it with mpirun");
-  }
-  if (const std::size_t most = divisible(study, poses); shard.count > most) {
-    throw InputError(
-        {}, fmt::format("--shard asks for {} shards, but this study divides into {} at most", shard.count, most),
-        "take fewer shards");
-  }
-}
-
 /// run_to_file, and what is left to say about its checkpoints when it fails.
 std::optional<RunOutcome> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
   try {

@@ -52,19 +52,19 @@ double least_share(const Plan& plan) {
 }
 
 /// All draws of the plan; a piece is a few of one unit.
-template <class UnitEvaluator>
+template <class SolveUnit>
 WorkOutlook sampling(const std::shared_ptr<const Plan>& plan, const std::shared_ptr<const Model>& model, double times) {
   struct Sampler {
     std::shared_ptr<const Plan> plan;
     std::shared_ptr<const Model> model;
-    UnitEvaluator evaluate;
+    SolveUnit solve;
   };
-  const auto sampler = std::make_shared<Sampler>(Sampler{plan, model, UnitEvaluator(*plan, *model)});
+  const auto sampler = std::make_shared<Sampler>(Sampler{plan, model, SolveUnit(*plan, *model)});
   return {[sampler](double at) {
             const Plan& all = *sampler->plan;
             WorkUnit unit = all.unit(static_cast<std::size_t>(at * static_cast<double>(all.units())));
             unit.count = std::min<std::size_t>(unit.count, 200);
-            return static_cast<double>(sampler->evaluate(unit).solves.total()) / static_cast<double>(all.solves());
+            return static_cast<double>(sampler->solve(unit).solves.total()) / static_cast<double>(all.solves());
           },
           times};
 }

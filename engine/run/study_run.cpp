@@ -1,7 +1,9 @@
 #include "engine/run/study_run.h"
 
+#include <string>
 #include <utility>
 
+#include "engine/base/error.h"
 #include "engine/run/cases.h"
 #include "engine/run/coupling.h"
 #include "engine/run/coupling_rows.h"
@@ -131,6 +133,12 @@ std::optional<StudyResult> run_kind(const StudyRun& run) {
   return run_coupling_study(run);
 }
 
+/// Cells or blocks that shards of the study can divide between them.
+std::size_t divisible(const Study& study, std::size_t poses) {
+  const bool by_factor = study.analysis.kind == Analysis::Kind::sensitivity;
+  return by_factor ? study.analysis.factors.size() * poses : poses;
+}
+
 }  // namespace
 
 std::optional<StudyResult> run_study(const Study& study, const Model& model, const PoseSet& poses,
@@ -144,6 +152,24 @@ std::optional<StudyResult> run_study(const Study& study, const Model& model, con
 std::optional<StudyResult> run_study(const Study& study, const RunOptions& options) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   return run_study(study, *model, select_poses(study.poses, *model).poses, options);
+}
+
+void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
+  if (study.analysis.kind == Analysis::Kind::identification) {
+    throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
+                     "run it whole, for it is small, or with mpirun");
+  }
+  if (study.analysis.adaptive) {
+    throw InputError(
+        {}, "--shard divides no study with adaptive samples: when an error has enough is decided over all poses",
+        "write samples = N, or run it with mpirun");
+  }
+  if (const std::size_t most = divisible(study, poses); shard.count > most) {
+    throw InputError({},
+                     "--shard asks for " + std::to_string(shard.count) + " shards, but this study divides into " +
+                         std::to_string(most) + " at most",
+                     "take fewer shards");
+  }
 }
 
 std::optional<LimitVerdicts> verdicts_of(const StudyResult& result) {

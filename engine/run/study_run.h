@@ -6,6 +6,7 @@
 #include "engine/model/model.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
+#include "engine/run/shard.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -20,6 +21,9 @@ std::optional<StudyResult> run_study(const Study& study, const Model& model, con
 
 /// The same at the poses that the study selects, by the model that it names. Throws InputError as select_poses().
 std::optional<StudyResult> run_study(const Study& study, const RunOptions& options = {});
+
+/// Throws InputError unless the study, at so many poses, can be divided into so many shards.
+void check_shard(const Shard& shard, const Study& study, std::size_t poses);
 
 /// What became of the limits that the study states; empty where it states none.
 std::optional<LimitVerdicts> verdicts_of(const StudyResult& result);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/error.h"
 #include "tests/engine/run/study_kinds.h"
 
 namespace poesy::test {
@@ -48,6 +49,20 @@ TEST(RunStudy, GivesNothingWhenItIsStopped) {
 
 TEST(RunStudy, GivesNothingForAShard) {
   EXPECT_FALSE(run_study(study_of(Kind::monte_carlo, 200), {.shard = Shard{0, 2}}));
+}
+
+TEST(CheckShard, TakesAsManyShardsAsTheStudyHasCellsOrPoses) {
+  EXPECT_NO_THROW(check_shard({0, 6}, study_of(Kind::sensitivity, 200), 3));
+  EXPECT_THROW(check_shard({0, 7}, study_of(Kind::sensitivity, 200), 3), InputError);
+  EXPECT_NO_THROW(check_shard({2, 3}, study_of(Kind::monte_carlo, 200), 3));
+  EXPECT_THROW(check_shard({3, 4}, study_of(Kind::monte_carlo, 200), 3), InputError);
+}
+
+TEST(CheckShard, RefusesAStudyThatNeedsAllPosesAtOnce) {
+  Study adaptive = study_of(Kind::sensitivity, 4000);
+  adaptive.analysis.adaptive = AdaptiveSamples{1000, 0.05};
+  EXPECT_THROW(check_shard({0, 2}, adaptive, 3), InputError);
+  EXPECT_THROW(check_shard({0, 2}, study_of(Kind::identification, 200), 3), InputError);
 }
 
 }  // namespace
