@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "bench/published_study.h"
-#include "engine/app/launch.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/run/monte_carlo_collector.h"
 #include "engine/run/run_in_order.h"

@@ -2,15 +2,18 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/duration.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/outlook.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/app/progress.h"
+#include "engine/io/content_hash.h"
+#include "engine/io/h5.h"
 #include "engine/io/held_errors.h"
 #include "engine/io/study_file.h"
+#include "engine/run/outlook.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"
 
@@ -32,11 +35,54 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
   return text + "\n";
 }
 
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Seconds that one thread takes for this work: pieces of it are done for so long, at least one and at most 64.
+double measured_seconds(const WorkOutlook& work, double longest) {
+  constexpr std::size_t kPieces = 64;
+  const Stopwatch watch;
+  double done = 0.0;
+  for (std::size_t n = 0; n < kPieces && (n == 0 || watch.seconds() < longest); ++n) {
+    // From the middle on; the golden ratio spreads any number of pieces evenly.
+    const double at = 0.5 + static_cast<double>(n) * 0.6180339887498949;
+    done += work.do_piece(at - std::floor(at));
+  }
+  return work.times * watch.seconds() / done;
+}
+
+double measured_seconds(const std::vector<WorkOutlook>& all, double longest) {
+  double sum = 0.0;
+  for (const WorkOutlook& work : all) sum += measured_seconds(work, longest);
+  return sum;
+}
+
+/// Seconds that one thread takes for each byte of a result file: HDF5 composes it, it is hashed and copied.
+double composing_seconds() {
+  constexpr std::size_t kNumbers = 1 << 17U;
+  const std::vector<double> numbers(kNumbers, 1.0);
+  const Stopwatch watch;
+  h5::File file = h5::File::in_memory();
+  file.write<double>("/numbers", {kNumbers}, numbers);
+  static_cast<void>(content_sha256(file));
+  const std::size_t bytes = file.image().size();
+  return watch.seconds() / static_cast<double>(bytes);
+}
+
+/// Tries pieces of the study on this machine, for about a quarter of a second.
 std::string time_text(const Outlook& expected, std::size_t threads) {
-  const double solves = expected.thread_seconds / static_cast<double>(threads);
-  const std::string most = "about " + readable_duration(solves + expected.serial_seconds);
+  const double shared = measured_seconds(expected.shared, 0.25) / static_cast<double>(threads);
+  const double by_one =
+      measured_seconds(expected.by_one, 0.0) + static_cast<double>(expected.memory.file) * composing_seconds();
+  const std::string most = "about " + readable_duration(shared + by_one);
   if (expected.least == 1.0) return most;
-  return "at least about " + readable_duration(expected.least * solves + expected.serial_seconds) + ", at most " + most;
+  return "at least about " + readable_duration(expected.least * shared + by_one) + ", at most " + most;
 }
 
 /// Bytes that this process has had in memory at its peak: with the model, the poses and a solver, as a run has them.
@@ -49,11 +95,12 @@ double own_peak() {
 
 std::string cost_text(const Outlook& expected) {
   const std::size_t threads = resolved_threads(0);
+  const std::string time = time_text(expected, threads);  // first: a solver has its memory then
   return fmt::format(
       "# memory: about {:.3g} MB at the peak, when the result file of about {:.3g} MB is written\n"
       "# time: {} on {} threads of this machine\n",
       (own_peak() + static_cast<double>(expected.memory.peak())) / 1e6, static_cast<double>(expected.memory.file) / 1e6,
-      time_text(expected, threads), threads);
+      time, threads);
 }
 
 int check(const std::string& path) {
@@ -76,13 +123,14 @@ int check(const std::string& path) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Action& action) {
-  auto study = std::make_shared<std::string>();
-  CLI::App* command =
-      program.add_subcommand("check", "validate a study; print it resolved, with its solves, memory and time");
-  command->add_option("study", *study, "study file (TOML)")->required()->type_name("STUDY.toml");
-  command->footer(footer("", {{"is it valid, and how long will it take?", "poesy check study.toml"}}));
-  command->callback([study, &action] { action = [study] { return check(*study); }; });
+Command& add_check(Command& program) {
+  const auto study = std::make_shared<std::string>();
+  Command& command =
+      program.add_command("check", "validate a study; print it resolved, with its solves, memory and time");
+  command.add_value("study", *study, "STUDY.toml", "study file (TOML)")->required();
+  command.examples = {{"is it valid, and how long will it take?", "poesy check study.toml"}};
+  command.action = [study] { return check(*study); };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -5,17 +5,11 @@
 #include <limits>
 #include <utility>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/facts.h"
-#include "engine/app/failure_limit.h"
-#include "engine/app/interrupt.h"
-#include "engine/app/limits.h"
-#include "engine/app/message.h"
-#include "engine/app/output_width.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
 #include "engine/app/progress.h"
-#include "engine/app/whole_number.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
@@ -83,7 +77,9 @@ int evaluate(const EvaluateOptions& options) {
   {
     ProgressPrinter printer(options.quiet);
     result = run_evaluation(*model, study.solver, poses.poses, errors, pairing,
-                            {threads, [&](const Progress& progress) { printer(progress); }, &catch_interrupts()});
+                            {.threads = threads,
+                             .progress = [&](const Progress& progress) { printer(progress); },
+                             .stop = &catch_interrupts()});
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!result) {
@@ -120,34 +116,31 @@ int evaluate(const EvaluateOptions& options) {
 
 }  // namespace
 
-void add_evaluate(CLI::App& program, Action& action) {
-  auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = program.add_subcommand("evaluate", "solve errors that somebody else sampled");
-  command->add_option("study", options->study, "study file; its [mechanism] and [solver] are used")
-      ->required()
-      ->type_name("STUDY.toml");
+Command& add_evaluate(Command& program) {
+  const auto options = std::make_shared<EvaluateOptions>();
+  Command& command = program.add_command("evaluate", "solve errors that somebody else sampled");
+  command.add_value("study", options->study, "STUDY.toml", "study file; its [mechanism] and [solver] are used")
+      ->required();
   command
-      ->add_option("--poses", options->poses,
-                   "poses; the first line names the pose coordinates, with units (\"z [mm]\") or SI")
-      ->required()
-      ->type_name("P.csv");
+      .add_value("--poses", options->poses, "P.csv",
+                 "poses; the first line names the pose coordinates, with units (\"z [mm]\") or SI")
+      ->required();
   command
-      ->add_option("--errors", options->errors,
-                   "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
-                   "names the rows")
-      ->required()
-      ->type_name("E.csv");
-  command->add_flag("--paired", options->paired, "row by row, instead of every pose with every row");
-  command->add_option("-o,--output", options->result, "result file; default: only the summary")->type_name("RESULT.h5");
-  add_whole_number(*command, "--threads", "--threads", options->threads,
-                   "number of threads; default: one per processor", 1, 1024)
-      ->type_name("N");
-  command->add_flag("--quiet", options->quiet, "no progress");
-  command->footer(footer("", {{"every pose with every row of errors; prints the summary",
-                               "poesy evaluate study.toml --poses p.csv --errors e.csv"},
-                              {"the first pose with the first row, and so on; keeps every outcome",
-                               "poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o r.h5"}}));
-  command->callback([options, &action] { action = [options] { return evaluate(*options); }; });
+      .add_value("--errors", options->errors, "E.csv",
+                 "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
+                 "names the rows")
+      ->required();
+  command.add_flag("--paired", options->paired, "row by row, instead of every pose with every row");
+  command.add_value("-o,--output", options->result, "RESULT.h5", "result file; default: only the summary");
+  command.add_whole_number("--threads", options->threads, "N", "number of threads; default: one per processor", 1,
+                           1024);
+  command.add_flag("--quiet", options->quiet, "no progress");
+  command.examples = {{"every pose with every row of errors; prints the summary",
+                       "poesy evaluate study.toml --poses p.csv --errors e.csv"},
+                      {"the first pose with the first row, and so on; keeps every outcome",
+                       "poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o r.h5"}};
+  command.action = [options] { return evaluate(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

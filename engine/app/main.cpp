@@ -2,13 +2,10 @@
 #include <cstdio>
 #include <string>
 
-#include "engine/app/command.h"
-#include "engine/app/command_line_problem.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code_of.h"
-#include "engine/app/help_text.h"
-#include "engine/app/launch.h"
-#include "engine/app/message.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/app/mpi_ranks.h"
+#include "engine/app/terminal.h"
 #include "engine/io/version.h"
 
 namespace poesy::app {
@@ -16,28 +13,26 @@ namespace {
 
 std::string version_text() { return "poesy " + std::string(poesy_version()) + " (" + std::string(git_commit()) + ")"; }
 
-void describe_program(CLI::App& program) {
-  program.formatter_fn(
-      [](const CLI::App* app, const std::string&, CLI::AppFormatMode) { return help_text(*app, help_width()); });
+void describe_program(Command& program) {
+  program.formatter_fn([](const CLI::App* app, const std::string&, CLI::AppFormatMode) {
+    return help_text(dynamic_cast<const Command&>(*app));
+  });
   program.set_help_flag("-h,--help", "print this help");
   program.set_version_flag("-v,--version", version_text(), "print the version");
   program.require_subcommand(1);
-  program.footer(
-      footer("A study file says which mechanism, errors and poses are looked at, and how. poesy draws the errors, "
-             "solves the mechanism for every pose and draw, and writes what it found to a result file.\n",
-             {{"which mechanisms are there?", "poesy models"},
-              {"a study to start from, every key explained", "poesy template 2upr-rpu > study.toml"},
-              {"gives study.h5", "poesy run study.toml"},
-              {"the errors that matter most", "poesy show study.h5"}}));
+  program.notes = {
+      "A study file says which mechanism, errors and poses are looked at, and how. poesy draws the errors, "
+      "solves the mechanism for every pose and draw, and writes what it found to a result file."};
+  program.examples = {{"which mechanisms are there?", "poesy models"},
+                      {"a study to start from, every key explained", "poesy template 2upr-rpu > study.toml"},
+                      {"gives study.h5", "poesy run study.toml"},
+                      {"the errors that matter most", "poesy show study.h5"}};
 }
 
 /// In the groups of the program's help.
-void add_commands(CLI::App& program, Action& action) {
-  const auto group = [&](const char* title, std::initializer_list<void (*)(CLI::App&, Action&)> commands) {
-    for (const auto add : commands) {
-      add(program, action);
-      program.get_subcommands([](const CLI::App*) { return true; }).back()->group(title);
-    }
+void add_commands(Command& program) {
+  const auto group = [&](const char* title, std::initializer_list<Command& (*)(Command&)> commands) {
+    for (const auto add : commands) add(program).group(title);
   };
   group("Prepare a study", {add_models, add_template, add_check});
   group("Compute", {add_run, add_merge, add_evaluate});
@@ -46,12 +41,11 @@ void add_commands(CLI::App& program, Action& action) {
 }
 
 int parse_and_run(int argc, char** argv) {
-  CLI::App program("which manufacturing and assembly errors of a parallel robot matter, how much, and where");
-  Action action;
+  Command program("", "which manufacturing and assembly errors of a parallel robot matter, how much, and where");
   describe_program(program);
-  add_commands(program, action);
+  add_commands(program);
   if (argc < 2) {
-    std::fputs(help_text(program, help_width()).c_str(), stdout);
+    std::fputs(help_text(program).c_str(), stdout);
     return kDone;
   }
   try {
@@ -63,9 +57,10 @@ int parse_and_run(int argc, char** argv) {
     return complain(command_line_problem(program, error), kBadInput);
   }
   if (const auto problem = empty_value(program)) return complain(*problem, kBadInput);
+  const auto& called = dynamic_cast<const Command&>(*program.get_subcommands().front());
   // Nothing else knows how to share its work; under a launcher the first process does it.
-  if (!program.got_subcommand("run") && find_launch().value_or(Launch()).rank != 0) return kDone;
-  return action();
+  if (called.get_name() != "run" && !is_first_process()) return kDone;
+  return called.action();
 }
 
 /// The exit code, unless what was printed did not arrive.

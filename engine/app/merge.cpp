@@ -1,8 +1,7 @@
 #include <algorithm>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/run_study.h"
+#include "engine/app/command_line.h"
+#include "engine/app/results.h"
 #include "engine/base/error.h"
 #include "engine/io/result_file.h"
 #include "engine/io/shard_file.h"
@@ -45,17 +44,16 @@ int merge(const MergeOptions& options) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   // The whole run from here on: as one that is resumed when all its stages are done.
   Checkpoints done([] { return false; }, [](std::span<const Bytes>) {}, std::move(merged));
-  RunOptions run{.threads = 0, .progress = [](const Progress&) {}, .checkpoints = &done};
-  const Job job{study,
-                *model,
-                whole.poses,
-                options.result,
-                std::move(run),
-                [time = time_of(shards)] { return time; },
-                most(shards, &RunFacts::threads),
-                most(shards, &RunFacts::ranks)};
+  const Job job{.study = study,
+                .model = *model,
+                .poses = whole.poses,
+                .path = options.result,
+                .options = {.checkpoints = &done},
+                .time = [time = time_of(shards)] { return time; },
+                .threads = most(shards, &RunFacts::threads),
+                .ranks = most(shards, &RunFacts::ranks)};
   try {
-    return report_end(job, options.result, run_study(job).value());
+    return report_outcome(job, options.result, run_to_file(job).value());
   } catch (const BytesError& error) {
     throw FileError(first.path, std::string("or another shard ") + error.what(), "run the shards again");
   }
@@ -63,18 +61,16 @@ int merge(const MergeOptions& options) {
 
 }  // namespace
 
-void add_merge(CLI::App& program, Action& action) {
-  auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = program.add_subcommand("merge", "put the shards of a study together (poesy run --shard)");
-  command->add_option("shards", options->shards, "all shards of one study, in any order")
-      ->required()
-      ->type_name("SHARD.h5");
-  command->add_option("-o,--output", options->result, "result file, the same as that of one run")
-      ->required()
-      ->type_name("RESULT.h5");
-  command->footer(footer("", {{"two shards", "poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5"},
-                              {"all that there are", "poesy merge study.*-of-*.h5 -o study.h5"}}));
-  command->callback([options, &action] { action = [options] { return merge(*options); }; });
+Command& add_merge(Command& program) {
+  const auto options = std::make_shared<MergeOptions>();
+  Command& command = program.add_command("merge", "put the shards of a study together (poesy run --shard)");
+  command.add_value("shards", options->shards, "SHARD.h5", "all shards of one study, in any order")->required();
+  command.add_value("-o,--output", options->result, "RESULT.h5", "result file, the same as that of one run")
+      ->required();
+  command.examples = {{"two shards", "poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5"},
+                      {"all that there are", "poesy merge study.*-of-*.h5 -o study.h5"}};
+  command.action = [options] { return merge(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

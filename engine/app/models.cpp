@@ -1,26 +1,87 @@
 #include <cstdio>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/find_model.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/io/study_file.h"
+#include "engine/io/study_keys.h"
 #include "engine/report/tables.h"
 #include "models/registry.h"
 
 namespace poesy::app {
+namespace {
 
-void add_models(CLI::App& program, Action& action) {
-  auto name = std::make_shared<std::string>();
-  CLI::App* command = program.add_subcommand("models", "list the mechanisms, or describe one");
-  command->add_option("model", *name, "mechanism")->type_name("MODEL");
-  command->footer(footer("", {{"which mechanisms are there?", "poesy models"},
-                              {"errors, poses and responses of one", "poesy models 2upr-rpu"}}));
-  command->callback([name, &action] {
-    action = [name] {
-      std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name))).c_str(), stdout);
-      return kDone;
-    };
+/// The mechanism of that name, in capitals or small letters. Throws InputError that lists the known ones.
+const CatalogEntry& find_model(const std::string& name) {
+  if (const CatalogEntry* entry = find(registry(), name)) return *entry;
+  std::vector<std::string_view> known;
+  for (const CatalogEntry& entry : registry()) known.push_back(entry.description.name);
+  throw InputError({}, "no model '" + printable(name) + "'", suggestion(lower_case(name), known));
+}
+
+Analysis::Kind kind_named(const std::string& word) {
+  std::vector<std::string_view> known;
+  for (const Analysis::Kind kind : kKinds) {
+    if (name(kind) == word) return kind;
+    known.push_back(name(kind));
+  }
+  throw InputError({}, "no template of kind '" + printable(word) + "'", suggestion(word, known));
+}
+
+int print_template(const std::string& model, const std::string& kind) {
+  const CatalogEntry& entry = find_model(model);
+  const Analysis::Kind wanted = kind_named(kind);
+  if (wanted == Analysis::Kind::identification && !entry.description.deformation) {
+    throw InputError({}, "nothing deforms in model '" + model + "', so it has no identification",
+                     "choose another kind");
+  }
+  if (wanted == Analysis::Kind::coupling && entry.description.sources.empty()) {
+    throw InputError({}, "model '" + model + "' suggests no sources of errors, so its coupling has no template",
+                     "choose another kind, or write [[analysis.sources]] in a study of this kind");
+  }
+  std::fputs(template_text(entry, wanted).c_str(), stdout);
+  return kDone;
+}
+
+int print_reference() {
+  std::fputs(study_reference().c_str(), stdout);
+  return kDone;
+}
+
+}  // namespace
+
+Command& add_models(Command& program) {
+  const auto name = std::make_shared<std::string>();
+  Command& command = program.add_command("models", "list the mechanisms, or describe one");
+  command.add_value("model", *name, "MODEL", "mechanism");
+  command.examples = {{"which mechanisms are there?", "poesy models"},
+                      {"errors, poses and responses of one", "poesy models 2upr-rpu"}};
+  command.action = [name] {
+    std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name))).c_str(), stdout);
+    return kDone;
+  };
+  return command;
+}
+
+Command& add_template(Command& program) {
+  const auto model = std::make_shared<std::string>();
+  const auto kind = std::make_shared<std::string>("sensitivity");
+  const auto reference = std::make_shared<bool>(false);
+  Command& command = program.add_command("template", "print a complete, commented study file");
+  CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism");
+  command.add_value("kind", *kind, "KIND",
+                    "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling");
+  command.add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
+      ->excludes(named);
+  command.examples = {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
+                      {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
+                      {"every key of a study file, as text", "poesy template --reference"}};
+  command.callback([=] {
+    if (!*reference && named->count() == 0) throw CLI::RequiredError(named->get_type_name());
   });
+  command.action = [=] { return *reference ? print_reference() : print_template(*model, *kind); };
+  return command;
 }
 
 }  // namespace poesy::app

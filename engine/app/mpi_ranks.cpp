@@ -1,16 +1,52 @@
 #include "engine/app/mpi_ranks.h"
 
-#include <mpi.h>
-
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/base/error.h"
 
+#ifdef POESY_WITH_MPI
+#include <mpi.h>
+#endif
+
 namespace poesy::app {
+namespace {
+
+std::optional<std::size_t> number_in(const char* variable) {
+  const char* value = std::getenv(variable);
+  if (value == nullptr) return std::nullopt;
+  const std::string_view text = value;
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Launch> find_launch() {
+  struct Variables {
+    const char* rank;
+    const char* size;
+  };
+  for (const auto& [rank_in, size_in] : {Variables{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                                         {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"},
+                                         {"PMI_RANK", "PMI_SIZE"}}) {
+    const auto rank = number_in(rank_in);
+    const auto size = number_in(size_in);
+    if (rank && size && *rank < *size) return Launch{*rank, *size};
+  }
+  return std::nullopt;
+}
+
+bool is_first_process() { return find_launch().value_or(Launch()).rank == 0; }
+
+#ifdef POESY_WITH_MPI
+
 namespace {
 
 /// MPI counts bytes by int, so a long message goes in pieces. Its last piece has the first tag, all others the second.
@@ -135,5 +171,14 @@ std::unique_ptr<LaunchedRanks> connect_ranks(const Launch& launch) {
   }
   return ranks;
 }
+
+#else
+
+std::unique_ptr<LaunchedRanks> connect_ranks(const Launch& launch) {
+  throw InputError({}, "a launcher started " + std::to_string(launch.size) + " processes, but this poesy has no MPI",
+                   "build it with -DPOESY_MPI=ON, for which Debian has libopenmpi-dev; or start one process");
+}
+
+#endif
 
 }  // namespace poesy::app

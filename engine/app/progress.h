@@ -3,11 +3,55 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <string>
 
-#include "engine/app/recent_rate.h"
 #include "engine/run/runner.h"
 
 namespace poesy::app {
+
+/// Seconds of "10 s", "5 min" or "2 h". Throws InputError that names the option when the text is anything else, or not
+/// greater than zero.
+double parse_duration(const std::string& text, const std::string& option);
+
+/// "2.3 s", "45 s", "1 min 20 s", "35 min", "2 h 10 min", "3 d 4 h". Seconds of zero or more.
+std::string readable_duration(double seconds);
+
+/// How fast something is done now: over the last 15 seconds or so, not over all of the time.
+class RecentRate {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit RecentRate(Clock::time_point start) : marks_{{start, 0}}, latest_{start, 0} {}
+
+  /// done: so much by now. Neither time nor amount ever falls.
+  void add(Clock::time_point now, std::uint64_t done);
+  /// Zero while nothing is done.
+  double per_second() const;
+
+ private:
+  struct Mark {
+    Clock::time_point time;
+    std::uint64_t done;
+  };
+
+  std::deque<Mark> marks_;  ///< of the window, some time apart; the first is at its beginning or just before
+  Mark latest_;
+};
+
+/// What a line of progress says.
+struct ProgressFacts {
+  Progress progress;
+  double rate = 0.0;      ///< solves per second, now; 0: not known yet
+  std::size_t stage = 1;  ///< of a run in several stages, the size of which is known one by one
+};
+
+/// "43.2 % done, 7.21 M solves/s, 12 not converged (0.0012 %), 1 min 20 s left"
+std::string plain_line(const ProgressFacts& facts);
+
+/// The same with a bar, in at most `width` columns of one byte each. Where there is little room the bar gets shorter,
+/// then the details go, and the time left last of all.
+std::string live_line(const ProgressFacts& facts, std::size_t width);
 
 /// Writes progress to stderr: one live line on a terminal, as wide as that is now, a line every few seconds otherwise,
 /// nothing when quiet.

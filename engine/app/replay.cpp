@@ -6,12 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "engine/app/changed_result.h"
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/message.h"
-#include "engine/app/whole_number.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/io/stored_study.h"
 #include "engine/io/trial_read.h"
@@ -206,7 +204,7 @@ std::string reference_text(const ModelDescription& model, const ReplayedSample& 
 }
 
 int replay(const ReplayOptions& options) {
-  const StoredResult result = read_result_warily(options.result);
+  const StoredResult result = read_result_with_warning(options.result);
   warn_of_other_program(options, result);
   check_number(options, "pose", options.pose, result.poses.size());
   const StoredStudy stored = stored_study(result, options.result, registry());
@@ -229,24 +227,23 @@ int replay(const ReplayOptions& options) {
 
 }  // namespace
 
-void add_replay(CLI::App& program, Action& action) {
-  auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = program.add_subcommand("replay", "solve one sample of a result again, iteration by iteration");
-  command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
-  command->add_option("factor", options->factor, "error that varied; all: a Monte Carlo result; or the name of a case")
-      ->required()
-      ->type_name("FACTOR");
-  add_whole_number(*command, "pose", "POSE", options->pose, "number of the pose, from 0", 0, kMostNumber)
-      ->required()
-      ->type_name("POSE");
-  add_whole_number(*command, "sample", "SAMPLE", options->sample, "number of the sample, from 0; not of a case", 0,
-                   kMostNumber)
-      ->type_name("SAMPLE");
-  command->footer(footer(
-      "'poesy show' names a sample that failed, failures.csv of 'poesy export' and /solver/failed_* the first ones.\n",
-      {{"sample 345 of one error at pose 12", "poesy replay result.h5 epsilon_1_4_z 12 345"},
-       {"of a Monte Carlo result, where all errors vary", "poesy replay result.h5 all 12 345"}}));
-  command->callback([options, &action] { action = [options] { return replay(*options); }; });
+Command& add_replay(Command& program) {
+  const auto options = std::make_shared<ReplayOptions>();
+  Command& command = program.add_command("replay", "solve one sample of a result again, iteration by iteration");
+  command.add_value("result", options->result, "RESULT.h5", "result file")->required();
+  command
+      .add_value("factor", options->factor, "FACTOR",
+                 "error that varied; all: a Monte Carlo result; or the name of a case")
+      ->required();
+  command.add_whole_number("pose", options->pose, "POSE", "number of the pose, from 0", 0, kMostNumber)->required();
+  command.add_whole_number("sample", options->sample, "SAMPLE", "number of the sample, from 0; not of a case", 0,
+                           kMostNumber);
+  command.notes = {
+      "'poesy show' names a sample that failed, failures.csv of 'poesy export' and /solver/failed_* the first ones."};
+  command.examples = {{"sample 345 of one error at pose 12", "poesy replay result.h5 epsilon_1_4_z 12 345"},
+                      {"of a Monte Carlo result, where all errors vary", "poesy replay result.h5 all 12 345"}};
+  command.action = [options] { return replay(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/changed_result.h"
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/app/results.h"
 #include "engine/io/file_writer.h"
 #include "engine/io/output_path.h"
 #include "engine/report/html/report.h"
@@ -50,7 +49,7 @@ int report(const ReportOptions& options) {
   const std::string path = options.report.empty() ? default_path(options.results) : options.report;
   check_output_path(path, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
-  for (const std::string& result : options.results) results.push_back({read_result_warily(result), result});
+  for (const std::string& result : options.results) results.push_back({read_result_with_warning(result), result});
   write_whole(path, html_report(results));
   std::puts(path.c_str());
   return kDone;
@@ -58,21 +57,19 @@ int report(const ReportOptions& options) {
 
 }  // namespace
 
-void add_report(CLI::App& program, Action& action) {
-  auto options = std::make_shared<ReportOptions>();
-  CLI::App* command =
-      program.add_subcommand("report", "one HTML file with figures and tables of a result, or of two compared");
-  command->add_option("results", options->results, "result file, or two to be compared")
+Command& add_report(Command& program) {
+  const auto options = std::make_shared<ReportOptions>();
+  Command& command =
+      program.add_command("report", "one HTML file with figures and tables of a result, or of two compared");
+  command.add_value("results", options->results, "RESULT.h5", "result file, or two to be compared")
       ->required()
-      ->expected(1, 2)
-      ->type_name("RESULT.h5");
-  command
-      ->add_option("-o,--output", options->report,
-                   "report; default: RESULT.html beside the result, A-B.html beside A for two")
-      ->type_name("REPORT.html");
-  command->footer(footer("", {{"gives result.html", "poesy report result.h5"},
-                              {"two compared, before-after.html", "poesy report before.h5 after.h5"}}));
-  command->callback([options, &action] { action = [options] { return report(*options); }; });
+      ->expected(1, 2);
+  command.add_value("-o,--output", options->report, "REPORT.html",
+                    "report; default: RESULT.html beside the result, A-B.html beside A for two");
+  command.examples = {{"gives result.html", "poesy report result.h5"},
+                      {"two compared, before-after.html", "poesy report before.h5 after.h5"}};
+  command.action = [options] { return report(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "engine/app/duration.h"
-#include "engine/app/interrupt.h"
-#include "engine/app/message.h"
+#include "engine/app/ending.h"
+#include "engine/app/progress.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 
 namespace poesy::app {
@@ -28,23 +28,23 @@ std::chrono::steady_clock::duration duration_of(double seconds) {
 
 }  // namespace
 
-void ResumeOptions::add_to(CLI::App& command) {
+void ResumeOptions::add_to(Command& command) {
   constexpr const char* kGroup = "Long runs";
   command.add_flag("--resume", resume, "continue the run that was stopped, from RESULT.h5.part")->group(kGroup);
-  command.add_option("--checkpoint-every", every, "time between checkpoints of the run; default: 10 s")
-      ->type_name("TIME")
+  command.add_value("--checkpoint-every", every, "TIME", "time between checkpoints of the run; default: 10 s")
       ->group(kGroup);
-  command.add_option("--max-wall", max_wall, "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\"")
-      ->type_name("TIME")
+  command
+      .add_value("--max-wall", max_wall, "TIME", "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\"")
       ->group(kGroup);
-  command.add_flag("--keep-checkpoint", keep, "keep RESULT.h5.part when done, so that --resume can add samples")
+  command
+      .add_flag("--keep-checkpoint", keep_checkpoint, "keep RESULT.h5.part when done, so that --resume can add samples")
       ->group(kGroup);
 }
 
 ResumableRun::ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
     : lock_(result_path),
       resume_(options.resume),
-      keep_(options.keep),
+      keep_checkpoint_(options.keep_checkpoint),
       command_(std::move(resume_command)),
       files_(result_path),
       every_(duration_of(parse_duration(options.every, "--checkpoint-every"))) {
@@ -111,7 +111,7 @@ void ResumableRun::save(std::span<const Bytes> stages) {
 }
 
 void ResumableRun::finish() {
-  if (keep_) {
+  if (keep_checkpoint_) {
     checkpoints_->save();
   } else {
     files_.remove();

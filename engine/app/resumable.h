@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <optional>
 #include <string>
 
+#include "engine/app/command_line.h"
 #include "engine/io/checkpoint_files.h"
 #include "engine/io/run_lock.h"
 #include "engine/run/checkpoints.h"
@@ -15,11 +15,11 @@ namespace poesy::app {
 /// How a run keeps itself and ends early, as the command line says.
 struct ResumeOptions {
   bool resume = false;
-  bool keep = false;  ///< the last checkpoint stays beside a finished result
+  bool keep_checkpoint = false;  ///< the last checkpoint stays beside a finished result
   std::string every = "10 s";
   std::string max_wall;  ///< empty: no limit
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
 };
 
 /// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, for they
@@ -58,7 +58,7 @@ class ResumableRun {
 
   RunLock lock_;
   bool resume_;
-  bool keep_;
+  bool keep_checkpoint_;
   std::string command_;
   CheckpointFiles files_;
   CheckpointIdentity identity_;

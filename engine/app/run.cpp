@@ -1,28 +1,73 @@
 #include <fmt/format.h>
+#include <pthread.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <optional>
 
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/interrupt.h"
-#include "engine/app/message.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/app/mpi_ranks.h"
 #include "engine/app/progress.h"
+#include "engine/app/results.h"
 #include "engine/app/resumable.h"
-#include "engine/app/run_on_ranks.h"
-#include "engine/app/run_study.h"
-#include "engine/app/whole_number.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/io/held_errors.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
-#include "engine/io/wording.h"
+#include "engine/run/study_run.h"
+#include "engine/run/team.h"
 #include "models/registry.h"
 
 namespace poesy::app {
 namespace {
+
+/// How long the other ranks may take to end their parts after rank 0 has ended the run.
+std::chrono::seconds patience(int exit_code) { return std::chrono::seconds(exit_code == kDone ? 60 : 10); }
+
+/// The processors that this process may use: those that the launcher bound it to, or its part of the machine's.
+std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
+  const auto all = static_cast<std::size_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
+  cpu_set_t allowed;
+  const bool known = pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed) == 0;
+  const std::size_t bound = known ? static_cast<std::size_t>(CPU_COUNT(&allowed)) : all;
+  return bound < all ? bound : std::max<std::size_t>(1, all / ranks_on_this_machine);
+}
+
+/// What one rank does; rank 0's exit code counts. default_threads: where the command line says nothing.
+using RankBody = std::function<int(Team& team, std::size_t default_threads)>;
+
+/// Runs the body on this rank, together with all others. The exit code, which is the same on all of them. Rank 0 alone
+/// speaks.
+int run_on_ranks(const Launch& launch, const RankBody& body) {
+  const std::unique_ptr<LaunchedRanks> ranks = connect_ranks(launch);
+  const std::size_t processors = processors_of_rank(ranks->on_this_machine());
+  Team team(*ranks);
+  if (!team.leads()) return team.follow([&] { body(team, processors); });
+  const int code = exit_code_of([&] { return body(team, processors); });
+  if (!team.dismiss(code, patience(code))) ranks->abort(code);
+  return code;
+}
+
+/// Says why a rank left, if one did; the run's exit code. Precondition: the run was interrupted.
+int say_why_a_rank_left(const Team& team) {
+  if (!team.left()) return kInterrupted;
+  switch (team.left()->reason) {
+    case LeaveReason::stopped:
+      return complain(team.left()->text, kInterrupted);
+    case LeaveReason::bad_input:
+      return complain(team.left()->text, kBadInput);
+    case LeaveReason::file_trouble:
+      return complain(team.left()->text, kFileTrouble);
+    case LeaveReason::internal:
+      break;
+  }
+  return complain(team.left()->text, kInternalError);
+}
 
 struct RunCommandOptions {
   std::string study;
@@ -47,7 +92,7 @@ std::string resume_command(const RunCommandOptions& options, const Team* team) {
   if (options.seed) add("--seed", std::to_string(*options.seed));
   if (options.resume.every != ResumeOptions().every) add("--checkpoint-every", options.resume.every);
   if (!options.resume.max_wall.empty()) add("--max-wall", options.resume.max_wall);
-  if (options.resume.keep) words.emplace_back("--keep-checkpoint");
+  if (options.resume.keep_checkpoint) words.emplace_back("--keep-checkpoint");
   if (options.quiet) words.emplace_back("--quiet");
   words.emplace_back("--resume");
   return shell_command(words);
@@ -79,36 +124,12 @@ Shard parse_shard(const std::string& text) {
   return parsed;
 }
 
-/// Cells or blocks that shards of the study can divide between them.
-std::size_t divisible(const Study& study, std::size_t poses) {
-  const bool by_factor = study.analysis.kind == Analysis::Kind::sensitivity;
-  return by_factor ? study.analysis.factors.size() * poses : poses;
-}
-
-/// Throws unless this study can be divided so.
-void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
-  if (study.analysis.kind == Analysis::Kind::identification) {
-    throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
-                     "run it whole, for it is small, or with mpirun");
-  }
-  if (study.analysis.adaptive) {
-    throw InputError(
-        {}, "--shard divides no study with adaptive samples: when an error has enough is decided over all poses",
-        "write samples = N, or run it with mpirun");
-  }
-  if (const std::size_t most = divisible(study, poses); shard.count > most) {
-    throw InputError(
-        {}, fmt::format("--shard asks for {} shards, but this study divides into {} at most", shard.count, most),
-        "take fewer shards");
-  }
-}
-
-/// run_study, and what is left to say about its checkpoints when it fails.
-std::optional<Ended> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
+/// run_to_file, and what is left to say about its checkpoints when it fails.
+std::optional<RunOutcome> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
   try {
-    auto ended = run_study(job);
+    auto outcome = run_to_file(job);
     printer.finish();
-    return ended;
+    return outcome;
   } catch (const BytesError& error) {
     printer.finish();
     resumable.refuse_state(error);
@@ -136,26 +157,25 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  SelectedPoses poses = select_poses(study.poses, *model);
+  const SelectedPoses poses = select_poses(study.poses, *model);
   if (!team.agree(text_of(identity_of(study, poses.poses, options.shard)), threads, &stop)) {
     throw InputError({options.study}, "is not the same here as on rank 0, or its poses or poesy itself are not",
                      "give all ranks the same files and the same program");
   }
   Checkpoints not_kept([] { return false; }, [](std::span<const Bytes>) {});
-  const auto no_progress = [](const Progress&) {};
-  run_study({study,
-             *model,
-             std::move(poses),
-             {},
-             {threads, no_progress, &stop, &not_kept, options.shard, options.resume.keep, &team},
-             [] { return RunTime(); },
-             threads});
+  run_study(study, *model, poses.poses,
+            {.threads = threads,
+             .stop = &stop,
+             .checkpoints = &not_kept,
+             .shard = options.shard,
+             .keep_checkpoint = options.resume.keep_checkpoint,
+             .team = &team});
 }
 
 /// The ranks never began. What an earlier run kept is kept; without one, a checkpoint of nothing is there to be
 /// resumed.
 int leave_before_the_start(const Team& team, ResumableRun& resumable) {
-  const int code = explain_leaving(team);
+  const int code = say_why_a_rank_left(team);
   if (code != kInterrupted) return code;
   resumable.checkpoints().save();
   resumable.explain_interruption();
@@ -182,22 +202,28 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
     printer(progress);
     resumable.check_time();
   };
-  const Job job{study,
-                *model,
-                std::move(poses),
-                path,
-                {threads, on_progress, &stop, &resumable.checkpoints(), options.shard, options.resume.keep, team},
-                [&] { return resumable.time(); },
-                team != nullptr ? team->threads() : threads,
-                team != nullptr ? team->ranks().size() : 1};
-  const std::optional<Ended> ended = run_to_end(job, resumable, printer);
-  if (!ended) {
-    const int code = team != nullptr ? explain_leaving(*team) : kInterrupted;
+  const Job job{.study = study,
+                .model = *model,
+                .poses = std::move(poses),
+                .path = path,
+                .options = {.threads = threads,
+                            .progress = on_progress,
+                            .stop = &stop,
+                            .checkpoints = &resumable.checkpoints(),
+                            .shard = options.shard,
+                            .keep_checkpoint = options.resume.keep_checkpoint,
+                            .team = team},
+                .time = [&] { return resumable.time(); },
+                .threads = team != nullptr ? team->threads() : threads,
+                .ranks = team != nullptr ? team->ranks().size() : 1};
+  const std::optional<RunOutcome> outcome = run_to_end(job, resumable, printer);
+  if (!outcome) {
+    const int code = team != nullptr ? say_why_a_rank_left(*team) : kInterrupted;
     resumable.explain_interruption();
     return code;
   }
   resumable.finish();
-  return report_end(job, options.study, *ended);
+  return report_outcome(job, options.study, *outcome);
 }
 
 int run_alone_or_on_ranks(const RunCommandOptions& options) {
@@ -213,34 +239,33 @@ int run_alone_or_on_ranks(const RunCommandOptions& options) {
 
 }  // namespace
 
-void add_run(CLI::App& program, Action& action) {
-  auto options = std::make_shared<RunCommandOptions>();
-  CLI::App* command = program.add_subcommand("run", "run a study and write its result");
-  command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY.toml");
-  command->add_option("-o,--output", options->result, "result file; default: the study's name with .h5, in this folder")
-      ->type_name("RESULT.h5");
-  add_whole_number(*command, "--threads", "--threads", options->threads,
-                   "number of threads, of each rank; default: one per processor", 1, 1024)
-      ->type_name("N");
-  add_whole_number(*command, "--seed", "--seed", options->seed, "seed, instead of the study's", 0, 0x7fffffffffffffff)
-      ->type_name("S");
-  options->resume.add_to(*command);
+Command& add_run(Command& program) {
+  const auto options = std::make_shared<RunCommandOptions>();
+  Command& command = program.add_command("run", "run a study and write its result");
+  command.add_value("study", options->study, "STUDY.toml", "study file (TOML)")->required();
+  command.add_value("-o,--output", options->result, "RESULT.h5",
+                    "result file; default: the study's name with .h5, in this folder");
+  command.add_whole_number("--threads", options->threads, "N",
+                           "number of threads, of each rank; default: one per processor", 1, 1024);
+  command.add_whole_number("--seed", options->seed, "S", "seed, instead of the study's", 0, 0x7fffffffffffffff);
+  options->resume.add_to(command);
   command
-      ->add_option_function<std::string>(
+      .add_option_function<std::string>(
           "--shard", [options](const std::string& text) { options->shard = parse_shard(text); },
           "run this one of N shards only, to be put together by poesy merge")
       ->type_name("K/N")
       ->group("On a cluster");
-  command->add_flag("--quiet", options->quiet, "no progress");
-  command->footer(footer("Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once.\n",
-                         {{"gives study.h5", "poesy run study.toml"},
-                          {"stops after two hours, exit code 4; the same with --resume goes on",
-                           "poesy run study.toml --max-wall \"2 h\""},
-                          {"on several ranks, over MPI", "mpirun -n 4 poesy run study.toml -o result.h5"}}));
-  command->callback([options, &program, &action] {
+  command.add_flag("--quiet", options->quiet, "no progress");
+  command.notes = {"Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once."};
+  command.examples = {
+      {"gives study.h5", "poesy run study.toml"},
+      {"stops after two hours, exit code 4; the same with --resume goes on", "poesy run study.toml --max-wall \"2 h\""},
+      {"on several ranks, over MPI", "mpirun -n 4 poesy run study.toml -o result.h5"}};
+  command.action = [options, &program] {
     options->program = program.get_name();
-    action = [options] { return run_alone_or_on_ranks(*options); };
-  });
+    return run_alone_or_on_ranks(*options);
+  };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -8,23 +8,19 @@
 #include <utility>
 #include <vector>
 
-#include "engine/app/changed_result.h"
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/output_width.h"
-#include "engine/app/whole_number.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/io/held_errors.h"
 #include "engine/io/result_file.h"
-#include "engine/io/study_file.h"
-#include "engine/io/wording.h"
 #include "engine/report/display.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/report/two_rankings.h"
-#include "models/registry.h"
 
 namespace poesy::app {
 namespace {
@@ -82,13 +78,9 @@ void show_alone(const std::string& response, StoredResult& result) {
 /// and where this program cannot read the study.
 std::string held_errors_line(const StoredResult& result, std::size_t width) {
   if (result.kind == "evaluate" && result.cases.empty()) return {};
-  try {
-    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
-    const std::string held = held_errors_text(study);
-    return held.empty() ? held : prose_of(held, width);
-  } catch (const InputError&) {
-    return {};
-  }
+  const std::optional<Study> study = study_in(result);
+  const std::string held = study ? held_errors_text(*study) : std::string();
+  return held.empty() ? held : prose_of(held, width);
 }
 
 void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
@@ -98,7 +90,7 @@ std::size_t width_of(const ShowOptions& options) { return options.width.value_or
 int show_one(const ShowOptions& options) {
   const std::string& path = options.results.front();
   const RowOrder order = order_of(options);
-  StoredResult result = read_result_warily(path);
+  StoredResult result = read_result_with_warning(path);
   check_ranks(options, path, result);
   const std::string response = response_of(options.response, path, result);
   if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
@@ -123,8 +115,8 @@ int show_both(const ShowOptions& options) {
   const RowOrder order = order_of(options);
   const std::string& path_a = options.results.front();
   const std::string& path_b = options.results.back();
-  const StoredResult a = read_result_warily(path_a);
-  const StoredResult b = read_result_warily(path_b);
+  const StoredResult a = read_result_with_warning(path_a);
+  const StoredResult b = read_result_with_warning(path_b);
   check_sensitivity(path_a, a);
   check_sensitivity(path_b, b);
   const std::size_t comma = options.response.find(',');
@@ -148,41 +140,33 @@ int show_both(const ShowOptions& options) {
 
 }  // namespace
 
-void add_show(CLI::App& program, Action& action) {
-  auto options = std::make_shared<ShowOptions>();
-  CLI::App* command =
-      program.add_subcommand("show", "print a result as tables, or the rankings of two beside each other");
+Command& add_show(Command& program) {
+  const auto options = std::make_shared<ShowOptions>();
+  Command& command = program.add_command("show", "print a result as tables, or the rankings of two beside each other");
   command
-      ->add_option("results", options->results,
-                   "result file, or two sensitivity results whose rankings are shown beside each other")
+      .add_value("results", options->results, "RESULT.h5",
+                 "result file, or two sensitivity results whose rankings are shown beside each other")
       ->required()
-      ->expected(1, 2)
-      ->type_name("RESULT.h5");
-  command
-      ->add_option("--response", options->response,
-                   "response to rank by, or to show alone where nothing is ranked; A,B for one of each of two results")
-      ->type_name("RESPONSE");
-  command
-      ->add_option("--sort", options->sort,
-                   fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "
-                               "effect",
-                               fmt::join(kRowOrders, ", ")))
-      ->type_name("KEY");
-  add_whole_number(*command, "--top", "--top", options->top, "only the first N errors of a sensitivity result", 1,
-                   kMostNumber)
-      ->type_name("N");
-  add_whole_number(*command, "--width", "--width", options->width,
-                   "characters of a line; default: the terminal's, and where there is none, no limit", 1, kMostNumber)
-      ->type_name("N");
-  command->add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
-  command->footer(
-      footer("", {{"the tables of a result", "poesy show result.h5"},
-                  {"the ten errors that matter most to another response",
-                   "poesy show result.h5 --response angular_deformation --top 10"},
-                  {"the rankings of two studies beside each other", "poesy show platform.h5 published.h5"}}));
-  command->callback([options, &action] {
-    action = [options] { return options->results.size() == 1 ? show_one(*options) : show_both(*options); };
-  });
+      ->expected(1, 2);
+  command.add_value(
+      "--response", options->response, "RESPONSE",
+      "response to rank by, or to show alone where nothing is ranked; A,B for one of each of two results");
+  command.add_value("--sort", options->sort, "KEY",
+                    fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "
+                                "effect",
+                                fmt::join(kRowOrders, ", ")));
+  command.add_whole_number("--top", options->top, "N", "only the first N errors of a sensitivity result", 1,
+                           kMostNumber);
+  command.add_whole_number("--width", options->width, "N",
+                           "characters of a line; default: the terminal's, and where there is none, no limit", 1,
+                           kMostNumber);
+  command.add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
+  command.examples = {{"the tables of a result", "poesy show result.h5"},
+                      {"the ten errors that matter most to another response",
+                       "poesy show result.h5 --response angular_deformation --top 10"},
+                      {"the rankings of two studies beside each other", "poesy show platform.h5 published.h5"}};
+  command.action = [options] { return options->results.size() == 1 ? show_one(*options) : show_both(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

@@ -7,16 +7,14 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/app/changed_result.h"
-#include "engine/app/command.h"
-#include "engine/app/description.h"
-#include "engine/app/exit_code.h"
-#include "engine/app/output_width.h"
+#include "engine/app/command_line.h"
+#include "engine/app/ending.h"
+#include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/io/study_file.h"
 #include "engine/io/tolerance_files.h"
-#include "engine/io/wording.h"
 #include "engine/report/index_change.h"
 #include "engine/report/ranking.h"
 #include "engine/report/text_table.h"
@@ -69,7 +67,7 @@ double positive(const std::string& text, std::string_view option, const NamedUni
 }
 
 StoredResult read_sensitivity_result(const std::string& path) {
-  StoredResult result = read_result_warily(path);
+  StoredResult result = read_result_with_warning(path);
   if (result.kind != "sensitivity") {
     throw InputError({path}, "tolerances need indices, but this is a result of kind '" + result.kind + "'",
                      "give the result of a sensitivity study");
@@ -150,8 +148,9 @@ void check_prediction(const StoredResult& result, const MeanSquare& response, co
   }
 }
 
-LimitTolerances within(const TolerancesOptions& options, const StoredResult& result, const ResponseStudy& study,
-                       const MeanSquare& response, const NamedUnit& named) {
+LimitTolerances tolerances_within_limit(const TolerancesOptions& options, const StoredResult& result,
+                                        const ResponseStudy& study, const MeanSquare& response,
+                                        const NamedUnit& named) {
   const double limit = positive(*options.limit, "--limit", named);
   check_prediction(result, response, named.name);
   if (limit * limit <= response.background) {
@@ -208,23 +207,20 @@ std::string explanation(const StoredResult& result, const ResponseTolerances& fo
 /// Errors of the mechanism that the study neither varies nor has in its background; none where this program has no such
 /// mechanism, or cannot read the stored study any more.
 std::optional<std::string> perfect_errors_note(const StoredResult& result) {
-  try {
-    const Study study = study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
-    std::vector<FactorIndex> present = study.analysis.factors;
-    if (const auto& background = study.analysis.background) {
-      present.insert(present.end(), background->factors.begin(), background->factors.end());
-    }
-    std::ranges::sort(present, {}, &FactorIndex::value);
-    const auto repeated = std::ranges::unique(present, {}, &FactorIndex::value);
-    present.erase(repeated.begin(), repeated.end());
-    const std::size_t all = study.model().factors.size();
-    if (present.size() == all) return std::nullopt;
-    const std::size_t absent = all - present.size();
-    return fmt::format("{} of the mechanism's {} errors {} not in this study, and {} as perfect here", absent, all,
-                       absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
-  } catch (const InputError&) {
-    return std::nullopt;
+  const std::optional<Study> study = study_in(result);
+  if (!study) return std::nullopt;
+  std::vector<FactorIndex> present = study->analysis.factors;
+  if (const auto& background = study->analysis.background) {
+    present.insert(present.end(), background->factors.begin(), background->factors.end());
   }
+  std::ranges::sort(present, {}, &FactorIndex::value);
+  const auto repeated = std::ranges::unique(present, {}, &FactorIndex::value);
+  present.erase(repeated.begin(), repeated.end());
+  const std::size_t all = study->model().factors.size();
+  if (present.size() == all) return std::nullopt;
+  const std::size_t absent = all - present.size();
+  return fmt::format("{} of the mechanism's {} errors {} not in this study, and {} as perfect here", absent, all,
+                     absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
 }
 
 /// Refuses tolerances for errors whose index does not hold at their size, or says why they may not hold.
@@ -245,7 +241,7 @@ int set_tolerances(const TolerancesOptions& options) {
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
-  if (options.limit) found.limit = within(options, result, study, found.all.mean_square, named);
+  if (options.limit) found.limit = tolerances_within_limit(options, result, study, found.all.mean_square, named);
   found.caveat = caveat_of(options, result, found);
   Table table = tolerance_table(result, found);
   if (const auto note = perfect_errors_note(result)) table.notes.push_back(*note);
@@ -257,33 +253,25 @@ int set_tolerances(const TolerancesOptions& options) {
 
 }  // namespace
 
-void add_tolerances(CLI::App& program, Action& action) {
-  auto options = std::make_shared<TolerancesOptions>();
-  CLI::App* command = program.add_subcommand("tolerances", "tolerances from the indices of a sensitivity result");
-  command->add_option("result", options->result, "result file")->required()->type_name("RESULT.h5");
-  command
-      ->add_option("--response", options->response,
-                   "response that the tolerances are for; without it, a message names those of the result")
-      ->type_name("RESPONSE");
-  command
-      ->add_option("--limit", options->limit,
-                   "tolerances that keep the root mean square of the response below this, e.g. \"0.05 mm\"")
-      ->type_name("LIMIT");
-  command
-      ->add_option("--reference", options->reference,
-                   "error from which equal effects are counted, with its tolerance; default: the study's")
-      ->type_name("FACTOR[=TOLERANCE]");
-  command->add_flag("--extrapolate", options->extrapolate,
-                    "go on where an index changes with size and its tolerance is of another size than was studied");
-  command
-      ->add_option("-d,--directory", options->folder,
-                   "folder for tolerances.csv and the studies that test them; default: RESULT_tolerances, here")
-      ->type_name("DIR");
-  command->footer(
-      footer("", {{"tolerances of equal effect", "poesy tolerances result.h5 --response linear_deformation"},
-                  {"that keep the response within a limit",
-                   "poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\""}}));
-  command->callback([options, &action] { action = [options] { return set_tolerances(*options); }; });
+Command& add_tolerances(Command& program) {
+  const auto options = std::make_shared<TolerancesOptions>();
+  Command& command = program.add_command("tolerances", "tolerances from the indices of a sensitivity result");
+  command.add_value("result", options->result, "RESULT.h5", "result file")->required();
+  command.add_value("--response", options->response, "RESPONSE",
+                    "response that the tolerances are for; without it, a message names those of the result");
+  command.add_value("--limit", options->limit, "LIMIT",
+                    "tolerances that keep the root mean square of the response below this, e.g. \"0.05 mm\"");
+  command.add_value("--reference", options->reference, "FACTOR[=TOLERANCE]",
+                    "error from which equal effects are counted, with its tolerance; default: the study's");
+  command.add_flag("--extrapolate", options->extrapolate,
+                   "go on where an index changes with size and its tolerance is of another size than was studied");
+  command.add_value("-d,--directory", options->folder, "DIR",
+                    "folder for tolerances.csv and the studies that test them; default: RESULT_tolerances, here");
+  command.examples = {{"tolerances of equal effect", "poesy tolerances result.h5 --response linear_deformation"},
+                      {"that keep the response within a limit",
+                       "poesy tolerances result.h5 --response linear_deformation --limit \"0.05 mm\""}};
+  command.action = [options] { return set_tolerances(*options); };
+  return command;
 }
 
 }  // namespace poesy::app

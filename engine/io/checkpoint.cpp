@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/io/sha256.h"
 #include "engine/io/study_file.h"
 #include "engine/io/version.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

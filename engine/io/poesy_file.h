@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/io/h5.h"
 #include "engine/io/trial_read.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 

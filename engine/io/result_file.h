@@ -10,6 +10,7 @@
 #include "engine/model/pose_set.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
+#include "engine/run/study_run.h"
 #include "engine/stats/tolerance.h"
 #include "engine/study/study.h"
 
@@ -41,6 +42,10 @@ void write_monte_carlo(const std::string& path, const Study& study, const Select
 /// Writes the result of a coupling study, in the same way.
 void write_coupling(const std::string& path, const Study& study, const SelectedPoses& poses,
                     const CouplingResult& result, const RunFacts& facts);
+
+/// Writes the result of a study of any kind, in the same way.
+void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const StudyResult& result,
+                  const RunFacts& facts);
 
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
 /// folder does not exist, when what stands there is one of the inputs, or neither named like a result (.h5) nor an HDF5

@@ -183,6 +183,23 @@ void write_coupling(const std::string& path, const Study& study, const SelectedP
                  [&](ResultBuilder& file) { add_coupling(file, study, result); });
 }
 
+void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const StudyResult& result,
+                  const RunFacts& facts) {
+  struct Write {
+    void operator()(const SensitivityResult& found) const { write_sensitivity(path, study, poses, found, facts); }
+    void operator()(const IdentificationResult& found) const { write_identification(path, study, poses, found, facts); }
+    void operator()(const CaseResult& found) const { write_cases(path, study, poses, found, facts); }
+    void operator()(const MonteCarloResult& found) const { write_monte_carlo(path, study, poses, found, facts); }
+    void operator()(const CouplingResult& found) const { write_coupling(path, study, poses, found, facts); }
+
+    const std::string& path;
+    const Study& study;
+    const SelectedPoses& poses;
+    const RunFacts& facts;
+  };
+  std::visit(Write{path, study, poses, facts}, result);
+}
+
 void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
                  std::span<const Bytes> stages, const RunFacts& facts) {
   compose_and_write(path, result_format::kShardFileType, name(study.analysis.kind), study, poses, facts,

@@ -1,6 +1,6 @@
 #include "engine/io/row_label.h"
 
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {

@@ -6,12 +6,12 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/io/content_hash.h"
 #include "engine/io/poesy_file.h"
 #include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
 #include "engine/io/version.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

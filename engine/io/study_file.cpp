@@ -8,10 +8,10 @@
 #include <fstream>
 #include <limits>
 
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
 #include "engine/io/study_file_section.h"
 #include "engine/io/text_file.h"
-#include "engine/io/wording.h"
 #include "engine/run/coupling_rows.h"
 
 namespace poesy {

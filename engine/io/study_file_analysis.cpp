@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
-#include "engine/io/wording.h"
 #include "engine/run/coupling_rows.h"
 
 namespace poesy {

@@ -1,8 +1,8 @@
 #include <cmath>
 
+#include "engine/base/text.h"
 #include "engine/io/error_bound.h"
 #include "engine/io/study_file_parts.h"
-#include "engine/io/wording.h"
 #include "engine/run/coupling_rows.h"
 
 namespace poesy {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

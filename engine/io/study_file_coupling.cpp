@@ -2,8 +2,8 @@
 #include <array>
 #include <set>
 
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
-#include "engine/io/wording.h"
 #include "engine/run/coupling_rows.h"
 
 namespace poesy {

@@ -1,9 +1,9 @@
 #include <array>
 #include <stdexcept>
 
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
 #include "engine/io/study_keys.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

@@ -1,11 +1,10 @@
 #include <array>
 #include <filesystem>
 
-#include "engine/base/letters.h"
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
 #include "engine/io/study_text.h"
 #include "engine/io/table_file.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "engine/base/contract.h"
-#include "engine/base/letters.h"
+#include "engine/base/text.h"
 #include "engine/io/study_keys.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "engine/io/study_file_parts.h"
 #include "engine/io/table_file.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "engine/base/contract.h"
+#include "engine/base/text.h"
 #include "engine/io/study_keys.h"
 
 namespace poesy {
@@ -12,24 +11,14 @@ namespace {
 
 constexpr std::size_t kColumns = 120;
 
-/// One paragraph as comment lines, broken between words; lines after the first stand further in than `indent`.
-std::string wrapped(std::string_view text, std::size_t indent) {
+/// One paragraph as comment lines; lines after the first are two columns further in than `indent`.
+std::string paragraph(std::string_view text, std::size_t indent) {
+  const std::size_t margin = indent + 2;
   std::string out;
-  std::string line = "#" + std::string(indent + 1, ' ');
-  const std::string next = line + "  ";
-  bool fresh = true;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    if (!fresh && line.size() + 1 + end > kColumns) {
-      out += line + "\n";
-      line = next;
-      fresh = true;
-    }
-    line += (fresh ? "" : " ") + std::string(text.substr(0, end));
-    fresh = false;
-    text.remove_prefix(std::min(end + 1, text.size()));
+  for (const std::string& line : wrapped(text, kColumns - margin - 2, kColumns - margin)) {
+    out += "#" + std::string(out.empty() ? margin - 1 : margin + 1, ' ') + line + "\n";
   }
-  return out + line + "\n";
+  return out;
 }
 
 const StudyTable& described(std::string_view path) {
@@ -40,9 +29,9 @@ const StudyTable& described(std::string_view path) {
 
 /// The key, and one step further in its words.
 std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t depth) {
-  std::string text = wrapped(fmt::format("{}: {}", key.name, explanation(table, key)), 2 * depth);
+  std::string text = paragraph(fmt::format("{}: {}", key.name, explanation(table, key)), 2 * depth);
   for (const StudyWord& word : key.words) {
-    text += wrapped(fmt::format("{}: {}", word.name, word.meaning), 2 * depth + 2);
+    text += paragraph(fmt::format("{}: {}", word.name, word.meaning), 2 * depth + 2);
   }
   return text;
 }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "engine/base/error.h"
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {

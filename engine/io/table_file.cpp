@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/io/csv_lines.h"
 #include "engine/io/error_bound.h"
 #include "engine/io/row_label.h"
 #include "engine/io/table_columns.h"
-#include "engine/io/wording.h"
 
 namespace poesy {
 namespace {

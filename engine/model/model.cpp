@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/base/letters.h"
+#include "engine/base/text.h"
 #include "engine/model/catalog.h"
 
 namespace poesy {

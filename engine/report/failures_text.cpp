@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"

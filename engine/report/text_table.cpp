@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/io/wording.h"
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {
@@ -12,39 +12,6 @@ namespace {
 constexpr std::size_t kReadableWidth = 100;
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kHeadingLines = 2;
-
-/// Characters of a UTF-8 text: bytes that do not continue one.
-std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-/// Whether a number goes on behind the blank: "12 000", "5 %".
-bool within_number(std::string_view before, std::string_view after) {
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  return !before.empty() && !after.empty() && digit(before.back()) && (digit(after.front()) || after.front() == '%');
-}
-
-/// What stands before the first blank at which a line may end.
-std::string_view first_word(std::string_view text) {
-  std::size_t end = text.find(' ');
-  while (end < text.size() && within_number(text.substr(0, end), text.substr(end + 1))) end = text.find(' ', end + 1);
-  return text.substr(0, end);
-}
-
-/// Lines of at most this width, broken between words; a longer word has a line of its own.
-std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
-  std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::string_view word = first_word(text);
-    text.remove_prefix(std::min(word.size() + 1, text.size()));
-    if (!lines.empty() && width_of(lines.back()) + 1 + width_of(word) <= width) {
-      lines.back().append(" ").append(word);
-    } else {
-      lines.emplace_back(word);
-    }
-  }
-  return lines;
-}
 
 void add_line(std::string& text, std::string_view line) {
   const std::size_t last = line.find_last_not_of(' ');
@@ -63,7 +30,7 @@ struct TextColumn {
   Column::Kind kind = Column::Kind::text;
 
   std::string aligned(const std::string& text) const {
-    const std::string blanks(width - width_of(text), ' ');
+    const std::string blanks(width - text_width(text), ' ');
     return kind == Column::Kind::number ? blanks + text : text + blanks;
   }
 };
@@ -72,7 +39,7 @@ struct TextColumn {
 void set_heading(const std::string& heading, TextColumn& column) {
   column.heading = wrapped(heading, column.width);
   while (column.heading.size() > kHeadingLines) column.heading = wrapped(heading, ++column.width);
-  for (const std::string& line : column.heading) column.width = std::max(column.width, width_of(line));
+  for (const std::string& line : column.heading) column.width = std::max(column.width, text_width(line));
 }
 
 TextColumn column_text(const Table& table, std::size_t c) {
@@ -80,11 +47,11 @@ TextColumn column_text(const Table& table, std::size_t c) {
   TextColumn made{{}, column.unit.empty() ? "" : "[" + column.unit + "]", {}, 0, column.kind};
   std::size_t tail = 0;
   for (const std::vector<Cell>& row : table.rows) tail = std::max(tail, tail_of(row[c]));
-  made.width = width_of(made.unit);
+  made.width = text_width(made.unit);
   for (const std::vector<Cell>& row : table.rows) {
     const std::size_t blanks = row[c].value ? tail - tail_of(row[c]) : 0;
     made.cells.push_back(harmless(row[c].text) + std::string(blanks, ' '));
-    made.width = std::max(made.width, width_of(made.cells.back()));
+    made.width = std::max(made.width, text_width(made.cells.back()));
   }
   set_heading(harmless(column.heading), made);
   return made;

@@ -80,11 +80,11 @@ PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
 }
 
 MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis,
-                                         bool for_longer_study)
+                                         bool keep_checkpoint)
     : plan_(&plan),
       responses_(responses),
       analysis_(analysis),
-      for_longer_study_(for_longer_study),
+      keep_checkpoint_(keep_checkpoint),
       sketches_(responses),
       moments_(plan.poses().size() * responses),
       failed_(plan.poses().size()),
@@ -117,10 +117,10 @@ void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
   }
   POESY_EXPECTS(pose == open_ && !is_finished(pose.value));
   const bool whole = unit.solves.total() == Plan::kUnitSamples;
-  if (for_longer_study_ && !whole) keep();
+  if (keep_checkpoint_ && !whole) keep();
   at_pose_.add(unit);
   if (at_pose_.solves.total() < plan_->samples()) return;
-  if (for_longer_study_ && whole) keep();
+  if (keep_checkpoint_ && whole) keep();
   finish_pose();
 }
 

@@ -46,8 +46,8 @@ class MonteCarloCollector {
   /// Of packed sketches; poses beyond are solved again when more samples are wanted.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
 
-  /// for_longer_study: whether to keep sketches of finished poses.
-  MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool for_longer_study = true);
+  /// keep_checkpoint: whether to keep sketches of finished poses.
+  MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
 
   /// Units of a pose come one after another.
   void add(PoseIndex pose, const PoseUnit& unit);
@@ -97,7 +97,7 @@ class MonteCarloCollector {
   const Plan* plan_;
   std::size_t responses_;
   Analysis analysis_;
-  bool for_longer_study_;
+  bool keep_checkpoint_;
   PoseIndex open_;                        ///< the open pose, if there is one
   PoseSamples at_pose_;                   ///< its samples
   std::vector<QuantileSketch> sketches_;  ///< [R] of the finished poses together

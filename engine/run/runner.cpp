@@ -142,11 +142,11 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
     if (rest.empty()) throw BytesError("is cut off");
     before.assign(rest.begin(), rest.end());
   });
-  const bool keeps = options.for_longer_study || plan.adaptive();
+  const bool keep_checkpoint = options.keep_checkpoint || plan.adaptive();
   std::optional<ProgressCounter> counter;
   for (;;) {
     const Plan part = plan.with_samples(rounds.samples(0));
-    MonteCarloCollector collect(part, responses, analysis, keeps);
+    MonteCarloCollector collect(part, responses, analysis, keep_checkpoint);
     if (!before.empty()) collect.restore(std::exchange(before, {}));
     if (!counter) counter.emplace(plan.solves(), collect.total(), options);
     const PendingUnits pending(part, options.shard.value_or(Shard()),
@@ -168,7 +168,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
         [&](std::span<const std::byte> end) {
           ByteReader from(end);
           Rounds(plan, rule).restore(from);  // what was decided before this round is known here
-          collect = MonteCarloCollector(part, responses, analysis, keeps);
+          collect = MonteCarloCollector(part, responses, analysis, keep_checkpoint);
           collect.restore(end.last(from.left()));
         });
     if (!complete || options.shard) return std::nullopt;

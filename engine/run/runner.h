@@ -29,7 +29,7 @@ struct Progress {
 struct RunOptions {
   std::size_t threads = 0;  ///< 0: one per processor
   /// Called now and then, never from two threads at once. May be empty.
-  std::function<void(const Progress&)> progress;
+  std::function<void(const Progress&)> progress = {};
   /// Set by somebody else to stop the run soon. May be null.
   const std::atomic<bool>* stop = nullptr;
   /// Where the run's state comes from and goes to. May be null. Then a run function throws BytesError for a state that
@@ -37,8 +37,8 @@ struct RunOptions {
   Checkpoints* checkpoints = nullptr;
   /// The shard to run, instead of the whole. It gives no result, only its state to the checkpoints.
   std::optional<Shard> shard = std::nullopt;
-  /// A Monte Carlo study keeps what a longer one would go on from (MonteCarloCollector).
-  bool for_longer_study = true;
+  /// A longer study may go on from the last checkpoint; a Monte Carlo study keeps more for that (MonteCarloCollector).
+  bool keep_checkpoint = true;
   /// The ranks that share the work; null: this process alone. Every rank calls the same run functions with the same
   /// arguments and gets the same results; rank 0 alone has checkpoints and reports progress. When a rank is stopped or
   /// leaves, the functions give nothing, and team->left() says why. The ranks after rank 0 may get Dismissed thrown.

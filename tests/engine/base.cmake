@@ -1,1 +1,2 @@
-poesy_test(base_test LABELS unit SOURCES engine/base/bytes_test.cpp engine/base/units_test.cpp LINKS poesy_base)
+poesy_test(base_test LABELS unit SOURCES engine/base/bytes_test.cpp engine/base/text_test.cpp engine/base/units_test.cpp
+           LINKS poesy_base)

@@ -18,3 +18,4 @@ poesy_test(adaptive_test LABELS determinism SOURCES engine/run/adaptive_test.cpp
 poesy_test(adaptive_statistical_test LABELS statistical SOURCES engine/run/adaptive_statistical_test.cpp
            LINKS poesy_run Boost::headers)
 poesy_test(ranks_test LABELS robustness SOURCES engine/run/ranks_test.cpp LINKS poesy_run)
+poesy_test(study_run_test LABELS unit SOURCES engine/run/outlook_test.cpp engine/run/study_run_test.cpp LINKS poesy_run)

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "engine/base/letters.h"
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace poesy::app {
+
+/// Throws InputError that names the option and both bounds unless the text is a whole number within them.
+std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
+                                 std::uint64_t most);
+
+/// A command line, and what it is an example of.
+struct Example {
+  std::string about;
+  std::string line;
+};
+
+/// The program, or one of its commands: what CLI11 has to know, and what help and manual tell besides.
+class Command : public CLI::App {
+ public:
+  /// program: that the command belongs to; null for the program itself.
+  Command(const std::string& name, const std::string& about, Command* program = nullptr)
+      : CLI::App(about, name, program) {}
+
+  std::vector<std::string> notes;  ///< paragraphs
+  std::vector<Example> examples;
+  std::function<int()> action;  ///< once the command line is understood; gives the exit code
+
+  /// One more command of this program.
+  Command& add_command(const std::string& name, const std::string& about);
+  /// All commands of this program, as they were added.
+  std::vector<const Command*> commands() const;
+
+  /// An option ("-o,--output"), or an argument that its place tells ("study"), with a value that help calls `value`.
+  template <class Variable>
+  CLI::Option* add_value(const std::string& name, Variable& variable, const std::string& value,
+                         const std::string& about) {
+    return add_option(name, variable, about)->type_name(value);
+  }
+  /// The same for a whole number from `least` to `most`.
+  template <class Number>
+  CLI::Option* add_whole_number(const std::string& name, Number& number, const std::string& value,
+                                const std::string& about, std::uint64_t least, std::uint64_t most) {
+    const std::string shown = name.starts_with('-') ? name : value;
+    const auto parse = [=, &number](const std::string& text) { number = parse_whole_number(text, shown, least, most); };
+    return add_option_function<std::string>(name, parse, about)->type_name(value);
+  }
+};
+
+// Each adds one command to the program.
+Command& add_run(Command& program);
+Command& add_check(Command& program);
+Command& add_evaluate(Command& program);
+Command& add_show(Command& program);
+Command& add_report(Command& program);
+Command& add_replay(Command& program);
+Command& add_export(Command& program);
+Command& add_merge(Command& program);
+Command& add_verify(Command& program);
+Command& add_models(Command& program);
+Command& add_template(Command& program);
+Command& add_tolerances(Command& program);
+Command& add_completion(Command& program);
+Command& add_man(Command& program);
+Command& add_help(Command& program);
+Command& add_version(Command& program);
+
+/// "-o", "--output"; empty for an argument that its place tells.
+std::vector<std::string> names_of(const CLI::Option& option);
+
+/// "RESULT.h5"; empty for a flag.
+std::string value_of(const CLI::Option& option);
+
+/// Whether it takes several values.
+bool is_repeated(const CLI::Option& option);
+
+/// "-o, --output RESULT.h5", "SHARD.h5 ..."
+std::string heading(const CLI::Option& option);
+
+/// "poesy evaluate STUDY.toml --poses P.csv --errors E.csv [options]"
+std::string synopsis(const CLI::App& command);
+
+/// A name and what it means, for help and manual.
+struct Entry {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// What help and manual tell besides the commands.
+std::span<const Entry> exit_codes();
+std::span<const Entry> files();
+std::span<const Entry> environment();
+
+/// What --help prints of the program or of one command, in as many columns as stdout has.
+std::string help_text(const Command& command);
+
+/// What is wrong with the command line that CLI11 refused, and what to do: "problem; remedy". Names the nearest command
+/// or option that there is.
+std::string command_line_problem(const Command& program, const CLI::ParseError& error);
+
+/// "no command 'rn'; did you mean 'run'? see poesy --help".
+std::string unknown_command(const std::string& word, const Command& program);
+
+/// What is wrong with a command line that gives an option or an argument an empty text, as a script does whose variable
+/// is not set; none where none does. Precondition: CLI11 took the command line.
+std::optional<std::string> empty_value(const Command& program);
+
+/// Whether the command line begins with a command that does not exist.
+bool has_unknown_command(const Command& program);
+
+}  // namespace poesy::app

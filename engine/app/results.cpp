@@ -1,0 +1,169 @@
+#include "engine/app/results.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+
+#include "engine/app/terminal.h"
+#include "engine/base/error.h"
+#include "engine/base/units.h"
+#include "engine/io/shard_file.h"
+#include "engine/io/study_file.h"
+#include "engine/report/failure_share.h"
+#include "engine/report/tables.h"
+#include "engine/report/text_table.h"
+#include "engine/run/study_run.h"
+#include "models/registry.h"
+
+namespace poesy::app {
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string("unknown");
+}
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("model name", 0) != 0) continue;
+    const auto colon = line.find(": ");
+    if (colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+/// What may solve more samples than these options did.
+std::string advice(const SolverOptions& solver) {
+  if (solver.method == SolverOptions::Method::gauss_newton) {
+    return "take method = \"newton\", or raise solver.max_iterations";
+  }
+  return fmt::format("study smaller errors, or raise solver.max_iterations above {}", solver.max_iterations);
+}
+
+std::string warning_text(const Study& study, double share) {
+  const bool many = share > kManyNotConverged;
+  return fmt::format("{:.3g} % of the samples did not converge and are left out; {}{}", 100.0 * share,
+                     many ? "these are mostly large errors, so what is left may say far too little: " : "",
+                     advice(study.solver));
+}
+
+/// Once all solves are done.
+RunOutcome outcome_of(const Job& job) {
+  const RunTime time = job.time();
+  const SolveCounts& solves = job.checkpoints().solves();
+  RunOutcome outcome{solves, run_facts(time.wall, job.threads, solves.total())};
+  outcome.facts.checkpoint_seconds = time.checkpoints;
+  outcome.facts.ranks = job.ranks;
+  return outcome;
+}
+
+}  // namespace
+
+RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves) {
+  RunFacts facts;
+  facts.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  facts.host = host_name();
+  facts.cpu = cpu_name();
+  facts.threads = threads;
+  facts.wall_seconds = wall_seconds;
+  facts.solves = solves;
+  return facts;
+}
+
+ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std::string& study_path,
+                        const std::string& remedy) {
+  const std::uint64_t failed = solves.not_converged();
+  if (failed == 0) return kDone;
+  const double share = static_cast<double>(failed) / static_cast<double>(solves.total());
+  if (share > unremarkable_failure_share(study.max_not_converged) && study.not_converged == NotConverged::exclude) {
+    say(Message::warning, warning_text(study, share));
+  }
+  if (share <= study.max_not_converged) return kDone;
+  say(Message::error,
+      fmt::format("{}: {} of {} samples did not converge, a share of {:.3g}, and solver.max_not_converged "
+                  "is {}{}; {}",
+                  study_path, failed, solves.total(), share, shortest(study.max_not_converged),
+                  study.max_not_converged == 0.0 ? " (not_converged = \"fail\" is the same)" : "", remedy));
+  return kTooManyNotConverged;
+}
+
+ExitCode judge_limits(const StoredResult& result, const std::string& study_path, const std::string& remedy) {
+  const std::optional<Table> table = limits_table(result);
+  if (!table) return kDone;
+  std::fputs(("\n" + text_of(*table, output_width())).c_str(), stdout);
+  const LimitVerdicts& verdicts = *verdicts_of(result);
+  for (const LimitVerdict& one : verdicts.limits) {
+    if (one.passed) continue;
+    const NamedUnit& response = result.responses[one.response];
+    const Dimension dimension = dimension_of(response.unit);
+    say(Message::error,
+        fmt::format("{}: {} is {}, above its limit of {}; {}", study_path, response.name,
+                    readable_text({one.value, dimension}, 4), readable_text({one.limit, dimension}), remedy));
+  }
+  return verdicts.passed() ? kDone : kLimitNotKept;
+}
+
+StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
+                           const std::optional<LimitVerdicts>& verdicts) {
+  StoredResult result;
+  for (const PoseCoordinate& coordinate : study.model().pose_coordinates) {
+    result.pose_coordinates.push_back({coordinate.name, std::string(si_unit(coordinate.dimension))});
+  }
+  result.poses = poses.poses;
+  result.time = poses.time;
+  for (const Response& response : study.model().responses) {
+    result.responses.push_back({response.name, std::string(si_unit(response.dimension))});
+  }
+  for (const ErrorCase& one : study.analysis.cases) result.cases.push_back(one.name);
+  result.evaluation.verdicts = verdicts;
+  return result;
+}
+
+std::optional<RunOutcome> run_to_file(const Job& job) {
+  const std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
+  if (!job.checkpoints().complete()) return std::nullopt;
+  const bool writes = job.options.team == nullptr || job.options.team->leads();
+  if (writes && result) write_result(job.path, job.study, job.poses, *result, outcome_of(job).facts);
+  RunOutcome outcome = outcome_of(job);
+  if (result) outcome.verdicts = verdicts_of(*result);
+  if (const auto& shard = job.options.shard; shard && writes) {
+    write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), outcome.facts);
+  }
+  return outcome;
+}
+
+int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome) {
+  const std::string ranks = outcome.facts.ranks > 1 ? fmt::format(" of {} ranks", outcome.facts.ranks) : std::string();
+  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, outcome.facts.solves,
+                         outcome.facts.wall_seconds, outcome.facts.threads,
+                         outcome.facts.threads == 1 ? "thread" : "threads", ranks, outcome.solves.not_converged())
+                 .c_str(),
+             stdout);
+  if (job.options.shard) return kDone;  // the whole study is judged
+  const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
+  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, outcome.verdicts), study_path, remedy);
+  const ExitCode failures = judge_failures(job.study, outcome.solves, study_path, remedy);
+  return failures != kDone ? failures : limits;  // with so many failures no limit can be trusted
+}
+
+std::optional<Study> study_in(const StoredResult& result) {
+  try {
+    return study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+StoredResult read_result_with_warning(const std::string& path) {
+  StoredResult result = read_result(path);
+  if (result.changed) say(Message::warning, path + " was changed since it was written; see poesy verify");
+  return result;
+}
+
+}  // namespace poesy::app

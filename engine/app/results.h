@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "engine/app/ending.h"
+#include "engine/io/checkpoint.h"
+#include "engine/io/result_file.h"
+#include "engine/run/result.h"
+#include "engine/run/runner.h"
+#include "engine/study/study.h"
+
+namespace poesy::app {
+
+/// Facts about a run that has just ended, on this machine.
+RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves);
+
+/// A study that is ready to run.
+struct Job {
+  const Study& study;
+  const Model& model;
+  SelectedPoses poses;
+  std::string path;               ///< of the result
+  RunOptions options;             ///< with checkpoints
+  std::function<RunTime()> time;  ///< that the run took so far, in all its parts
+  std::size_t threads;            ///< of all ranks together
+  std::size_t ranks = 1;
+
+  Checkpoints& checkpoints() const { return *options.checkpoints; }
+};
+
+/// How a study's solves ended, what they took, in all parts of the run, and what became of its limits.
+struct RunOutcome {
+  SolveCounts solves;
+  RunFacts facts;
+  std::optional<LimitVerdicts> verdicts = std::nullopt;
+};
+
+/// Runs a study of any kind, or a shard of it, and writes its result, on rank 0 if there are several. Empty when it was
+/// interrupted. Throws FileError.
+std::optional<RunOutcome> run_to_file(const Job& job);
+
+/// Says what came out; the exit code.
+int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome);
+
+/// The exit code of a command that is done. Where more samples failed than the study allows, says so on stderr: the
+/// limit, the share reached, and `remedy`, where to look. study_path names the study.
+ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std::string& study_path,
+                        const std::string& remedy);
+
+/// Prints PASS or FAIL for each limit of a result; the exit code. Where a limit is not kept, says so on stderr: which,
+/// the value that was found, and `remedy`, where to look. study_path names the study.
+ExitCode judge_limits(const StoredResult& result, const std::string& study_path, const std::string& remedy);
+
+/// As much of a study's result as judge_limits needs.
+StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
+                           const std::optional<LimitVerdicts>& verdicts);
+
+/// The study that a result holds; none where this program cannot read it.
+std::optional<Study> study_in(const StoredResult& result);
+
+/// Reads a result, and warns on stderr where it was changed since it was written. Throws FileError.
+StoredResult read_result_with_warning(const std::string& path);
+
+}  // namespace poesy::app

@@ -1,0 +1,184 @@
+#include "engine/base/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <numeric>
+#include <sstream>
+
+namespace poesy {
+namespace {
+
+constexpr std::size_t kMostWords = 12;
+
+/// What the first byte of a character of several bytes says.
+struct Lead {
+  std::size_t length;   ///< bytes of the character; 0: it is none
+  std::uint32_t begin;  ///< the bits of the code point in the first byte
+};
+
+Lead lead_of(unsigned char byte) {
+  if ((byte & 0xE0U) == 0xC0) return {2, byte & 0x1FU};
+  if ((byte & 0xF0U) == 0xE0) return {3, byte & 0x0FU};
+  if ((byte & 0xF8U) == 0xF0) return {4, byte & 0x07U};
+  return {0, 0};
+}
+
+/// Whether UTF-8 writes this code point in so many bytes: it has a shortest form, and none for surrogates (RFC 3629).
+bool is_written_in(std::size_t length, std::uint32_t code) {
+  constexpr std::array<std::uint32_t, 6> kFirst{0, 0, 0x80, 0x800, 0x10000, 0x110000};
+  const bool surrogate = code >= 0xD800 && code < 0xE000;
+  return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate;
+}
+
+bool is_control(std::string_view character) {
+  const auto lead = static_cast<unsigned char>(character[0]);
+  const bool c1 = character.size() == 2 && lead == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+  return lead < 0x20 || lead == 0x7F || c1;
+}
+
+/// Fewest single-character insertions, deletions and replacements between two words (Levenshtein).
+std::size_t edit_distance(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[to.size()];
+}
+
+bool is_plain(const std::string& word) {
+  constexpr std::string_view kPlain = "_-+./=:,@%";
+  return !word.empty() && std::ranges::all_of(word, [&](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
+  });
+}
+
+/// Whether a number goes on behind the blank: "12 000", "5 %".
+bool within_number(std::string_view before, std::string_view after) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  return !before.empty() && !after.empty() && digit(before.back()) && (digit(after.front()) || after.front() == '%');
+}
+
+/// What is before the first blank at which a line may end.
+std::string_view first_word(std::string_view text) {
+  std::size_t end = text.find(' ');
+  while (end < text.size() && within_number(text.substr(0, end), text.substr(end + 1))) end = text.find(' ', end + 1);
+  return text.substr(0, end);
+}
+
+}  // namespace
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return lower;
+}
+
+std::size_t character_length(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  if (byte(0) < 0x80) return 1;
+  auto [length, code] = lead_of(byte(0));
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(k) & 0xC0U) != 0x80) return 0;
+    code = code << 6U | (byte(k) & 0x3FU);
+  }
+  return is_written_in(length, code) ? length : 0;
+}
+
+std::size_t text_width(std::string_view text) {
+  const auto begins_character = [](char c) { return (c & 0xC0) != 0x80; };
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::optional<std::size_t> first) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::string_view word = first_word(text);
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    const std::size_t room = lines.size() == 1 ? first.value_or(width) : width;
+    if (!lines.empty() && text_width(lines.back()) + 1 + text_width(word) <= room) {
+      lines.back().append(" ").append(word);
+    } else {
+      lines.emplace_back(word);
+    }
+  }
+  return lines;
+}
+
+std::string printable(std::string_view text, std::size_t most) {
+  std::string shown;
+  while (!text.empty()) {
+    if (shown.size() >= most) return shown + "...";
+    const std::size_t length = character_length(text);
+    const std::string_view character = text.substr(0, std::max(length, std::size_t{1}));
+    shown += length == 0 || is_control(character) ? "?" : character;
+    text.remove_prefix(character.size());
+  }
+  return shown;
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string command;
+  for (const std::string& word : words) {
+    if (!command.empty()) command += ' ';
+    if (is_plain(word)) {
+      command += word;
+      continue;
+    }
+    command += '\'';
+    for (const char c : word) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    command += '\'';
+  }
+  return command;
+}
+
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
+  const std::size_t allowed = std::max<std::size_t>(1, (word.size() + 2) / 3);
+  std::string_view best;
+  std::size_t best_distance = allowed + 1;
+  for (const std::string_view candidate : known) {
+    if (candidate.size() > word.size() + allowed || word.size() > candidate.size() + allowed) continue;
+    const std::size_t distance = edit_distance(word, candidate);
+    const bool nothing_in_common = distance == std::max(word.size(), candidate.size());
+    if (distance < best_distance && !nothing_in_common) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+  if (const std::string_view best = nearest(word, known); !best.empty()) {
+    return "did you mean '" + std::string(best) + "'?";
+  }
+  std::string list = "known: ";
+  for (std::size_t k = 0; k < std::min(known.size(), kMostWords); ++k) {
+    list += (k > 0 ? ", " : "") + std::string(known[k]);
+  }
+  return known.size() > kMostWords ? list + ", ... (" + std::to_string(known.size()) + " in all)" : list;
+}
+
+std::pair<std::string, std::string> first_difference(const std::string& one, const std::string& other) {
+  std::istringstream lines(one);
+  std::istringstream other_lines(other);
+  std::string a;
+  std::string b;
+  do {
+    if (!std::getline(lines, a)) a = "nothing more";
+    if (!std::getline(other_lines, b)) b = "nothing more";
+  } while (a == b && (lines || other_lines));
+  const auto quote = [](const std::string& line) { return "'" + printable(line, 120) + "'"; };
+  return {quote(a), quote(b)};
+}
+
+}  // namespace poesy

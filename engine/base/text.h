@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace poesy {
+
+/// The text with a to z for A to Z, in any locale. Other characters stay as they are.
+std::string lower_case(std::string_view text);
+
+/// Bytes of the UTF-8 character at the start of this text, which is not empty; 0 where there is none: a cut or overlong
+/// form, a surrogate, a number above U+10FFFF.
+std::size_t character_length(std::string_view text);
+
+/// Characters of a UTF-8 text.
+std::size_t text_width(std::string_view text);
+
+/// Lines of a text, broken at blanks, but not within numbers ("12 000", "5 %"). Each has at most `width` characters,
+/// the first one `first` where that is given; a longer word has a line of its own.
+std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::optional<std::size_t> first = {});
+
+/// A user's text as a message may show it: on one line, valid UTF-8, no control characters, cut off after
+/// about `most` bytes.
+std::string printable(std::string_view text, std::size_t most = 60);
+
+/// A command line, word by word, as a shell takes it.
+std::string shell_command(const std::vector<std::string>& words);
+
+/// The known word that is close to this one, as after a slip of the pen; empty when none is.
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
+
+/// "did you mean 'sigma'?" when a known word is close to this one, else the known words: "known: sigma, half_width".
+std::string suggestion(std::string_view word, std::span<const std::string_view> known);
+
+/// The names of named things, for suggestion().
+template <class Named>
+std::vector<std::string_view> names(const std::vector<Named>& things) {
+  std::vector<std::string_view> list;
+  for (const Named& thing : things) list.push_back(thing.name);
+  return list;
+}
+
+/// The first line in which two texts differ, of each as 'LINE'; "nothing more" where one has ended.
+std::pair<std::string, std::string> first_difference(const std::string& one, const std::string& other);
+
+}  // namespace poesy
