@@ -4,7 +4,7 @@
 
 #include "engine/app/message.h"
 #include "engine/base/units.h"
-#include "engine/report/failure_share.h"
+#include "engine/report/solves.h"
 
 namespace poesy::app {
 namespace {
