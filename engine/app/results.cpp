@@ -14,7 +14,7 @@
 #include "engine/base/units.h"
 #include "engine/io/shard_file.h"
 #include "engine/io/study_file.h"
-#include "engine/report/failure_share.h"
+#include "engine/report/solves.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/run/study_run.h"

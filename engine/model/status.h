@@ -19,6 +19,12 @@ enum class SolveStatus : std::uint8_t {
 inline constexpr std::array<std::string_view, 5> kStatusNames{"converged", "stagnated", "iteration_cap", "singular",
                                                               "non_finite"};
 
+/// The same in the words of a report, in the order of SolveStatus.
+inline constexpr std::array<std::string_view, kStatusNames.size()> kStatusMeanings{
+    "the change fell below the tolerance", "as exact as the arithmetic allows; counts as converged",
+    "still changing after the most iterations allowed", "the equations have no unique solution",
+    "a value overflowed or became undefined"};
+
 /// A solve that reached its fixed point, to the tolerance or to rounding.
 constexpr bool solved(SolveStatus status) {
   return status == SolveStatus::converged || status == SolveStatus::stagnated;

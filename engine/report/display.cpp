@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "engine/stats/rounding.h"
@@ -65,12 +66,35 @@ std::string some_names(const std::vector<std::string>& names, std::size_t most) 
   return names.size() > most ? text + fmt::format(" and {} more", names.size() - most) : text;
 }
 
+Common common(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  Common both;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    const auto at = std::ranges::find(b, a[n]);
+    if (at != b.end()) both.emplace_back(n, static_cast<std::size_t>(at - b.begin()));
+  }
+  return both;
+}
+
+std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others) {
+  std::vector<std::string> list;
+  for (const std::string& name : these) {
+    if (std::ranges::find(others, name) == others.end()) list.push_back(name);
+  }
+  return list;
+}
+
 std::string metric_text(const StoredResult& result) {
   if (result.metric == "platform") {
     return fmt::format("platform, by displacement of {}", counted(result.metric_points.size(), "point", "points"));
   }
   if (result.metric == "published") return "published, radians against metres at the base's origin";
   return result.metric;
+}
+
+std::string response_text(const NamedUnit& response, double si) {
+  const Unit& unit = display(response);
+  const std::string value = fmt::format("{:.4g}", si / unit.si);
+  return unit.name == "1" ? value : fmt::format("{} {}", value, unit.name);
 }
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
@@ -103,9 +127,33 @@ Column percent_column(std::string name, std::string heading, int dispensable) {
   return number_column(std::move(name), std::move(heading), "%", dispensable);
 }
 
+void fill(Table& table, const std::vector<std::size_t>& positions, const std::vector<FilledColumn>& columns) {
+  for (const FilledColumn& one : columns) table.columns.push_back(one.column);
+  for (const std::size_t position : positions) {
+    std::vector<Cell>& row = table.rows.emplace_back();
+    for (const FilledColumn& one : columns) row.push_back(one.cell(position));
+  }
+}
+
+FilledColumn name_column(const std::vector<NamedUnit>& things, const std::string& word) {
+  return {text_column(word, word), [&things](std::size_t n) { return text_cell(things[n].name); }};
+}
+
+FilledColumn unit_column(const std::vector<NamedUnit>& things) {
+  return {text_column("unit", "unit"), [&things](std::size_t n) { return text_cell(display(things[n]).name); }};
+}
+
+std::vector<std::size_t> positions(std::size_t count) {
+  std::vector<std::size_t> list(count);
+  std::iota(list.begin(), list.end(), std::size_t{0});
+  return list;
+}
+
 Cell text_cell(std::string_view text) { return {text.empty() ? "-" : std::string(text), std::nullopt}; }
 
 Cell number_cell(double value, int digits) { return cell(number_text(value, digits), value); }
+
+Cell value_cell(double si, const NamedUnit& named, int digits) { return number_cell(si / display(named).si, digits); }
 
 Cell count_cell(std::uint64_t count) { return {count_text(count), static_cast<double>(count)}; }
 

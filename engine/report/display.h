@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/io/result_file.h"
@@ -34,9 +37,21 @@ std::vector<std::string> names_of(const std::vector<NamedUnit>& things);
 /// The first of these, "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names, std::size_t most = 5);
 
+/// Positions in two lists of what both have, in the order of the first.
+using Common = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// Names that both have.
+Common common(const std::vector<std::string>& a, const std::vector<std::string>& b);
+
+/// The names that `these` has and `others` has not.
+std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others);
+
 /// By what mismatch of angle was weighed against mismatch of position: "platform, by displacement of 3 points". Empty
 /// where nothing is weighed, and for results of older versions.
 std::string metric_text(const StoredResult& result);
+
+/// A value of a response, SI, in the unit in which people read it, "0.05 mm".
+std::string response_text(const NamedUnit& response, double si);
 
 /// Where a pose is, in the units shown: "z -190 mm, beta 20 deg, gamma -30 deg"; on a trajectory with its time before,
 /// "t 1.18 s, ...". To three digits. Empty for a number that is no pose of the result.
@@ -51,10 +66,29 @@ Column number_column(std::string name, std::string heading, std::string_view uni
 /// A column of shares, in percent.
 Column percent_column(std::string name, std::string heading, int dispensable = 0);
 
+/// A column and its cell in the row of each of some things, by the position of the thing.
+struct FilledColumn {
+  Column column;                          ///< its heading
+  std::function<Cell(std::size_t)> cell;  ///< of the thing at this position
+};
+
+/// Gives a table these columns, and a row for each of these positions.
+void fill(Table& table, const std::vector<std::size_t>& positions, const std::vector<FilledColumn>& columns);
+
+/// The names of things, under the word for one. Refers to the things, as unit_column does.
+FilledColumn name_column(const std::vector<NamedUnit>& things, const std::string& word);
+/// The units in which people read them.
+FilledColumn unit_column(const std::vector<NamedUnit>& things);
+
+/// 0, 1, ..., count - 1.
+std::vector<std::size_t> positions(std::size_t count);
+
 /// A word; "-" for an empty text.
 Cell text_cell(std::string_view text);
 /// A number to this many significant digits.
 Cell number_cell(double value, int digits = 4);
+/// A value, SI, in the unit in which people read the named thing.
+Cell value_cell(double si, const NamedUnit& named, int digits = 4);
 /// A whole number with all its digits.
 Cell count_cell(std::uint64_t count);
 /// A share, for a percent_column.

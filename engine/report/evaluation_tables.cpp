@@ -43,10 +43,8 @@ Summary summary(const EvaluationResult& found, std::size_t r) {
 
 /// "; 38 of 40 pass" where the study limits the response.
 std::string passes(const StoredResult& result, std::size_t r) {
-  if (!result.evaluation.verdicts) return {};
-  const std::vector<LimitVerdict>& limits = result.evaluation.verdicts->limits;
-  const auto verdict = std::ranges::find(limits, r, &LimitVerdict::response);
-  return verdict == limits.end() ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
+  const LimitVerdict* verdict = verdict_on(result, r);
+  return verdict == nullptr ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
 }
 
 /// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty where rows have no labels or none
@@ -62,93 +60,86 @@ std::string worst_note(const StoredResult& result, std::size_t r) {
                      place_text(result, outcomes[worst].pose), passes(result, r));
 }
 
-/// One line of parts_table. outcomes: for each response of the headline.
-std::vector<Cell> part_row(const StoredResult& result, const std::vector<std::vector<RowOutcome>>& outcomes,
-                           std::size_t row) {
-  std::vector<Cell> cells{text_cell(result.labels.names[row])};
-  cells.push_back(count_cell(outcomes.empty() ? 0 : outcomes.front()[row].solved));
-  for (std::size_t h = 0; h < outcomes.size(); ++h) {
-    const RowOutcome& outcome = outcomes[h][row];
-    const double unit = display(result.responses[result.headline[h]]).si;
-    cells.push_back(number_cell(outcome.mean / unit, kDigits));
-    cells.push_back(number_cell(outcome.extreme / unit, kDigits));
-    cells.push_back(outcome.solved == 0 ? text_cell("") : count_cell(outcome.pose));
-  }
-  return cells;
-}
-
-}  // namespace
-
-Table evaluation_table(const StoredResult& result) {
-  Table table{
-      .name = "evaluation",
-      .caption = "Responses over all samples that were solved",
-      .columns = {text_column("response", "response"), text_column("unit", "unit"), number_column("mean", "mean"),
-                  number_column("smallest", "smallest"), number_column("largest", "largest")},
-      .rows = {},
-      .notes = {}};
-  for (const std::size_t r : result.headline) {
-    const Unit& unit = display(result.responses[r]);
-    const Summary found = summary(result.evaluation, r);
-    table.rows.push_back({text_cell(result.responses[r].name), text_cell(unit.name),
-                          number_cell(found.mean / unit.si, kDigits), number_cell(found.smallest / unit.si, kDigits),
-                          number_cell(found.largest / unit.si, kDigits)});
-    if (std::string note = worst_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
-  }
-  return table;
-}
-
-std::optional<Table> parts_table(const StoredResult& result) {
+Table parts_table(const StoredResult& result) {
   const RowLabels& labels = result.labels;
-  if (labels.names.empty()) return std::nullopt;
   Table table{.name = "parts",
               .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
-              .columns = {text_column("label", labels.column), number_column("poses", "poses")},
-              .rows = {},
+              .columns = {},
               .notes = {"poses: those that were solved"}};
-  std::vector<std::vector<RowOutcome>> outcomes;
-  for (const std::size_t r : result.headline) {
-    const NamedUnit& response = result.responses[r];
+  std::vector<std::vector<RowOutcome>> outcomes;  // of each response of the headline
+  for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(result, r));
+  std::vector<FilledColumn> columns{
+      {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
+      {number_column("poses", "poses"),
+       [&](std::size_t row) { return count_cell(outcomes.empty() ? 0 : outcomes.front()[row].solved); }}};
+  for (std::size_t h = 0; h < outcomes.size(); ++h) {
+    const NamedUnit& response = result.responses[result.headline[h]];
+    const std::vector<RowOutcome>& of = outcomes[h];
     const std::string_view unit = display(response).name;
-    const int dispensable = 3 * static_cast<int>(outcomes.size());  // the last response's columns go first
-    table.columns.push_back(number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2));
-    table.columns.push_back(number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable));
-    table.columns.push_back(number_column(response.name + "_extreme_pose", "at pose", "", dispensable + 1));
-    outcomes.push_back(row_outcomes(result, r));
+    const int dispensable = 3 * static_cast<int>(h);  // the last response's columns go first
+    columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
+                       [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
+    columns.push_back({number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable),
+                       [&](std::size_t row) { return value_cell(of[row].extreme, response, kDigits); }});
+    columns.push_back(
+        {number_column(response.name + "_extreme_pose", "at pose", "", dispensable + 1),
+         [&](std::size_t row) { return of[row].solved == 0 ? text_cell("") : count_cell(of[row].pose); }});
   }
-  for (std::size_t row = 0; row < labels.names.size(); ++row) {
-    table.rows.push_back(part_row(result, outcomes, row));
-  }
+  fill(table, positions(labels.names.size()), columns);
   return table;
 }
 
 Table cases_table(const StoredResult& result) {
   const CaseResult& found = result.case_result;
+  const std::size_t cases = result.cases.size();
   Table table{.name = "cases",
               .caption = "Each case over its poses: mean and largest value of the responses",
-              .columns = {text_column("case", "case"), number_column("poses", "poses")},
-              .rows = {},
+              .columns = {},
               .notes = {"poses: those whose solve counts"}};
+  std::vector<FilledColumn> columns{
+      {text_column("case", "case"), [&](std::size_t c) { return text_cell(result.cases[c]); }},
+      {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count[c]); }}};
   int dispensable = 0;  // of the first response's columns; the last response's go first
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];
     const std::string_view unit = display(response).name;
-    table.columns.push_back(number_column(response.name + "_mean", response.name + " mean", unit, dispensable));
-    table.columns.push_back(
-        number_column(response.name + "_max", response.name + " max", unit, dispensable == 0 ? 0 : dispensable + 1));
+    columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable),
+                       [&, r](std::size_t c) { return value_cell(found.mean[r * cases + c], response, kDigits); }});
+    columns.push_back(
+        {number_column(response.name + "_max", response.name + " max", unit, dispensable == 0 ? 0 : dispensable + 1),
+         [&, r](std::size_t c) { return value_cell(found.max[r * cases + c], response, kDigits); }});
     dispensable += 2;
   }
-  for (std::size_t c = 0; c < result.cases.size(); ++c) {
-    std::vector<Cell> row{text_cell(result.cases[c]), count_cell(found.count[c])};
-    for (const std::size_t r : result.headline) {
-      const std::size_t at = r * result.cases.size() + c;
-      const double unit = display(result.responses[r]).si;
-      row.push_back(number_cell(found.mean[at] / unit, kDigits));
-      row.push_back(number_cell(found.max[at] / unit, kDigits));
-    }
-    table.rows.push_back(std::move(row));
+  fill(table, positions(cases), columns);
+  return table;
+}
+
+}  // namespace
+
+Table evaluation_table(const StoredResult& result) {
+  std::vector<Summary> found;
+  for (std::size_t r = 0; r < result.responses.size(); ++r) found.push_back(summary(result.evaluation, r));
+  const auto number = [&](const std::string& name, double Summary::*member) {
+    return FilledColumn{number_column(name, name), [&, member](std::size_t r) {
+                          return value_cell(found[r].*member, result.responses[r], kDigits);
+                        }};
+  };
+  Table table{.name = "evaluation", .caption = "Responses over all samples that were solved", .columns = {}};
+  fill(table, result.headline,
+       {name_column(result.responses, "response"), unit_column(result.responses), number("mean", &Summary::mean),
+        number("smallest", &Summary::smallest), number("largest", &Summary::largest)});
+  for (const std::size_t r : result.headline) {
+    if (std::string note = worst_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
   }
   return table;
+}
+
+std::vector<Table> evaluation_tables(const StoredResult& result, const TableOptions&) {
+  std::vector<Table> tables;
+  if (std::optional<Table> limits = limits_table(result)) tables.push_back(std::move(*limits));
+  tables.push_back(result.cases.empty() ? evaluation_table(result) : cases_table(result));
+  if (!result.labels.names.empty()) tables.push_back(parts_table(result));
+  return tables;
 }
 
 }  // namespace poesy

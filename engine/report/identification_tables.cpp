@@ -37,20 +37,17 @@ Table verdict_table(const StoredResult& result) {
       .name = "identification",
       .caption = fmt::format("{} of {} errors deform alone, {} with couplings", std::ranges::count(found.single, 1),
                              found.factors, std::ranges::count(found.coupled, 1)),
-      .columns = {text_column("error", "error"), text_column("verdict", "verdict")},
-      .rows = {},
+      .columns = {},
       .notes = notes(found)};
+  std::vector<FilledColumn> columns{
+      name_column(result.factors, "error"),
+      {text_column("verdict", "verdict"), [&](std::size_t p) { return text_cell(verdict(found, p)); }}};
   for (std::size_t g = 0; g < found.groups; ++g) {
-    table.columns.push_back(
-        number_column(fmt::format("deforming_poses_{}", g + 1), result.groups[g].name, "", static_cast<int>(g)));
+    columns.push_back(
+        {number_column(fmt::format("deforming_poses_{}", g + 1), result.groups[g].name, "", static_cast<int>(g)),
+         [&, g](std::size_t p) { return count_cell(found.poses - found.single_below[g * found.factors + p]); }});
   }
-  for (std::size_t p = 0; p < found.factors; ++p) {
-    std::vector<Cell> row{text_cell(result.factors[p].name), text_cell(verdict(found, p))};
-    for (std::size_t g = 0; g < found.groups; ++g) {
-      row.push_back(count_cell(found.poses - found.single_below[g * found.factors + p]));
-    }
-    table.rows.push_back(std::move(row));
-  }
+  fill(table, positions(found.factors), columns);
   return table;
 }
 
@@ -59,7 +56,6 @@ Table coupling_rows(const StoredResult& result) {
               .caption = "Errors that deform together and not alone",
               .columns = {text_column("error", "error"), text_column("with", "with"), text_column("group", "group"),
                           number_column("deforming_poses", "poses")},
-              .rows = {},
               .notes = {fmt::format("poses: where the two deform, of {}", result.identification.poses)}};
   for (const Coupling& coupling : result.identification.couplings) {
     table.rows.push_back({text_cell(result.factors[coupling.first].name),
@@ -71,7 +67,7 @@ Table coupling_rows(const StoredResult& result) {
 
 }  // namespace
 
-std::vector<Table> identification_tables(const StoredResult& result) {
+std::vector<Table> identification_tables(const StoredResult& result, const TableOptions&) {
   std::vector<Table> tables{verdict_table(result)};
   if (!result.identification.couplings.empty()) tables.push_back(coupling_rows(result));
   return tables;

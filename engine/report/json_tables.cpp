@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "engine/base/units.h"
 #include "engine/report/display.h"
+#include "engine/report/study_settings.h"
 #include "engine/report/tables.h"
 
 namespace poesy {
@@ -13,13 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The last line of a resolved study is "seed = 1"; null where a file has another text.
-Json seed_of(const std::string& study_text) {
-  constexpr std::string_view kKey = "\nseed = ";
-  const std::size_t at = study_text.rfind(kKey);
-  if (at == std::string::npos) return nullptr;
-  const std::size_t begin = at + kKey.size();
-  const Json seed = Json::parse(study_text.substr(begin, study_text.find('\n', begin) - begin), nullptr, false);
+/// Null where the study's text does not say it.
+Json seed_of(const StoredResult& result) {
+  const Json seed = Json::parse(study_setting(result.study_text, "run", "seed"), nullptr, false);
   return seed.is_number_unsigned() ? seed : Json(nullptr);
 }
 
@@ -87,11 +83,11 @@ Json summary_json(const StoredResult& result) {
           {"poesy_version", result.poesy_version},
           {"git_commit", result.git_commit},
           {"content_sha256", result.content_sha256},
-          {"seed", seed_of(result.study_text)},
+          {"seed", seed_of(result)},
           {"poses", result.poses.size()},
           {"errors", named_json(result.factors)},
           {"responses", named_json(result.responses)},
-          {"solves", solves_json(solves_of(result))},
+          {"solves", solves_json(tally_of(result).total())},
           {"run",
            {{"created", result.facts.created},
             {"threads", result.facts.threads},

@@ -1,11 +1,11 @@
 #include "engine/report/ranking.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
-#include "engine/report/display.h"
 #include "engine/run/sensitivity.h"
 #include "engine/stats/rounding.h"
 
@@ -30,8 +30,7 @@ double key(const StoredResult& result, std::size_t response, std::size_t p, RowO
 }
 
 std::vector<std::size_t> ordered(const StoredResult& result, std::size_t response, RowOrder order) {
-  std::vector<std::size_t> rows(result.sensitivity.factors);
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::vector<std::size_t> rows = positions(result.sensitivity.factors);
   if (order == RowOrder::name) {
     std::ranges::stable_sort(rows, {}, [&](std::size_t p) { return result.factors[p].name; });
     return rows;
@@ -73,6 +72,16 @@ bool has_effect(const StoredResult& result, std::size_t response, std::size_t fa
 
 double effect(const StoredResult& result, std::size_t response, std::size_t factor) {
   return shown_indices(result).value[response * result.sensitivity.factors + factor] * result.factor_sigma[factor];
+}
+
+FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
+                          std::string name, std::string heading, int dispensable) {
+  const Unit& unit = display(result.responses[response]);
+  return {number_column(std::move(name), std::move(heading), fmt::format("{}/unit", unit.name), dispensable),
+          [&result, &values, &unit, response](std::size_t p) {
+            return index_cell(values[response * result.factors.size() + p], display(result.factors[p]).si / unit.si,
+                              index_rounding(result, response, p));
+          }};
 }
 
 double share_not_converged(const SensitivityResult& result, std::size_t factor) {

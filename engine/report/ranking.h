@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/io/result_file.h"
+#include "engine/report/display.h"
 
 namespace poesy {
 
@@ -61,6 +63,11 @@ bool has_effect(const StoredResult& result, std::size_t response, std::size_t fa
 
 /// index x sigma(error), SI: indices alone do not compare, for some are per m and some per rad.
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
+
+/// A column of global indices per unit of the error, or of ends of their intervals. values: [R x P], SI. Refers to the
+/// result and the values.
+FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
+                          std::string name, std::string heading, int dispensable = 0);
 
 /// Share of an error's samples that were not solved.
 double share_not_converged(const SensitivityResult& result, std::size_t factor);

@@ -29,12 +29,12 @@ struct Cell {
 
 /// A table as plain values. Terminal, report and JSON show the same cells, so they show the same digits.
 struct Table {
-  std::string name;                     ///< in JSON and as an anchor: letters, digits and underscores
-  std::string caption;                  ///< one line that says what is seen
-  std::vector<Column> columns;          ///< from left to right
-  std::vector<std::vector<Cell>> rows;  ///< each of columns.size() cells
-  std::vector<std::string> notes;       ///< sentences that a reader needs below the table
-  bool ranked = false;                  ///< whether its rows are the errors in the order that was asked for
+  std::string name;                          ///< in JSON and as an anchor: letters, digits and underscores
+  std::string caption;                       ///< one line that says what is seen
+  std::vector<Column> columns;               ///< from left to right
+  std::vector<std::vector<Cell>> rows = {};  ///< each of columns.size() cells
+  std::vector<std::string> notes = {};       ///< sentences that a reader needs below the table
+  bool ranked = false;                       ///< whether its rows are the errors in the order that was asked for
 };
 
 }  // namespace poesy

@@ -6,73 +6,101 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <utility>
+#include <span>
 #include <vector>
 
-#include "engine/report/coupling_table.h"
 #include "engine/report/display.h"
+#include "engine/report/kinds.h"
 #include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {
 
-std::string chart_text(const PoseChart& chart) {
-  std::string text = fmt::format("\nposes may be given by {}\n", chart.name);
-  for (const PoseCoordinate& coordinate : chart.coordinates) {
-    text += fmt::format("  {:<16} {:>8} {}\n", coordinate.name, si_unit(coordinate.dimension), coordinate.description);
+constexpr int kDigits = 6;
+
+std::string judged_by(const LimitVerdicts& verdicts) {
+  if (!verdicts.judge) return "largest";
+  if (*verdicts.judge == Judge::rms) return "rms";
+  return percent_text(verdicts.share) + " of draws";
+}
+
+std::string rule(const LimitVerdicts& verdicts) {
+  if (!verdicts.judge) {
+    return "largest: the largest magnitude of any row of errors at any pose; a limit is kept if every row is within it "
+           "at each pose; a pose that was not solved is not within it";
   }
-  return text;
-}
-
-std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
-  const PoseChart& chart = model.charts[curve.chart];
-  std::string origin;
-  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
-    origin += (c > 0 ? ", " : "") + readable_text({curve.origin[c], chart.coordinates[c].dimension});
+  if (*verdicts.judge == Judge::rms) {
+    return "rms: the root mean square over the draws of all poses; draws that were not solved are left out; within: "
+           "the share of all draws that are within the limit";
   }
-  return fmt::format("  {:<16} {}; t from {} to {} s, by {}, from the origin ({}) unless the study sets it\n",
-                     curve.name, curve.description, curve.start, curve.end, chart.name, origin);
+  return fmt::format(
+      "value: within this magnitude stay {} of the draws at the worst pose; draws that were not solved stay within "
+      "nothing; within: the share of the draws of all poses that are within the limit",
+      percent_text(verdicts.share));
 }
 
-void add(std::vector<Table>& tables, std::optional<Table> table) {
-  if (table) tables.push_back(std::move(*table));
-}
-
-std::vector<Table> sensitivity_tables(const StoredResult& result, const RankedErrors& ranked) {
-  std::vector<Table> tables{ranked_table(result, ranked)};
-  add(tables, separation_table(result, ranked));
-  add(tables, fidelity_table(result, ranked));
-  add(tables, convergence_table(result));
-  return tables;
-}
-
-/// The responses, by which metric where there is one.
-std::string responses_text(const ModelDescription& model) {
-  std::string text = "\nresponses";
-  if (!model.metric.empty()) text += fmt::format(" by [solver] metric = \"{}\"", model.metric);
-  text += model.metric == "published" ? ", which a study without the key has\n" : "\n";
-  for (const Response& response : model.responses) {
-    text += fmt::format("  {:<20} {:>4} {}\n", response.name, si_unit(response.dimension), response.description);
+/// Where the value was found; empty where it is of all poses.
+std::string place(const StoredResult& result, const LimitVerdict& verdict) {
+  std::string text;
+  if (verdict.row && !result.labels.names.empty()) {
+    text = fmt::format("{} {}, ", result.labels.column, result.labels.names[*verdict.row]);
+  } else if (verdict.row && result.pairing != Pairing::row_by_row) {
+    text = result.cases.empty() ? fmt::format("sample {}, ", *verdict.row) : result.cases[*verdict.row] + ", ";
   }
-  return text;
+  return verdict.pose ? text + place_text(result, *verdict.pose) : std::string();
+}
+
+constexpr std::size_t kMostShown = 5;
+
+/// None where the result has no adaptive samples.
+std::optional<Settling> adaptive_settling(const StoredResult& result) {
+  const auto settling_of = kind_of(result).settling;
+  if (settling_of == nullptr) return std::nullopt;
+  Settling settling = settling_of(result);
+  return settling.adaptive == nullptr ? std::nullopt : std::optional(std::move(settling));
+}
+
+/// Positions among [R x P] of the quantities that count for the end and did not reach it, the widest first.
+std::vector<std::size_t> not_reached(const Settling& settling) {
+  const ConvergenceResult& found = *settling.adaptive;
+  const std::size_t slots = found.samples.size();
+  std::vector<std::size_t> list;
+  for (const std::size_t r : settling.responses) {
+    for (std::size_t at = r * slots; at < (r + 1) * slots; ++at) {
+      if (found.reached[at] == 0) list.push_back(at);
+    }
+  }
+  const auto width = [&](std::size_t at) {
+    const double relative = found.relative_half_width[at];
+    return std::isnan(relative) ? HUGE_VAL : relative;
+  };
+  std::ranges::stable_sort(list, std::ranges::greater(), width);
+  return list;
+}
+
+std::string samples_text(const ConvergenceResult& found) {
+  const auto [least, most] = std::ranges::minmax(found.samples);
+  if (least == most) return counted(least, "sample", "samples") + " at each pose";
+  return fmt::format("from {} to {} samples at each pose", count_text(least), count_text(most));
+}
+
+/// The samples that would do, for half-widths fall with their root; to two digits, upwards.
+Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
+  const double ratio = found.relative_half_width[at] / found.relative_error;
+  const double needed = static_cast<double>(found.samples[at % found.samples.size()]) * ratio * ratio;
+  if (!(needed < 1e15)) return text_cell("unknown");
+  const double digit = std::pow(10.0, std::floor(std::log10(needed)) - 1.0);
+  return count_cell(static_cast<std::uint64_t>(std::ceil(needed / digit) * digit));
 }
 
 }  // namespace
-
-SolveCounts solves_of(const StoredResult& result) {
-  if (result.kind == "sensitivity") return result.sensitivity.total();
-  if (result.kind == "identification") return result.identification.solves;
-  if (result.kind == "monte-carlo") return result.monte_carlo.total();
-  if (result.kind == "coupling") return result.coupling.found.total();
-  return result.evaluation.total();
-}
 
 std::string summary_text(const StoredResult& result, std::size_t width) {
   const RunFacts& facts = result.facts;
   const double per_second =
       static_cast<double>(facts.solves) / std::max(facts.wall_seconds, std::numeric_limits<double>::min());
-  const std::string each =
-      result.sensitivity.fidelity ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
+  const bool two = !result.fidelities.empty();
+  const std::string each = two ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
   std::string text = prose_of(result.title, width);
   text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
                                counted(result.poses.size(), "pose", "poses"), result.poesy_version),
@@ -93,21 +121,7 @@ std::string default_ranking(const StoredResult& result) {
 }
 
 std::vector<Table> result_tables(const StoredResult& result, std::string_view ranked_by, RowOrder order) {
-  if (result.kind == "sensitivity") return sensitivity_tables(result, ranked_errors(result, ranked_by, order));
-  if (result.kind == "identification") return identification_tables(result);
-  if (result.kind == "monte-carlo") {
-    std::vector<Table> tables;
-    add(tables, limits_table(result));
-    for (Table& table : monte_carlo_tables(result)) tables.push_back(std::move(table));
-    add(tables, convergence_table(result));
-    return tables;
-  }
-  if (result.kind == "coupling") return coupling_tables(result);
-  std::vector<Table> tables;
-  add(tables, limits_table(result));
-  tables.push_back(result.cases.empty() ? evaluation_table(result) : cases_table(result));
-  add(tables, parts_table(result));
-  return tables;
+  return kind_of(result).tables(result, {std::string(ranked_by), order});
 }
 
 void keep_first(std::size_t most, std::span<Table> tables) {
@@ -118,55 +132,79 @@ void keep_first(std::size_t most, std::span<Table> tables) {
   }
 }
 
-std::string models_text(const Catalog& catalog) {
-  std::string text;
-  for (const CatalogEntry& entry : catalog) {
-    text += fmt::format("{:<12} {}\n", entry.description.name, entry.description.title);
-  }
-  return text;
+const std::optional<LimitVerdicts>& verdicts_of(const StoredResult& result) {
+  return result.monte_carlo.verdicts ? result.monte_carlo.verdicts : result.evaluation.verdicts;
 }
 
-std::string model_text(const CatalogEntry& entry) {
-  const ModelDescription& model = entry.description;
-  std::string text = fmt::format("{}: {}\n\ngeometry (change it in [mechanism] geometry)\n", model.name, model.title);
-  for (const GeometryParameter& parameter : model.geometry) {
-    const Unit& unit = display_unit(parameter.dimension);
-    text += fmt::format("  {:<16} {:>8.6g} {:<4} {}\n", parameter.name, parameter.published / unit.si, unit.name,
-                        parameter.description);
+const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response) {
+  const std::optional<LimitVerdicts>& verdicts = verdicts_of(result);
+  if (!verdicts) return nullptr;
+  const auto found = std::ranges::find(verdicts->limits, response, &LimitVerdict::response);
+  return found == verdicts->limits.end() ? nullptr : &*found;
+}
+
+std::optional<Table> limits_table(const StoredResult& result) {
+  const std::optional<LimitVerdicts>& verdicts = verdicts_of(result);
+  if (!verdicts) return std::nullopt;
+  std::size_t kept = 0;
+  Table table{.name = "limits",
+              .caption = {},
+              .columns = {text_column("verdict", "limit kept"), text_column("response", "response"),
+                          text_column("unit", "unit"), text_column("judged_by", "judged by"),
+                          number_column("value", "value"), number_column("limit", "limit"),
+                          percent_column("within", "within", 1), text_column("place", "where", 2)},
+              .notes = {rule(*verdicts)}};
+  for (const LimitVerdict& one : verdicts->limits) {
+    const Unit& unit = display(result.responses[one.response]);
+    const double share = static_cast<double>(one.within) / static_cast<double>(one.tried);
+    kept += one.passed ? 1 : 0;
+    table.rows.push_back({text_cell(one.passed ? "PASS" : "FAIL"), text_cell(result.responses[one.response].name),
+                          text_cell(unit.name), text_cell(judged_by(*verdicts)),
+                          number_cell(one.value / unit.si, kDigits), number_cell(one.limit / unit.si, kDigits),
+                          percent_cell(share), text_cell(place(result, one))});
   }
-  if (!model.fidelities.empty()) {
-    text += "\nfidelity (choose it in [mechanism]; the first is the default)\n";
-    for (const std::string& fidelity : model.fidelities) text += "  " + fidelity + "\n";
+  const std::size_t all = verdicts->limits.size();
+  table.caption = kept == all ? fmt::format("PASS: {} kept", all == 1 ? "the limit is" : "all limits are")
+                              : fmt::format("FAIL: {} of {} not kept", all - kept, counted(all, "limit", "limits"));
+  return table;
+}
+
+std::optional<Table> convergence_table(const StoredResult& result) {
+  const std::optional<Settling> settling = adaptive_settling(result);
+  if (!settling) return std::nullopt;
+  const ConvergenceResult& found = *settling->adaptive;
+  const std::size_t slots = found.samples.size();
+  const std::vector<std::size_t> missing = not_reached(*settling);
+  const std::size_t all = settling->responses.size() * slots;
+  Table table{
+      .name = "convergence",
+      .caption = fmt::format("Convergence: {} of {} {} have a {:.3g} % interval within +-{:.3g} % of their value, {}",
+                             all - missing.size(), all, settling->quantities, 100.0 * found.conf_level,
+                             100.0 * found.relative_error, samples_text(found)),
+      .columns = {text_column("error", "error"), text_column("response", "response"),
+                  percent_column("half_width", "half the interval"),
+                  number_column("samples_needed", "samples that would do, about")}};
+  for (const std::size_t at : std::span(missing).first(std::min(missing.size(), kMostShown))) {
+    table.rows.push_back({text_cell(settling->slots[at % slots]), text_cell(result.responses[at / slots].name),
+                          percent_cell(found.relative_half_width[at]), needed_cell(found, at)});
   }
-  text += "\npose coordinates and default workspace\n";
-  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
-    const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    const Unit& unit =
-        coordinate.dimension == Dimension::angle ? *find_unit("rad") : display_unit(coordinate.dimension);
-    text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
-                        model.pose_upper[c] / unit.si, unit.name, coordinate.description);
+  if (missing.size() > kMostShown) table.notes.push_back(fmt::format("and {} more", missing.size() - kMostShown));
+  if (!missing.empty()) {
+    table.notes.push_back(fmt::format("Raise max, which is {}, and go on with --resume if the checkpoint was kept",
+                                      count_text(found.max)));
   }
-  text += fmt::format("  {}\n", model.workspace_note);
-  for (const PoseChart& chart : model.charts) text += chart_text(chart);
-  if (!model.curves.empty()) text += "\ncurves (select = \"trajectory\")\n";
-  for (const NamedCurve& curve : model.curves) text += curve_text(curve, model);
-  text += "\nfactor sets\n";
-  for (const FactorSet& set : model.factor_sets) {
-    text += fmt::format("  {:<16} {:>8} {}\n", set.name, set.factors.size(), set.description);
-  }
-  if (!model.sources.empty()) text += "\nsources of errors (of a coupling study that names none)\n";
-  for (const CouplingSource& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
-  text += "\nerror factors\n";
-  for (const Factor& factor : model.factors) {
-    text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
-  }
-  text += responses_text(model);
-  if (entry.by_platform) text += responses_text(entry.by_platform->description);
-  text += "\ndetails (given by `poesy evaluate`)\n";
-  for (const Detail& detail : model.details) {
-    text += fmt::format("  {:<20} {:>4} {}\n", detail.name, detail.components.size(), detail.description);
-  }
-  return text;
+  return table;
+}
+
+std::string not_settled_text(const StoredResult& result) {
+  const std::optional<Settling> settling = adaptive_settling(result);
+  const std::size_t missing = settling ? not_reached(*settling).size() : 0;
+  if (missing == 0) return {};
+  const ConvergenceResult& found = *settling->adaptive;
+  return fmt::format(
+      "{} of {} {} did not reach the interval of +-{} that the study asks for, with at most {} samples at each pose.",
+      missing, settling->responses.size() * found.samples.size(), settling->quantities,
+      percent_text(found.relative_error), count_text(found.max));
 }
 
 }  // namespace poesy

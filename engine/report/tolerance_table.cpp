@@ -125,59 +125,43 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   return list;
 }
 
-std::vector<Column> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
-  const std::string index_unit = fmt::format("{}/unit", display(result.responses[tolerances.response]).name);
-  std::vector<Column> list{text_column("error", "error"), text_column("kind", "kind", 4),
-                           number_column("limb", "limb", "", 3), number_column("equal_effect", "equal effect")};
+/// Refers to both.
+std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
+  const std::size_t r = tolerances.response;
+  const SensitivityResult& found = result.sensitivity;
+  const auto tolerance = [&result](std::string name, std::string heading, const std::vector<double>& values) {
+    return FilledColumn{number_column(std::move(name), std::move(heading)), [&result, &values](std::size_t p) {
+                          return tolerance_cell(values[p], display(result.factors[p]));
+                        }};
+  };
+  std::vector<FilledColumn> list{
+      name_column(result.factors, "error"),
+      {text_column("kind", "kind", 4),
+       [&](std::size_t p) { return text_cell(error_kind(dimension_of(result.factors[p].unit))); }},
+      {number_column("limb", "limb", "", 3), [&](std::size_t p) { return count_cell(result.factor_limb[p]); }},
+      tolerance("equal_effect", "equal effect", tolerances.all.equal_effect)};
   if (tolerances.limit) {
-    list.push_back(number_column("limit_equal_effect", "limit, equal effect"));
-    list.push_back(number_column("limit_equal_tolerance", "limit, equal tolerance"));
+    list.push_back(tolerance("limit_equal_effect", "limit, equal effect", tolerances.limit->equal_effect));
+    list.push_back(tolerance("limit_equal_tolerance", "limit, equal tolerance", tolerances.limit->equal_tolerance));
   }
-  list.push_back(text_column("unit", "unit"));
-  list.push_back(number_column("index", "index", index_unit));
-  list.push_back(number_column("index_low", "low", index_unit, 2));
-  list.push_back(number_column("index_high", "high", index_unit, 2));
-  list.push_back(percent_column("mean_square_share", "share", 1));
+  list.push_back(unit_column(result.factors));
+  list.push_back(index_column(result, found.global, r, "index", "index"));
+  list.push_back(index_column(result, found.global_ci_low, r, "index_low", "low", 2));
+  list.push_back(index_column(result, found.global_ci_high, r, "index_high", "high", 2));
+  list.push_back({percent_column("mean_square_share", "share", 1),
+                  [&](std::size_t p) { return percent_cell(tolerances.all.mean_square_share[p]); }});
   return list;
 }
 
-std::vector<Cell> row(const StoredResult& result, const ResponseTolerances& tolerances, std::size_t p) {
-  const SensitivityResult& found = result.sensitivity;
-  const NamedUnit& factor = result.factors[p];
-  const Unit& unit = display(factor);
-  std::vector<Cell> cells{text_cell(factor.name), text_cell(error_kind(dimension_of(factor.unit))),
-                          count_cell(result.factor_limb[p]), tolerance_cell(tolerances.all.equal_effect[p], unit)};
-  if (tolerances.limit) {
-    cells.push_back(tolerance_cell(tolerances.limit->equal_effect[p], unit));
-    cells.push_back(tolerance_cell(tolerances.limit->equal_tolerance[p], unit));
-  }
-  cells.push_back(text_cell(unit.name));
-  const std::size_t at = tolerances.response * found.factors + p;
-  const double scale = unit.si / display(result.responses[tolerances.response]).si;
-  const double rounding = index_rounding(result, tolerances.response, p);
-  for (const double value : {found.global[at], found.global_ci_low[at], found.global_ci_high[at]}) {
-    cells.push_back(index_cell(value, scale, rounding));
-  }
-  cells.push_back(percent_cell(tolerances.all.mean_square_share[p]));
-  return cells;
-}
-
 }  // namespace
-
-std::string response_text(const NamedUnit& response, double si) {
-  const Unit& unit = display(response);
-  const std::string value = fmt::format("{:.4g}", si / unit.si);
-  return unit.name == "1" ? value : fmt::format("{} {}", value, unit.name);
-}
 
 Table tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances) {
   Table table{.name = "tolerances",
               .caption = fmt::format("Tolerances for {}: standard deviations of normal errors",
                                      result.responses[tolerances.response].name),
-              .columns = columns(result, tolerances),
-              .rows = {},
+              .columns = {},
               .notes = notes(result, tolerances)};
-  for (std::size_t p = 0; p < result.factors.size(); ++p) table.rows.push_back(row(result, tolerances, p));
+  fill(table, positions(result.factors.size()), columns(result, tolerances));
   return table;
 }
 

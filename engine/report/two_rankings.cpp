@@ -7,7 +7,6 @@
 
 #include "engine/base/error.h"
 #include "engine/report/display.h"
-#include "engine/report/in_common.h"
 #include "engine/report/tables.h"
 #include "engine/stats/rank_correlation.h"
 
@@ -40,18 +39,17 @@ Cell rank_cell(const Ranking& ranking, std::size_t at) {
   return count_cell(1 + static_cast<std::uint64_t>(std::ranges::count_if(ranking.effects, larger)));
 }
 
-void add_columns(std::vector<Column>& columns, char letter, const Ranking& ranking, bool by_metric) {
+/// Rank and effect of each error. Refers to the ranking.
+void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking& ranking, bool by_metric) {
   const std::string suffix = letter == 'A' ? "_a" : "_b";
   const NamedUnit& response = ranking.response;
   const std::string in = fmt::format(" in {}", letter);
-  columns.push_back(number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in)));
-  columns.push_back(number_column(
-      "effect" + suffix, response.name + (by_metric ? ", " + ranking.metric + " metric" : in), unit_text(response)));
-}
-
-void add_cells(std::vector<Cell>& row, const Ranking& ranking, std::size_t at) {
-  row.push_back(rank_cell(ranking, at));
-  row.push_back(number_cell(ranking.effects[at] / display(ranking.response).si));
+  columns.push_back({number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in)),
+                     [&ranking](std::size_t n) { return rank_cell(ranking, n); }});
+  columns.push_back(
+      {number_column("effect" + suffix, response.name + (by_metric ? ", " + ranking.metric + " metric" : in),
+                     unit_text(response)),
+       [&ranking](std::size_t n) { return value_cell(ranking.effects[n], ranking.response); }});
 }
 
 /// How many errors have a known effect in both.
@@ -103,6 +101,18 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
 
 }  // namespace
 
+void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
+                      const std::string& path_b) {
+  const auto check = [&](std::string_view what, const std::string& of_a, const std::string& of_b) {
+    if (of_a == of_b) return;
+    throw InputError({.file = path_b},
+                     fmt::format("cannot be compared with {}: its {} is '{}', not '{}'", path_a, what, of_b, of_a),
+                     "compare two results of one kind and mechanism, or look at each alone");
+  };
+  check("kind", a.kind, b.kind);
+  check("mechanism", a.model, b.model);
+}
+
 bool differ_in_metric(const StoredResult& a, const StoredResult& b) {
   return !a.metric.empty() && !b.metric.empty() && a.metric != b.metric;
 }
@@ -120,25 +130,20 @@ TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder 
   const bool by_metric = differ_in_metric(a.result, b.result);
   Table table{.name = "rankings",
               .caption = "Two rankings: the effect of each error at the size that its study gives it",
-              .columns = {text_column("error", "error")},
-              .rows = {},
-              .notes = {},
+              .columns = {},
               .ranked = true};
-  add_columns(table.columns, 'A', first, by_metric);
-  add_columns(table.columns, 'B', second, by_metric);
-  for (std::size_t n = 0; n < of_a.size(); ++n) {
-    std::vector<Cell> row{text_cell(a.result.factors[of_a[n]].name)};
-    add_cells(row, first, n);
-    add_cells(row, second, n);
-    table.rows.push_back(std::move(row));
-  }
+  std::vector<FilledColumn> columns{
+      {text_column("error", "error"), [&](std::size_t n) { return text_cell(a.result.factors[of_a[n]].name); }}};
+  add_columns(columns, 'A', first, by_metric);
+  add_columns(columns, 'B', second, by_metric);
+  fill(table, positions(of_a.size()), columns);
   const double tau = kendall_tau(first.effects, second.effects);
   return {std::move(table), tau, remarks(a, b, tau, known_in_both(first, second))};
 }
 
 std::string ranked_text(char letter, const RankedResult& ranked) {
   const StoredResult& result = ranked.result;
-  const SolveCounts solves = solves_of(result);
+  const SolveCounts solves = tally_of(result).total();
   std::string text = result.title.empty() ? fmt::format("{}: {}", letter, ranked.path)
                                           : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
   if (!result.metric.empty()) text += "; metric: " + metric_text(result);

@@ -9,6 +9,10 @@
 
 namespace poesy {
 
+/// Throws InputError, at the path of B, where the results are of two kinds or mechanisms.
+void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
+                      const std::string& path_b);
+
 /// A sensitivity result, and the response by which its errors are ranked; it must have it.
 struct RankedResult {
   const StoredResult& result;  ///< must outlive this

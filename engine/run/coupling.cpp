@@ -98,7 +98,7 @@ class Composer {
   double rounding_at(std::size_t z) const {
     const double linear = study_->linear.empty() ? 0.0 : study_->linear[z];
     const double angular = study_->angular.empty() ? 0.0 : study_->angular[z];
-    return kIndexRounding * std::max(linear, angular);
+    return size_rounding(linear, angular);
   }
 
   /// [M x N]; NaN where the solve does not count.

@@ -10,6 +10,10 @@ double index_rounding(double response_rounding, double sigma) {
   return std::max(kIndexRounding, response_rounding / sigma);
 }
 
+double size_rounding(double linear, double angular) {
+  return kIndexRounding * std::fmax(linear, angular);  // passes over NaN
+}
+
 bool has_effect(double index, double rounding) { return index >= rounding; }
 
 bool is_too_small_to_tell(double index, double rounding) {

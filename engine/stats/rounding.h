@@ -15,6 +15,10 @@ inline constexpr double kIndexOfInterest = 1e-6;
 /// least kIndexRounding. response_rounding: as Model::rounding gives it.
 double index_rounding(double response_rounding, double sigma);
 
+/// Up to this the response to errors of this size, lengths and angles, is rounding: kIndexRounding times the larger one
+/// of both, SI. NaN for a size that there is none of.
+double size_rounding(double linear, double angular);
+
 /// Whether an index is more than rounding. NaN is not. rounding: as index_rounding gives it.
 bool has_effect(double index, double rounding = kIndexRounding);
 

@@ -1,5 +1,5 @@
 # cmake -D "SCRIPTS=a.js;b.js" -D STYLE=x.css -D BUNDLED=folder -D OUTPUT=assets.cpp -P assets.cmake
-# Writes the C++ source behind assets.h, and beside it the assets as files.
+# Writes the C++ source of asset() in page.h, and beside it the assets as files.
 
 # What would end the element in which the text is to stand, or the literal, ends the build instead.
 function(check_inlines name text)
@@ -34,7 +34,7 @@ foreach(asset IN ITEMS d3:d3.js plot:plot.js report:report.js style:report.css)
   string(APPEND branches "  if (name == \"${name}\") return {${variable}, sizeof ${variable} - 1};\n")
 endforeach()
 
-file(WRITE ${OUTPUT} "#include \"engine/report/html/assets.h\"
+file(WRITE ${OUTPUT} "#include \"engine/report/html/page.h\"
 
 #include \"engine/base/contract.h\"
 

@@ -4,13 +4,58 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "engine/base/error.h"
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
+#include "engine/report/kinds.h"
 
 namespace poesy {
 namespace {
+
+[[noreturn]] void refuse(const ReportedResult& b, const ReportedResult& a, std::string_view what) {
+  throw InputError({.file = b.path}, fmt::format("has no {} in common with {}", what, a.path),
+                   "compare two results that share some");
+}
+
+/// Positions of options or items that are kept, in their new order.
+using Kept = std::vector<std::size_t>;
+
+template <class Value>
+std::vector<Value> picked(const std::vector<Value>& values, const Kept& kept) {
+  std::vector<Value> list;
+  for (const std::size_t position : kept) list.push_back(values[position]);
+  return list;
+}
+
+/// The part of a Comparable with these options and items.
+Comparable kept_part(const Comparable& from, const Kept& options, const Kept& items) {
+  Comparable part = from;
+  part.options = picked(from.options, options);
+  part.items = picked(from.items, items);
+  if (!from.totals.empty()) part.totals = picked(from.totals, options);
+  Kept cells;  // of [R x P]
+  for (const std::size_t option : options) {
+    for (const std::size_t item : items) cells.push_back(option * from.items.size() + item);
+  }
+  for (ComparableQuantity& quantity : part.quantities) {
+    quantity.units = picked(quantity.units, options);
+    for (std::vector<std::string>& units : quantity.units) {
+      if (units.size() > 1) units = picked(units, items);
+    }
+    for (std::vector<double>* values : {&quantity.value, &quantity.low, &quantity.high}) {
+      if (!values->empty()) *values = picked(*values, cells);
+    }
+  }
+  return part;
+}
+
+/// The positions in one list of those that both have: of the first or of the second.
+Kept positions_in(const Common& both, bool first) {
+  Kept kept;
+  for (const auto& [of_a, of_b] : both) kept.push_back(first ? of_a : of_b);
+  return kept;
+}
 
 /// The arrays of A, then of B.
 std::vector<double> both(const std::vector<double>& a, const std::vector<double>& b) {
@@ -20,13 +65,15 @@ std::vector<double> both(const std::vector<double>& a, const std::vector<double>
 }
 
 Bars bars_of(const Comparison& compared, ArrayPool& pool) {
-  Bars bars{{{compared.option_word, compared.options}}, {}, compared.items, {"A", "B"}, compared.ranked};
-  for (const ComparedQuantity& quantity : compared.quantities) {
-    BarQuantity shown{quantity.label, quantity.units,
-                      pool.add(quantity.array, both(quantity.a.value, quantity.b.value))};
-    if (!quantity.a.low.empty()) {
-      shown.low = pool.add(quantity.array + "_low", both(quantity.a.low, quantity.b.low));
-      shown.high = pool.add(quantity.array + "_high", both(quantity.a.high, quantity.b.high));
+  const Comparable& a = compared.a;
+  Bars bars{{{a.option_word, a.options}}, {}, a.items, {"A", "B"}, a.ranked};
+  for (std::size_t n = 0; n < a.quantities.size(); ++n) {
+    const ComparableQuantity& in_a = a.quantities[n];
+    const ComparableQuantity& in_b = compared.b.quantities[n];
+    BarQuantity shown{in_a.label, in_a.units, pool.add(in_a.array, both(in_a.value, in_b.value))};
+    if (!in_a.low.empty()) {
+      shown.low = pool.add(in_a.array + "_low", both(in_a.low, in_b.low));
+      shown.high = pool.add(in_a.array + "_high", both(in_a.high, in_b.high));
     }
     bars.quantities.push_back(std::move(shown));
   }
@@ -35,20 +82,19 @@ Bars bars_of(const Comparison& compared, ArrayPool& pool) {
 
 /// The first quantity, A against B; its units do not differ by item.
 Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
-  const ComparedQuantity& quantity = compared.quantities.front();
-  Scatter scatter{{{compared.option_word, compared.options}},
-                  {"A", pool.add(quantity.array + "_a", quantity.a.value)},
-                  {"B", pool.add(quantity.array + "_b", quantity.b.value)},
+  const ComparableQuantity& a = compared.a.quantities.front();
+  Scatter scatter{{{compared.a.option_word, compared.a.options}},
+                  {"A", pool.add(a.array + "_a", a.value)},
+                  {"B", pool.add(a.array + "_b", compared.b.quantities.front().value)},
                   {},
-                  compared.items};
-  for (const std::vector<std::string>& unit : quantity.units) scatter.units.push_back(unit.front());
+                  compared.a.items};
+  for (const std::vector<std::string>& unit : a.units) scatter.units.push_back(unit.front());
   return scatter;
 }
 
 /// From 1, of P items of one option; unknown values come last.
 std::vector<std::size_t> ranks(std::span<const double> values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = positions(values.size());
   const auto key = [&](std::size_t p) { return std::isnan(values[p]) ? -HUGE_VAL : std::abs(values[p]); };
   std::ranges::stable_sort(order, std::ranges::greater(), key);
   std::vector<std::size_t> rank(values.size());
@@ -63,113 +109,128 @@ double change_of(double a, double b) {
   return std::abs(change) < kRounding ? 0.0 : change;
 }
 
-std::string_view overlap(const ComparedQuantity& quantity, std::size_t at) {
-  if (std::isnan(quantity.a.low[at] + quantity.a.high[at] + quantity.b.low[at] + quantity.b.high[at])) return "-";
-  return quantity.a.low[at] <= quantity.b.high[at] && quantity.b.low[at] <= quantity.a.high[at] ? "overlap" : "apart";
-}
-
-std::vector<Column> columns(const Comparison& compared) {
-  const ComparedQuantity& quantity = compared.quantities.back();
-  std::vector<Column> list;
-  if (compared.ranked) list = {number_column("rank_a", "rank in A"), number_column("rank_b", "rank in B")};
-  for (Column& column :
-       std::vector{text_column("item", compared.item_word), number_column("a", "A"), number_column("b", "B"),
-                   text_column("unit", "unit"), percent_column("change", "change from A to B")}) {
-    list.push_back(std::move(column));
-  }
-  if (!quantity.a.low.empty()) list.push_back(text_column("intervals", "intervals"));
-  return list;
+std::string_view overlap(const ComparableQuantity& a, const ComparableQuantity& b, std::size_t at) {
+  if (std::isnan(a.low[at] + a.high[at] + b.low[at] + b.high[at])) return "-";
+  return a.low[at] <= b.high[at] && b.low[at] <= a.high[at] ? "overlap" : "apart";
 }
 
 /// Of one option.
 Table table_of(const Comparison& compared, std::size_t option) {
-  const ComparedQuantity& quantity = compared.quantities.back();
-  const std::size_t items = compared.items.size();
-  const auto ranked = [&](const ComparedValues& values) {
-    return ranks(std::span(values.value).subspan(option * items, items));
+  const Comparable& all = compared.a;
+  const ComparableQuantity& a = all.quantities.back();
+  const ComparableQuantity& b = compared.b.quantities.back();
+  const std::vector<std::string>& unit = a.units[option];
+  const std::size_t items = all.items.size();
+  const std::size_t first = option * items;
+  const auto ranks_in = [&](const Comparable& result) {
+    return ranks(std::span(result.quantities.front().value).subspan(first, items));
   };
-  const std::vector<std::size_t> rank_a = ranked(compared.quantities.front().a);
-  const std::vector<std::size_t> rank_b = ranked(compared.quantities.front().b);
-  Table table{.name = fmt::format("differences_{}", option + 1),
-              .caption = fmt::format("{}: {}", compared.options[option], quantity.label),
-              .columns = columns(compared),
-              .rows = std::vector<std::vector<Cell>>(items),
-              .notes = {}};
-  for (std::size_t p = 0; p < items; ++p) {
-    const std::size_t at = option * items + p;
-    const double change = change_of(quantity.a.value[at], quantity.b.value[at]);
-    std::vector<Cell> row;
-    if (compared.ranked) row = {count_cell(rank_a[p]), count_cell(rank_b[p])};
-    const std::vector<std::string>& unit = quantity.units[option];
-    row.push_back(text_cell(compared.items[p]));
-    row.push_back(number_cell(quantity.a.value[at]));
-    row.push_back(number_cell(quantity.b.value[at]));
-    row.push_back(text_cell(unit.size() == 1 ? unit.front() : unit[p]));
-    row.push_back(std::isfinite(change) ? percent_cell(change) : text_cell("-"));
-    if (!quantity.a.low.empty()) row.push_back(text_cell(overlap(quantity, at)));
-    table.rows[compared.ranked ? rank_a[p] - 1 : p] = std::move(row);
+  const std::vector<std::size_t> rank_a = ranks_in(all);
+  const std::vector<std::size_t> rank_b = ranks_in(compared.b);
+  std::vector<std::size_t> order = positions(items);
+  std::vector<FilledColumn> columns;
+  if (all.ranked) {
+    std::ranges::sort(order, {}, [&](std::size_t p) { return rank_a[p]; });
+    columns = {{number_column("rank_a", "rank in A"), [&](std::size_t p) { return count_cell(rank_a[p]); }},
+               {number_column("rank_b", "rank in B"), [&](std::size_t p) { return count_cell(rank_b[p]); }}};
   }
+  columns.push_back({text_column("item", all.item_word), [&](std::size_t p) { return text_cell(all.items[p]); }});
+  columns.push_back({number_column("a", "A"), [&](std::size_t p) { return number_cell(a.value[first + p]); }});
+  columns.push_back({number_column("b", "B"), [&](std::size_t p) { return number_cell(b.value[first + p]); }});
+  columns.push_back(
+      {text_column("unit", "unit"), [&](std::size_t p) { return text_cell(unit.size() == 1 ? unit[0] : unit[p]); }});
+  columns.push_back({percent_column("change", "change from A to B"), [&](std::size_t p) {
+                       const double change = change_of(a.value[first + p], b.value[first + p]);
+                       return std::isfinite(change) ? percent_cell(change) : text_cell("-");
+                     }});
+  if (!a.low.empty()) {
+    columns.push_back(
+        {text_column("intervals", "intervals"), [&](std::size_t p) { return text_cell(overlap(a, b, first + p)); }});
+  }
+  Table table{.name = fmt::format("differences_{}", option + 1),
+              .caption = fmt::format("{}: {}", all.options[option], a.label),
+              .columns = {}};
+  fill(table, order, columns);
   return table;
 }
 
 /// One number for everything, of each option, and how many times larger it is in B.
 Table totals_table(const Comparison& compared) {
+  const Comparable& a = compared.a;
   Table table{.name = "totals",
-              .caption = compared.total_label,
-              .columns = {text_column("option", compared.option_word), number_column("a", "A"), number_column("b", "B"),
-                          text_column("unit", "unit"), number_column("ratio", "B / A")},
-              .rows = {},
-              .notes = {}};
-  for (std::size_t option = 0; option < compared.options.size(); ++option) {
-    const double a = compared.total_a[option];
-    const double b = compared.total_b[option];
-    table.rows.push_back({text_cell(compared.options[option]), number_cell(a), number_cell(b),
-                          text_cell(compared.quantities.front().units[option].front()), number_cell(b / a)});
+              .caption = a.total_label,
+              .columns = {text_column("option", a.option_word), number_column("a", "A"), number_column("b", "B"),
+                          text_column("unit", "unit"), number_column("ratio", "B / A")}};
+  for (std::size_t option = 0; option < a.options.size(); ++option) {
+    const double in_a = a.totals[option];
+    const double in_b = compared.b.totals[option];
+    table.rows.push_back({text_cell(a.options[option]), number_cell(in_a), number_cell(in_b),
+                          text_cell(a.quantities.front().units[option].front()), number_cell(in_b / in_a)});
   }
   return table;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 /// What the caption of the bars says of their order; quantities whose units differ by item follow the first.
-std::string order_of(const Comparison& compared) {
-  const auto differ = [](const ComparedQuantity& quantity) {
+std::string order_of(const Comparable& a) {
+  const auto differ = [](const ComparableQuantity& quantity) {
     return std::ranges::any_of(quantity.units, [](const std::vector<std::string>& units) {
       return std::ranges::adjacent_find(units, std::ranges::not_equal_to()) != units.end();
     });
   };
-  if (!compared.ranked) return {};
-  return ", " + order_by_effect(std::ranges::any_of(compared.quantities, differ));
+  return a.ranked ? ", " + order_by_effect(std::ranges::any_of(a.quantities, differ)) : std::string();
 }
 
 }  // namespace
 
-void add_comparison(const Comparison& compared, Page& page) {
-  ArrayPool& pool = page.figures.pool;
-  Section section("differences", "What differs");
-  section.paragraph(
-      fmt::format("A and B side by side, for each {} that both have. Changes are from A to B, in percent of A.",
-                  compared.item_word));
-  for (const auto& [letter, only] : {std::pair("A", &compared.only_a), std::pair("B", &compared.only_b)}) {
-    if (!only->empty()) section.paragraph(fmt::format("Only in {}: {}.", letter, joined(*only)));
+Comparable comparable_by_response(const StoredResult& result, std::string item_word, std::vector<std::string> items) {
+  return {"response", names_of(result.responses, response_order(result)), std::move(item_word), std::move(items)};
+}
+
+void add_quantity(Comparable& to, const StoredResult& result, std::string label, std::string array,
+                  const std::function<double(std::size_t, std::size_t)>& value) {
+  const std::vector<std::size_t> responses = response_order(result);
+  ComparableQuantity quantity{std::move(label), std::move(array), response_units(result, responses), {}};
+  for (const std::size_t r : responses) {
+    for (std::size_t item = 0; item < to.items.size(); ++item) {
+      quantity.value.push_back(value(r, item) / display(result.responses[r]).si);
+    }
   }
-  if (!compared.total_label.empty()) section.table(totals_table(compared));
-  add_figure(page, section, "side-by-side", bars_of(compared, pool), "A and B side by side" + order_of(compared) + ".");
+  to.quantities.push_back(std::move(quantity));
+}
+
+Comparison comparison(const ReportedResult& a, const ReportedResult& b) {
+  if (common(names_of(a.stored.responses), names_of(b.stored.responses)).empty()) refuse(b, a, "response");
+  const Comparable all_a = kind_of(a.stored).comparable(a.stored, b.stored);
+  const Comparable all_b = kind_of(b.stored).comparable(b.stored, a.stored);
+  if (all_a.item_word != all_b.item_word) refuse(b, a, "case");
+  const Common options = common(all_a.options, all_b.options);
+  if (options.empty()) refuse(b, a, all_a.option_word);
+  const Common items = common(all_a.items, all_b.items);
+  if (items.empty()) refuse(b, a, all_a.item_word);
+  return {kept_part(all_a, positions_in(options, true), positions_in(items, true)),
+          kept_part(all_b, positions_in(options, false), positions_in(items, false)), only_in(all_a.items, all_b.items),
+          only_in(all_b.items, all_a.items)};
+}
+
+void add_comparison(const Comparison& compared, Page& page) {
+  const Comparable& a = compared.a;
+  ArrayPool& pool = page.figures.pool;
+  Section& section = page.add_section("differences", "What differs");
+  section.paragraph(fmt::format(
+      "A and B side by side, for each {} that both have. Changes are from A to B, in percent of A.", a.item_word));
+  for (const auto& [letter, only] : {std::pair("A", &compared.only_a), std::pair("B", &compared.only_b)}) {
+    if (!only->empty()) section.paragraph(fmt::format("Only in {}: {}.", letter, fmt::join(*only, ", ")));
+  }
+  if (!a.totals.empty() && !compared.b.totals.empty()) section.table(totals_table(compared));
+  add_figure(page, section, "side-by-side", bars_of(compared, pool), "A and B side by side" + order_of(a) + ".");
   std::vector<Table> tables;
-  for (std::size_t option = 0; option < compared.options.size(); ++option) tables.push_back(table_of(compared, option));
+  for (std::size_t option = 0; option < a.options.size(); ++option) tables.push_back(table_of(compared, option));
   section.table(tables.front());
-  tables.erase(tables.begin());
-  section.folded(fmt::format("The same for every other {}", compared.option_word), tables);
-  page.sections.push_back(std::move(section));
-  if (compared.items.size() < 2) return;
-  Section agreement("agreement", "Where A and B agree");
-  agreement.paragraph(fmt::format("Each point is one {}. On the line A and B are equal.", compared.item_word));
+  section.folded(fmt::format("The same for every other {}", a.option_word), std::span(tables).subspan(1));
+  if (a.items.size() < 2) return;
+  Section& agreement = page.add_section("agreement", "Where A and B agree");
+  agreement.paragraph(fmt::format("Each point is one {}. On the line A and B are equal.", a.item_word));
   add_figure(page, agreement, "agreement", scatter_of(compared, pool), "A across, B upwards.");
-  page.sections.push_back(std::move(agreement));
 }
 
 }  // namespace poesy

@@ -1,20 +1,122 @@
 #include "engine/report/html/figures.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "engine/base/contract.h"
 
 namespace poesy {
+
+using Json = nlohmann::ordered_json;
+
+// Found by the JSON library through their arguments, for lists of these parts as well.
+
+static void to_json(Json& json, const Choice& choice) { json = {{"label", choice.label}, {"options", choice.options}}; }
+
+static void to_json(Json& json, const Coordinate& coordinate) {
+  json = {{"name", coordinate.name}, {"unit", coordinate.unit}, {"value", coordinate.value}};
+}
+
+static void to_json(Json& json, const BarQuantity& quantity) {
+  const auto name_or_null = [](const ArrayName& name) { return name.empty() ? Json(nullptr) : Json(name); };
+  Json units = Json::array();
+  for (const std::vector<std::string>& unit : quantity.units) {
+    units.push_back(unit.size() == 1 ? Json(unit.front()) : Json(unit));  // a list where items differ
+  }
+  json = {{"label", quantity.label},
+          {"units", std::move(units)},
+          {"value", quantity.value},
+          {"low", name_or_null(quantity.low)},
+          {"high", name_or_null(quantity.high)}};
+}
+
+static void to_json(Json& json, const HeatLayer& layer) {
+  json = {{"label", layer.label}, {"unit", layer.unit}, {"value", layer.value}};
+  if (layer.signed_values) json["signed"] = true;
+}
+
+static void to_json(Json& json, const Field& field) {
+  json = {{"label", field.label}, {"unit", field.unit}, {"value", field.value}};
+  if (!field.rows.empty()) json["rows"] = field.rows;
+  if (field.signed_values) json["signed"] = true;
+}
+
+static void to_json(Json& json, const Series& series) {
+  json = {{"label", series.label}, {"value", series.value}, {"style", series.style}};
+  if (!series.low.empty()) json["low"] = series.low;
+  if (!series.high.empty()) json["high"] = series.high;
+}
+
+static void to_json(Json& json, const Panel& panel) {
+  json = {{"label", panel.label}, {"unit", panel.unit}, {"series", panel.series}};
+}
+
+static void to_json(Json& json, const Mark& mark) { json = {{"label", mark.label}, {"value", mark.value}}; }
+
+static void to_json(Json& json, const Bars& bars) {
+  json = {{"type", "bars"},
+          {"choices", bars.choices},
+          {"quantities", bars.quantities},
+          {"items", bars.items},
+          {"sort", bars.sorted ? "value" : "none"}};
+  if (!bars.series.empty()) json["series"] = bars.series;
+}
+
+static void to_json(Json& json, const HeatMap& map) {
+  Json columns{{"label", map.column_label}, {"coordinates", map.coordinates}};
+  if (!map.numbers.empty()) columns["numbers"] = map.numbers;
+  if (!map.order.empty()) columns["order"] = map.order;
+  json = {{"type", "heatmap"}, {"layers", map.layers}, {"rows", map.rows}, {"columns", std::move(columns)}};
+}
+
+static void to_json(Json& json, const WorkspaceMap& workspace) {
+  json = {{"type", "workspace"}, {"coordinates", workspace.coordinates}, {"fields", workspace.fields}};
+  if (!workspace.numbers.empty()) json["numbers"] = workspace.numbers;
+}
+
+static void to_json(Json& json, const Lines& lines) {
+  json = {{"type", "lines"},
+          {"x", {{"label", lines.x.name}, {"unit", lines.x.unit}, {"value", lines.x.value}, {"log", lines.log}}},
+          {"panels", lines.panels},
+          {"most", lines.most},
+          {"marks", lines.marks}};
+}
+
+static void to_json(Json& json, const Scatter& scatter) {
+  const auto axis = [](const auto& of) { return Json{{"label", of.first}, {"value", of.second}}; };
+  json = {{"type", "scatter"},    {"choices", scatter.choices}, {"x", axis(scatter.x)},
+          {"y", axis(scatter.y)}, {"units", scatter.units},     {"names", scatter.names}};
+}
+
 namespace {
 
 constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 float shown(double value) {
   return std::isfinite(value) ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
+}
+
+std::string base64_floats(const std::vector<float>& values) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(4 * values.size());
+  for (const float value : values) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::byte>(bits >> shift));
+  }
+  return base64(bytes);
+}
+
+/// In JSON "<" stands in strings alone, where it may be written by its number.
+std::string without_tags(const std::string& text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char character : text) safe += character == '<' ? std::string("\\u003c") : std::string(1, character);
+  return safe;
 }
 
 }  // namespace
@@ -41,6 +143,17 @@ std::string base64(std::span<const std::byte> bytes) {
     for (std::size_t n = 0; n < 4; ++n) text += n <= count ? kDigits[group >> (18 - 6 * n) & 63] : '=';
   }
   return text;
+}
+
+std::string figures_json(const FigureSet& set) {
+  Json figures = Json::object();
+  for (const auto& [key, figure] : set.figures) {
+    figures[key] = std::visit([](const auto& one) { return Json(one); }, figure);
+  }
+  Json arrays = Json::object();
+  for (const auto& [name, values] : set.pool.arrays()) arrays[name] = base64_floats(values);
+  const Json all{{"about", set.about}, {"figures", std::move(figures)}, {"arrays", std::move(arrays)}};
+  return without_tags(all.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace poesy

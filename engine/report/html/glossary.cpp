@@ -1,9 +1,8 @@
-#include "engine/report/html/glossary.h"
-
 #include <algorithm>
 
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
+#include "engine/report/html/sections.h"
 
 namespace poesy {
 namespace {
@@ -31,9 +30,7 @@ Table table_of(std::string name, std::string word, std::string caption, const st
   Table table{.name = std::move(name),
               .caption = std::move(caption),
               .columns = {text_column("name", std::move(word)), text_column("unit", "unit"),
-                          text_column("description", "what it is")},
-              .rows = {},
-              .notes = {}};
+                          text_column("description", "what it is")}};
   for (const NamedUnit& thing : things) {
     table.rows.push_back({text_cell(thing.name), text_cell(unit_text(thing)), text_cell(thing.description)});
   }
@@ -49,9 +46,7 @@ void add_responses(const StoredResult& result, Page& page) {
   for (const std::size_t r : result.signed_headline) {
     if (std::ranges::find(shown, r) == shown.end()) shown.push_back(r);
   }
-  Section section("what-is-measured", "What is measured");
-  section.definitions(definitions(result, shown));
-  page.sections.push_back(std::move(section));
+  page.add_section("what-is-measured", "What is measured").definitions(definitions(result, shown));
 }
 
 void add_glossary(const StoredResult& result, Page& page) {
@@ -59,11 +54,10 @@ void add_glossary(const StoredResult& result, Page& page) {
   const std::vector<NamedUnit>& coordinates = result.pose_coordinates;
   if (!described(errors) && !described(coordinates)) return;
   for (const NamedUnit& error : errors) page.figures.about.emplace(error.name, error.description);
-  Section section("names", "What the names mean");
+  Section& section = page.add_section("names", "What the names mean");
   if (described(coordinates))
     section.table(table_of("coordinates", "coordinate", "Coordinates of a pose", coordinates));
   if (described(errors)) section.table(table_of("errors", "error", "Errors", errors));
-  page.sections.push_back(std::move(section));
 }
 
 }  // namespace poesy

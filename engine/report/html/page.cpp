@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/io/version.h"
-#include "engine/report/html/assets.h"
-#include "engine/report/html/html_table.h"
 #include "engine/report/html/markup.h"
 #include "engine/report/html/report.h"
 
@@ -94,7 +94,12 @@ Section& Section::table(const Table& table) {
   return *this;
 }
 
-Section& Section::folded(std::string_view summary, const std::vector<Table>& tables) {
+Section& Section::table(std::span<const Table> tables, std::string_view name) {
+  const auto at = std::ranges::find(tables, name, &Table::name);
+  return at == tables.end() ? *this : table(*at);
+}
+
+Section& Section::folded(std::string_view summary, std::span<const Table> tables) {
   if (tables.empty()) return *this;
   body_ += "<details>" + element("summary", summary) + "\n";
   for (const Table& one : tables) body_ += html_table(one);
@@ -105,6 +110,10 @@ Section& Section::folded(std::string_view summary, const std::vector<Table>& tab
 Section& Section::folded_text(std::string_view summary, std::string_view text) {
   body_ += fmt::format("<details>{}\n{}</details>\n", element("summary", summary), element("pre", text));
   return *this;
+}
+
+Section& Page::add_section(std::string id, std::string heading) {
+  return sections.emplace_back(std::move(id), std::move(heading));
 }
 
 std::string html_document(const Page& page) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <deque>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,6 +11,11 @@
 #include "engine/report/table.h"
 
 namespace poesy {
+
+/// What a report's page is made of, with its own text: "d3.js", "plot.js", "report.js" (to be run in this order) and
+/// "report.css". Each may stand inside a script or style element as it is; scripts of others begin with their licences.
+/// Another name is a broken contract, and empty where contracts are not checked.
+std::string_view asset(std::string_view name);
 
 /// A section of the report under a heading. All texts are plain ones, escaped here.
 class Section {
@@ -24,10 +31,12 @@ class Section {
   Section& figure(std::string_view key, std::string_view caption);
   /// Adds it, open.
   Section& table(const Table& table);
+  /// Adds the one of this name, where there is one.
+  Section& table(std::span<const Table> tables, std::string_view name);
   /// Tables that are open only when the reader asks for them.
-  Section& folded(std::string_view summary, const std::vector<Table>& tables);
+  Section& folded(std::string_view summary, std::span<const Table> tables);
   /// Adds one that the reader may unfold.
-  Section& folded(std::string_view summary, const Table& table) { return folded(summary, std::vector{table}); }
+  Section& folded(std::string_view summary, const Table& table) { return folded(summary, std::span(&table, 1)); }
   /// A long text as it stands, open only when the reader asks for it.
   Section& folded_text(std::string_view summary, std::string_view text);
 
@@ -48,8 +57,11 @@ struct Page {
   std::string title;                  ///< of the study, or of the result
   std::string subtitle;               ///< what stands below the title
   std::vector<std::string> warnings;  ///< what a reader must know first
-  std::vector<Section> sections;      ///< in order
+  std::deque<Section> sections;       ///< in order
   FigureSet figures;                  ///< of all sections
+
+  /// Adds an empty one behind the others. The reference holds as long as the page.
+  Section& add_section(std::string id, std::string heading);
 };
 
 /// The page as one HTML document that needs no other file.

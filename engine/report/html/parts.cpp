@@ -3,36 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "engine/base/units.h"
-#include "engine/report/ranking.h"
-#include "engine/report/tables.h"
+#include "engine/report/display.h"
+#include "engine/report/kinds.h"
 
 namespace poesy {
-namespace {
-
-Coordinate time_axis(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
-  return {"time", "s", pool.add("axis_time", shown.at_poses(result.time))};
-}
-
-Coordinate number_axis(const ShownCells& shown, ArrayPool& pool) {
-  const std::vector<double> numbers(shown.poses.begin(), shown.poses.end());
-  return {"pose number", "", pool.add("axis_number", numbers)};
-}
-
-/// Numbers that figures by pose show of each response at each pose.
-std::size_t rows_of_cells(const StoredResult& result) {
-  constexpr std::size_t kSummaries = 4;  // mean or median, quantiles and the like
-  std::size_t rows = kSummaries;
-  if (result.kind == "sensitivity") rows = result.factors.size() * (result.time.empty() ? 1 : 2);
-  if (result.kind == "coupling") rows = result.coupling.found.sizes * (2 * result.coupling.found.subsets + 3);
-  if (result.kind == "evaluate" && !result.cases.empty()) rows = result.cases.size();
-  return std::max<std::size_t>(rows, 1);
-}
-
-}  // namespace
 
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions) {
   std::vector<std::string> list;
@@ -55,19 +30,6 @@ std::vector<std::size_t> response_order(const StoredResult& result) {
   return order;
 }
 
-std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
-                                                  std::span<const std::size_t> factors) {
-  std::vector<std::vector<std::string>> units;
-  for (const std::size_t r : responses) {
-    std::vector<std::string> of_items;
-    for (const std::size_t p : factors) {
-      of_items.push_back(fmt::format("{}/{}", display(result.responses[r]).name, display(result.factors[p]).name));
-    }
-    units.push_back(std::move(of_items));
-  }
-  return units;
-}
-
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses) {
   std::vector<std::vector<std::string>> units;
@@ -82,43 +44,6 @@ std::string order_by_effect(bool mixed) {
 
 bool mixed_units(const std::vector<NamedUnit>& things) {
   return std::ranges::any_of(things, [&](const NamedUnit& one) { return one.unit != things[0].unit; });
-}
-
-std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,
-                                     std::size_t count, std::span<const double> levels) {
-  std::vector<double> values;
-  for (std::size_t at = first; at < first + count; ++at) {
-    if (solved(found.status[at])) values.push_back(found.response[response * found.poses * found.samples + at]);
-  }
-  std::ranges::sort(values);
-  std::vector<double> list;
-  for (const double level : levels) {
-    const double at = std::round(level * (static_cast<double>(values.size()) - 1.0));
-    list.push_back(values.empty() ? std::nan("") : values[static_cast<std::size_t>(at)]);
-  }
-  return list;
-}
-
-double share_not_converged(const SolveCounts& solves) {
-  if (solves.total() == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
-}
-
-SolveCounts sum_of(std::span<const SolveCounts> solves) {
-  SolveCounts sum;
-  for (const SolveCounts& one : solves) sum.merge(one);
-  return sum;
-}
-
-std::vector<Table> take_tables(std::vector<Table>& tables, std::span<const std::string_view> names) {
-  std::vector<Table> taken;
-  for (const std::string_view name : names) {
-    const auto at = std::ranges::find(tables, name, &Table::name);
-    if (at == tables.end()) continue;
-    taken.push_back(std::move(*at));
-    tables.erase(at);
-  }
-  return taken;
 }
 
 std::vector<double> ShownCells::at_poses(std::span<const double> values) const {
@@ -147,16 +72,15 @@ std::string ShownCells::note() const {
   return text;
 }
 
-ShownCells shown_cells(const StoredResult& result) {
-  // Norms have no sign and cannot tell what cancels, so of a coupling they are no loss.
-  const bool coupling = result.kind == "coupling";
-  const std::size_t rows = rows_of_cells(result);
+ShownCells shown_cells(const StoredResult& result, std::size_t rows,
+                       std::optional<std::vector<std::size_t>> responses) {
+  rows = std::max<std::size_t>(rows, 1);
   ShownCells shown;
-  shown.responses = coupling ? result.signed_headline : response_order(result);
+  shown.responses = responses ? *responses : response_order(result);
   shown.all_responses = shown.responses.size();
   shown.all_poses = result.poses.size();
   const bool all = rows * shown.all_poses * shown.all_responses <= ShownCells::kMostWithAllResponses;
-  if (!all && !coupling) shown.responses = headline_order(result);
+  if (!all && !responses) shown.responses = headline_order(result);
   const std::size_t layers = std::max<std::size_t>(shown.responses.size(), 1);
   const std::size_t most =
       std::max<std::size_t>(1, std::min(ShownCells::kMostInLayer / rows, ShownCells::kMost / (rows * layers)));
@@ -165,39 +89,95 @@ ShownCells shown_cells(const StoredResult& result) {
   return shown;
 }
 
-std::vector<Coordinate> pose_coordinates(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
-  std::vector<Coordinate> coordinates;
-  for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
-    const NamedUnit& named = result.pose_coordinates[c];
-    const std::vector<double> values = shown.at_poses(result.poses.column(c));
-    coordinates.push_back(
-        {named.name, unit_text(named), pool.add(fmt::format("pose/{}", c), values, display(named).si)});
+PoseFigures::PoseFigures(const StoredResult& result, Page& page)
+    : result_(result), page_(page), shown_(kind_of(result).shown_cells(result)) {}
+
+void PoseFigures::add_note(Section& section) const {
+  if (const std::string note = shown_.note(); !note.empty()) section.paragraph(note);
+}
+
+ArrayName PoseFigures::add(const std::string& name, std::span<const double> values, double unit) const {
+  return page_.figures.pool.add(name, shown_.at_poses(values), unit);
+}
+
+ArrayName PoseFigures::add(const std::string& name, std::span<const double> values, const NamedUnit& response) const {
+  return add(name, values, display(response).si);
+}
+
+Coordinate PoseFigures::time_axis() const { return {"time", "s", add("axis_time", result_.time)}; }
+
+Coordinate PoseFigures::number_axis() const {
+  const std::vector<double> numbers(shown_.poses.begin(), shown_.poses.end());
+  return {"pose number", "", page_.figures.pool.add("axis_number", numbers)};
+}
+
+ArrayName PoseFigures::numbers() const { return shown_.thinned() ? number_axis().value : ArrayName(); }
+
+std::vector<Coordinate> PoseFigures::coordinates() const {
+  std::vector<Coordinate> list;
+  for (std::size_t c = 0; c < result_.pose_coordinates.size(); ++c) {
+    const NamedUnit& named = result_.pose_coordinates[c];
+    list.push_back({named.name, unit_text(named), add(fmt::format("pose/{}", c), result_.poses.column(c), named)});
   }
-  return coordinates;
+  return list;
 }
 
-std::vector<Coordinate> column_coordinates(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
-  std::vector<Coordinate> coordinates = pose_coordinates(result, shown, pool);
-  if (!result.time.empty()) coordinates.push_back(time_axis(result, shown, pool));
-  return coordinates;
+Coordinate PoseFigures::axis() const { return result_.time.empty() ? number_axis() : time_axis(); }
+
+HeatMap PoseFigures::heat_map(std::vector<HeatLayer> layers, std::vector<std::string> rows, std::string order) const {
+  std::vector<Coordinate> columns = coordinates();
+  if (!result_.time.empty()) columns.push_back(time_axis());
+  return {std::move(layers), std::move(rows), "pose", std::move(columns), numbers(), std::move(order)};
 }
 
-ArrayName pose_numbers(const ShownCells& shown, ArrayPool& pool) {
-  return shown.thinned() ? number_axis(shown, pool).value : ArrayName();
+void PoseFigures::add_condition(std::vector<Field>& fields) const {
+  if (result_.condition.empty()) return;
+  fields.push_back({"condition number of the pose", "", add("condition", result_.condition)});
 }
 
-Coordinate pose_axis(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
-  return result.time.empty() ? number_axis(shown, pool) : time_axis(result, shown, pool);
+Field PoseFigures::not_converged(std::span<const double> shares) const {
+  return {"not converged", "%", add("not_converged_poses", shares, 0.01)};
 }
 
-Field pose_field(const std::string& array, std::string label, std::string unit, std::span<const double> values,
-                 const ShownCells& shown, ArrayPool& pool, double scale) {
-  return {std::move(label), std::move(unit), pool.add(array, shown.at_poses(values), scale)};
+void PoseFigures::add_workspace(Section& section, std::vector<Field> fields, std::string_view caption,
+                                const std::string& key) const {
+  add_figure(page_, section, key, WorkspaceMap{coordinates(), std::move(fields), numbers()}, caption);
 }
 
-std::vector<Field> condition_field(const StoredResult& result, const ShownCells& shown, ArrayPool& pool) {
-  if (result.condition.empty()) return {};
-  return {pose_field("condition", "condition number of the pose", "", result.condition, shown, pool)};
+Course course_of(const ConvergenceResult& found) {
+  Course course{found.milestones, found.quantity, found.quantity, found.quantity};
+  for (std::size_t at = 0; at < found.quantity.size(); ++at) {
+    course.low[at] -= found.half_width[at];
+    course.high[at] += found.half_width[at];
+  }
+  return course;
+}
+
+Series series_of(const Course& course, std::size_t at, double unit, std::string label, const std::string& array,
+                 ArrayPool& pool) {
+  const std::size_t numbers = course.samples.size();
+  const auto add = [&](const std::string& suffix, const std::vector<double>& all) {
+    return pool.add(array + suffix, std::span(all).subspan(at * numbers, numbers), unit);
+  };
+  return {std::move(label), add("", course.value), add("_low", course.low), add("_high", course.high)};
+}
+
+Lines over_samples(const Course& course, ArrayPool& pool) {
+  const std::vector<double> samples(course.samples.begin(), course.samples.end());
+  return {.x = {"samples at each pose", "", pool.add("axis_samples", samples)}, .panels = {}, .log = true};
+}
+
+Section& add_how_sure(Page& page, std::string heading, double conf_level) {
+  return page.add_section("how-sure", std::move(heading))
+      .paragraph(
+          fmt::format("Intervals are {} ones and speak of the samples alone: other poses, other sizes of errors, and "
+                      "samples that did not converge are not in them.",
+                      percent_text(conf_level)));
+}
+
+void add_limits(std::span<const Table> tables, Page& page) {
+  if (std::ranges::find(tables, "limits", &Table::name) == tables.end()) return;
+  page.add_section("limits", "Are the limits kept").table(tables, "limits");
 }
 
 void add_figure(Page& page, Section& section, const std::string& key, Figure figure, std::string_view caption) {

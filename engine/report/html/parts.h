@@ -2,15 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/io/result_file.h"
-#include "engine/report/display.h"
 #include "engine/report/html/figures.h"
 #include "engine/report/html/page.h"
-#include "engine/report/table.h"
 
 /// What the sections of all kinds of results share.
 namespace poesy {
@@ -22,9 +23,6 @@ std::vector<std::size_t> headline_order(const StoredResult& result);
 /// The same, then all others.
 std::vector<std::size_t> response_order(const StoredResult& result);
 
-/// "mm/deg", for each of these responses and each of these errors.
-std::vector<std::vector<std::string>> index_units(const StoredResult& result, std::span<const std::size_t> responses,
-                                                  std::span<const std::size_t> factors);
 /// "mm", for each of these responses.
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
@@ -32,18 +30,6 @@ std::vector<std::vector<std::string>> response_units(const StoredResult& result,
 std::string order_by_effect(bool mixed);
 /// Whether not all have the same unit.
 bool mixed_units(const std::vector<NamedUnit>& things);
-
-/// Order statistics of a response over these samples (positions pose x samples + sample) that were solved, NaN of none.
-std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,
-                                     std::size_t count, std::span<const double> levels);
-
-/// The share of solves that did not converge; NaN where there is none.
-double share_not_converged(const SolveCounts& solves);
-/// The sum of these.
-SolveCounts sum_of(std::span<const SolveCounts> solves);
-
-/// Takes the tables of these names out of a list, in the order of the names.
-std::vector<Table> take_tables(std::vector<Table>& tables, std::span<const std::string_view> names);
 
 /// Which part of a result's cells goes into its figures, so that a report stays small.
 struct ShownCells {
@@ -65,27 +51,77 @@ struct ShownCells {
   std::string note() const;
 };
 
-/// The part for all figures of a result.
-ShownCells shown_cells(const StoredResult& result);
+/// The numbers that figures by pose show of each response at each pose where they show summaries: mean or median,
+/// quantiles and the like.
+inline constexpr std::size_t kSummaryRows = 4;
 
-/// The poses' coordinates.
-std::vector<Coordinate> pose_coordinates(const StoredResult& result, const ShownCells& shown, ArrayPool& pool);
+/// The part of a result with so many numbers of each response at each pose. responses: those that have to be shown;
+/// none: all, or the headline's.
+ShownCells shown_cells(const StoredResult& result, std::size_t rows,
+                       std::optional<std::vector<std::size_t>> responses = std::nullopt);
 
-/// By what the columns of a heat map may be ordered: the coordinates; on a trajectory the time.
-std::vector<Coordinate> column_coordinates(const StoredResult& result, const ShownCells& shown, ArrayPool& pool);
+/// Makes the figures by pose of a result, of the cells that its kind shows. Refers to the result and the page.
+class PoseFigures {
+ public:
+  /// For one page.
+  PoseFigures(const StoredResult& result, Page& page);
 
-/// The numbers of the poses where they are thinned; else none, for they count from 0.
-ArrayName pose_numbers(const ShownCells& shown, ArrayPool& pool);
+  /// Positions of the responses shown.
+  const std::vector<std::size_t>& responses() const { return shown_.responses; }
+  /// Says in a section what is left out, if anything is.
+  void add_note(Section& section) const;
+  /// Adds values [rows x M] in units of `unit`, those at the poses shown.
+  ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0) const;
+  /// Adds values of a response, SI, in the unit shown.
+  ArrayName add(const std::string& name, std::span<const double> values, const NamedUnit& response) const;
 
-/// What curves over poses have as their x: the time on a trajectory, else the number of the pose.
-Coordinate pose_axis(const StoredResult& result, const ShownCells& shown, ArrayPool& pool);
+  /// What curves over poses have as their x: the time on a trajectory, else the number of the pose.
+  Coordinate axis() const;
+  /// A map of these rows whose columns are the poses, in the order of a trajectory's time or of any coordinate.
+  HeatMap heat_map(std::vector<HeatLayer> layers, std::vector<std::string> rows, std::string order) const;
+  /// Adds the condition number of each pose, where the result has it.
+  void add_condition(std::vector<Field>& fields) const;
+  /// The share of solves that did not converge, [M].
+  Field not_converged(std::span<const double> shares) const;
+  /// Adds poses as dots, coloured by these fields.
+  void add_workspace(Section& section, std::vector<Field> fields,
+                     std::string_view caption = "Each dot is a pose of the study, coloured by what is chosen.",
+                     const std::string& key = "workspace") const;
 
-/// Adds a field of the shown poses, values: [M].
-Field pose_field(const std::string& array, std::string label, std::string unit, std::span<const double> values,
-                 const ShownCells& shown, ArrayPool& pool, double scale = 1.0);
+ private:
+  std::vector<Coordinate> coordinates() const;
+  Coordinate time_axis() const;
+  Coordinate number_axis() const;
+  ArrayName numbers() const;
 
-/// The condition number of each pose, where the result has it.
-std::vector<Field> condition_field(const StoredResult& result, const ShownCells& shown, ArrayPool& pool);
+  const StoredResult& result_;
+  Page& page_;
+  ShownCells shown_;
+};
+
+/// How quantities changed with the number of samples: R responses, P slots, K numbers; SI.
+struct Course {
+  std::vector<std::uint64_t> samples;  ///< [K] at each pose
+  std::vector<double> value;           ///< [R x P x K]
+  std::vector<double> low;             ///< lower ends of the intervals
+  std::vector<double> high;            ///< upper ends
+};
+
+/// The course of a study with adaptive samples.
+Course course_of(const ConvergenceResult& found);
+
+/// The curve of one quantity, at this position of [R x P], with its band, in units of `unit`.
+Series series_of(const Course& course, std::size_t at, double unit, std::string label, const std::string& array,
+                 ArrayPool& pool);
+
+/// The number of samples as the axis of such curves, and no panel yet.
+Lines over_samples(const Course& course, ArrayPool& pool);
+
+/// The section that says how sure quantities are, begun with what their intervals are. heading: "How sure are ...".
+Section& add_how_sure(Page& page, std::string heading, double conf_level);
+
+/// Adds the section on the study's limits, where it states any. tables: of the result.
+void add_limits(std::span<const Table> tables, Page& page);
 
 /// Adds a figure to a page and its place to a section.
 void add_figure(Page& page, Section& section, const std::string& key, Figure figure, std::string_view caption);

@@ -1,35 +1,41 @@
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "engine/report/html/page.h"
 #include "engine/report/html/report.h"
 
-/// The sections of each kind of result: what was found, where, and how sure it is. Each takes the tables that belong to
-/// it and adds its figures to the page.
+/// The sections that results of all kinds have.
 namespace poesy {
 
-/// What a result of this kind found.
-/// @{
-void add_sensitivity(const StoredResult& result, Page& page);
-void add_monte_carlo(const StoredResult& result, Page& page);
-void add_identification(const StoredResult& result, Page& page);
-void add_coupling(const StoredResult& result, Page& page);
-/// @}
-/// Cases, or rows of errors that somebody else sampled.
-void add_evaluation(const StoredResult& result, Page& page);
+/// What a reader of this result must not miss, a sentence or two each: content that was changed, samples that did not
+/// converge, where they are many (report/solves.h), and where they are, errors and poses without a solved sample,
+/// intervals that are wide or were not reached, poses close to singular ones, a first-order fidelity, a commit with
+/// changes of its own.
+std::vector<std::string> warnings(const ReportedResult& result);
 
-/// "How tight must each be", "What calibration can remove" and "Is first order enough", of a sensitivity result that
-/// says so. tables: those of the result; these sections take theirs out.
-void add_tolerances(const StoredResult& result, Page& page);
-/// What a sensitivity result says besides, where it does; its tables are taken out of those given.
-/// @{
-void add_separation(const StoredResult& result, std::vector<Table>& tables, Page& page);
-void add_fidelity(const StoredResult& result, std::vector<Table>& tables, Page& page);
-/// @}
+/// A pose with a larger condition number is called ill-conditioned; a study refuses those above 1e8.
+inline constexpr double kIllConditioned = 1e4;
 
-/// What became of the study's limits, where it states any; its table is taken out of those given.
-void add_limits(std::vector<Table>& tables, Page& page);
+/// The section that comes first: what the responses are, in words. Files of older versions do not say it; then nothing
+/// is added.
+void add_responses(const StoredResult& result, Page& page);
 
-/// How the indices or means of a sampled result settled with the number of samples.
-void add_certainty(const StoredResult& result, std::vector<Table>& tables, Page& page);
+/// The section that has every error and every pose coordinate with its unit and what it is, where the file says it;
+/// figures say it as well, where a reader points at a name.
+void add_glossary(const StoredResult& result, Page& page);
+
+/// The section that tells what was not solved: how solves ended, which rows and poses have how many that did not
+/// converge, and the listed failures with the commands that replay them.
+void add_outcomes(const ReportedResult& result, Page& page);
+
+/// The section that tells what was run, of one result, or of two side by side: what differs, and folded what does not.
+void add_what_was_run(std::span<const ReportedResult> results, Page& page);
+
+/// "A" and "B" of two results.
+inline constexpr std::string_view kLetters[] = {"A", "B"};
 
 }  // namespace poesy

@@ -1,5 +1,3 @@
-#include "engine/report/coupling_table.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

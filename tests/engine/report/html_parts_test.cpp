@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "engine/report/html/figures.h"
-#include "engine/report/html/html_table.h"
 #include "engine/report/html/markup.h"
-#include "engine/report/html/study_facts.h"
-#include "engine/report/not_converged.h"
+#include "engine/report/solves.h"
+#include "engine/report/study_settings.h"
 
 namespace poesy {
 namespace {
@@ -131,7 +130,17 @@ TEST(NotConverged, IsAWarningAboveATenthOfAPercent) {
   }
 }
 
-TEST(StudyFacts, AreFoundInTheirSectionAndMadeReadable) {
+TEST(StudySettings, CountRepeatedSections) {
+  const auto settings = study_settings("title = \"x\"\n[[case]]\nname = \"a\"\n\n[[case]]\nname = \"b\"\n");
+  ASSERT_EQ(settings.size(), 3U);
+  EXPECT_EQ(settings[0].section, "");
+  EXPECT_EQ(settings[1].section, "case 1");
+  EXPECT_EQ(settings[2].section, "case 2");
+  EXPECT_EQ(settings[2].key, "name");
+  EXPECT_EQ(settings[2].value, "\"b\"");
+}
+
+TEST(StudySettings, AreFoundInTheirSectionAndMadeReadable) {
   const std::string text =
       "a = 1\n[errors]\nlinear = { distribution = \"normal\", sigma = \"0.001 m\" }\n[solver]\nmethod = \"newton\"\n";
   EXPECT_EQ(study_setting(text, "solver", "method"), "\"newton\"");

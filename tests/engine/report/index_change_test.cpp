@@ -44,7 +44,7 @@ TEST(IndexChange, NamesErrorsWhoseIndexChangesTheLargestFirst) {
 
 TEST(IndexChange, IsAColumnOfTheRankingAndANote) {
   const StoredResult stored = result({-0.5, 1e-14, -0.991});
-  const Table table = ranked_table(stored, ranked_errors(stored, "x"));
+  const Table table = result_tables(stored, "x").front();
   const auto at = std::ranges::find(table.columns, "index_change", &Column::name) - table.columns.begin();
   ASSERT_LT(static_cast<std::size_t>(at), table.columns.size());
   std::vector<std::string> texts;
@@ -52,7 +52,8 @@ TEST(IndexChange, IsAColumnOfTheRankingAndANote) {
   EXPECT_EQ(texts, (std::vector<std::string>{"0.0", "-99.1", "-50.0", "-"}));  // epsilon_a, delta_c, delta_b, delta_a
   EXPECT_TRUE(std::ranges::count(table.notes, index_change_text(stored, 0)));
   const StoredResult older = ranked_result();
-  for (const Column& column : ranked_table(older, ranked_errors(older, "x")).columns) {
+  const Table of_older = result_tables(older, "x").front();
+  for (const Column& column : of_older.columns) {
     EXPECT_NE(column.name, "index_change");
   }
 }

@@ -13,7 +13,8 @@ namespace {
 std::vector<std::string> names(RowOrder order) {
   const StoredResult result = ranked_result();
   std::vector<std::string> list;
-  for (const std::vector<Cell>& row : ranked_table(result, ranked_errors(result, "x", order)).rows) {
+  const Table table = result_tables(result, "x", order).front();
+  for (const std::vector<Cell>& row : table.rows) {
     list.push_back(row[1].text);
   }
   return list;
@@ -21,7 +22,7 @@ std::vector<std::string> names(RowOrder order) {
 
 TEST(RankedTable, ShowsEffectIndexIntervalAndSigma) {
   const StoredResult result = ranked_result();
-  Table table = ranked_table(result, ranked_errors(result, "x"));
+  Table table = result_tables(result, "x").front();
   table.notes.clear();
   for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + 8, row.begin() + 11);
   table.columns.erase(table.columns.begin() + 8, table.columns.begin() + 11);
@@ -38,7 +39,7 @@ TEST(RankedTable, ShowsEffectIndexIntervalAndSigma) {
 
 TEST(RankedTable, HasTheHeadlinesOtherResponses) {
   const StoredResult result = ranked_result();
-  const Table table = ranked_table(result, ranked_errors(result, "x"));
+  const Table table = result_tables(result, "x").front();
   ASSERT_EQ(table.columns.size(), 12U);  // one without a dimension is none of them
   EXPECT_EQ(table.columns[8].name, "index_tilt");
   EXPECT_EQ(table.columns[8].unit, "deg/unit");
@@ -62,7 +63,7 @@ StoredResult corrected_result() {
 
 TEST(RankedTable, RanksByTheCorrectedIndex) {
   const StoredResult result = corrected_result();
-  const Table table = ranked_table(result, ranked_errors(result, "x"));
+  const Table table = result_tables(result, "x").front();
   EXPECT_EQ(table.columns.back().name, "index_published");
   EXPECT_EQ(table.columns.back().unit, "mm/unit");
   std::vector<std::string> shown;
@@ -74,15 +75,14 @@ TEST(RankedTable, RanksByTheCorrectedIndex) {
             (std::vector<std::string>{"epsilon_a 0.4363 0.8727 0.6981 1.047 1.745", "delta_b 0.2 0.2 0.1 0.3 0.4",
                                       "delta_c 0.1 0.05 0.04 0.06 0.3", "delta_a - - - - -"}));
   EXPECT_TRUE(table.notes[1].starts_with("published: ")) << table.notes[1];
-  EXPECT_NE(ranked_table(ranked_result(), ranked_errors(ranked_result(), "x")).notes[1].find("older poesy"),
-            std::string::npos);
+  EXPECT_NE(result_tables(ranked_result(), "x").front().notes[1].find("older poesy"), std::string::npos);
 }
 
 TEST(RankedTable, SaysWhichErrorsAreTooSmallToTell) {
   StoredResult result = corrected_result();
-  const std::size_t notes = ranked_table(result, ranked_errors(result, "x")).notes.size();
+  const std::size_t notes = result_tables(result, "x").front().notes.size();
   result.factor_sigma[3] = 1e-11;  // of which no index is known
-  const Table table = ranked_table(result, ranked_errors(result, "x"));
+  const Table table = result_tables(result, "x").front();
   EXPECT_EQ(table.rows[3][3].text, "rounding");
   EXPECT_FALSE(table.rows[3][3].value);
   ASSERT_EQ(table.notes.size(), notes + 1);
@@ -105,7 +105,7 @@ TEST(RankedTable, RanksByEffectWhateverTheOrder) {
 
 TEST(RankedTable, PutsAnotherResponseFirst) {
   const StoredResult result = ranked_result();
-  const Table table = ranked_table(result, ranked_errors(result, "tilt"));
+  const Table table = result_tables(result, "tilt").front();
   EXPECT_EQ(table.rows[0][1].text, "epsilon_a");
   EXPECT_EQ(table.rows[0][2].text, "0.35");
   EXPECT_EQ(table.columns[8].heading, "x");
@@ -122,7 +122,7 @@ TEST(RankedTable, IsReadableAtEightyColumnsWithManyResponses) {
     }
   }
   found.responses = 12;
-  const std::string text = text_of(ranked_table(result, ranked_errors(result, "x")), 80);
+  const std::string text = text_of(result_tables(result, "x").front(), 80);
   std::size_t begin = 0;
   for (std::size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin)) {
     EXPECT_LE(end - begin, 80U) << text;

@@ -17,8 +17,9 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
   result.sensitivity.responses = 1;
   result.sensitivity.factors = 3;
   result.sensitivity.global = {1.0, 0.5, 0.0};
-  const RankedErrors ranked = ranked_errors(result, "position");
-  EXPECT_FALSE(separation_table(result, ranked));
+  result.sensitivity.global_ci_low = result.sensitivity.global;
+  result.sensitivity.global_ci_high = result.sensitivity.global;
+  EXPECT_EQ(result_tables(result, "position").size(), 1U);
   SeparationResult& found = result.sensitivity.separation.emplace();
   const double none = std::numeric_limits<double>::quiet_NaN();
   found.drive_share = {1.0, 0.25, none};
@@ -26,7 +27,7 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
   found.removable_together = 0.4321;
   result.separation_measure = "how far the platform moves";
   result.published_class = {"compensable", "non-compensable", ""};
-  EXPECT_EQ(text_of(separation_table(result, ranked).value(), kUnlimitedWidth),
+  EXPECT_EQ(text_of(result_tables(result, "position").at(1), kUnlimitedWidth),
             "What calibration can remove of each error's effect, to first order, over the poses\n"
             "                                drive  removable by\n"
             "rank  error    published class  share   calibration\n"

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <vector>
 
+#include "engine/report/display.h"
+
 namespace poesy {
 namespace {
 
@@ -112,6 +114,20 @@ TEST(TextTable, ShowsNoControlCharacterOfANameOrNote) {
                     .rows = {{{"delta\x1b]0;x\x07", std::nullopt}}},
                     .notes = {"b\x1b[2J"}};
   EXPECT_EQ(text_of(table, kUnlimitedWidth), "a?[1m\nerror\ndelta?]0;x?\nb?[2J\n");
+}
+
+TEST(Fill, GivesEachPositionARowWithTheCellsOfTheColumns) {
+  const std::vector<std::string> names{"a", "b", "c"};
+  Table table{.name = "t", .caption = "c", .columns = {}};
+  fill(table, {2, 0},
+       {{text_column("name", "name"), [&](std::size_t n) { return text_cell(names[n]); }},
+        {number_column("n", "n"), [](std::size_t n) { return count_cell(n); }}});
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(table.columns[1].name, "n");
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0][0].text, "c");
+  EXPECT_EQ(table.rows[1][1].value, 0.0);
+  EXPECT_EQ(positions(3), (std::vector<std::size_t>{0, 1, 2}));
 }
 
 }  // namespace

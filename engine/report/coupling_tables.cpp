@@ -1,19 +1,18 @@
-#include "engine/report/coupling_table.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/report/display.h"
+#include "engine/report/study_settings.h"
+#include "engine/report/tables.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
 
-/// Values up to this are rounding at a size, see engine/run/coupling.h.
 double rounding_at(const StoredCoupling& stored, std::size_t z) {
-  return kIndexRounding * std::fmax(stored.linear[z], stored.angular[z]);  // passes over NaN
+  return size_rounding(stored.linear[z], stored.angular[z]);
 }
 
 Cell place_cell(const StoredResult& result, bool known, std::int64_t pose) {
@@ -55,17 +54,14 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   Table table{
       .name = fmt::format("coupling_{}_{}", z + 1, response.name),
       .caption = fmt::format("{}: {} [{}]", stored.size_names[z], response.name, unit),
-      .columns = {text_column("subset", "subset"), number_column("effect_max", "largest effect", unit),
-                  number_column("effect_max_pose", "at pose", "", 1),
-                  text_column("effect_max_where", "largest where", 4),
-                  number_column("root_sum_square_max", "root sum square", unit),
-                  number_column("worst_case_max", "worst case", unit),
-                  number_column("interaction_max", "interaction", unit), percent_column("opposed_share", "opposed", 3),
-                  percent_column("cancellation_max", "cancellation", 2),
-                  number_column("cancellation_max_pose", "at pose", "", 2),
-                  text_column("cancellation_max_where", "cancelled where", 4)},
-      .rows = {},
-      .notes = {}};
+      .columns = {
+          text_column("subset", "subset"), number_column("effect_max", "largest effect", unit),
+          number_column("effect_max_pose", "at pose", "", 1), text_column("effect_max_where", "largest where", 4),
+          number_column("root_sum_square_max", "root sum square", unit),
+          number_column("worst_case_max", "worst case", unit), number_column("interaction_max", "interaction", unit),
+          percent_column("opposed_share", "opposed", 3), percent_column("cancellation_max", "cancellation", 2),
+          number_column("cancellation_max_pose", "at pose", "", 2),
+          text_column("cancellation_max_where", "cancelled where", 4)}};
   for (std::size_t k = 0; k < found.subsets; ++k) {
     table.rows.push_back(subset_row(result, r, (r * found.sizes + z) * found.subsets + k));
   }
@@ -88,7 +84,7 @@ bool does_nothing(const StoredResult& result, const std::string& source) {
 
 /// Whether each limb has the same errors, as the stored study, complete as it is, says.
 bool same_in_all_limbs(const StoredResult& result) {
-  return result.study_text.find("\nlimbs = \"all\"\n") != std::string::npos;
+  return study_setting(result.study_text, "analysis", "limbs") == "\"all\"";
 }
 
 std::vector<std::string> notes(const StoredResult& result) {
@@ -114,7 +110,7 @@ std::vector<std::string> notes(const StoredResult& result) {
 
 }  // namespace
 
-std::vector<Table> coupling_tables(const StoredResult& result) {
+std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions&) {
   std::vector<Table> tables;
   for (std::size_t z = 0; z < result.coupling.found.sizes; ++z) {
     for (const std::size_t r : result.signed_headline) tables.push_back(response_table(result, z, r));

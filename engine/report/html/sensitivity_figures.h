@@ -6,9 +6,19 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/result_file.h"
+#include "engine/report/kinds.h"
 
+/// What the page of a sensitivity result and that of two share.
 namespace poesy {
+
+/// Indices [R x P] in the units shown and the order of response_order: as effects, index x sigma, or as they are.
+std::vector<double> in_shown_units(const StoredResult& result, const std::vector<double>& indices, bool as_effect);
+
+/// Their units, "mm" or "mm/deg": for each response one, or one of each error.
+std::vector<std::vector<std::string>> units_of_indices(const StoredResult& result, bool as_effect);
+
+/// Local indices x sigma of one response, [P x M], SI.
+std::vector<double> local_effects(const StoredResult& result, std::size_t response);
 
 /// A pose coordinate, or its magnitude, by which poses may be put in order.
 struct PoseOrder {
@@ -33,5 +43,11 @@ std::optional<PoseOrder> explaining_order(const StoredResult& result, std::span<
 /// How the columns of a heat map of these values [P x M] stand at first: the name of the order that explains their root
 /// sum squares; empty, as they come, where there is none, and on a trajectory, whose poses have an order already.
 std::string first_order(const StoredResult& result, std::span<const double> values);
+
+/// The indices, and all errors together; by the published estimator where one of both has no other.
+Comparable comparable_sensitivity(const StoredResult& result, const StoredResult& other);
+
+/// The sections of two results: their rankings, what differs, and where in the workspace.
+void compare_sensitivity(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page& page);
 
 }  // namespace poesy

@@ -1,4 +1,4 @@
-#include "engine/report/html/study_facts.h"
+#include "engine/report/study_settings.h"
 
 #include <map>
 
@@ -25,19 +25,6 @@ std::string readable_quoted(std::string_view quoted) {
 
 }  // namespace
 
-std::string study_setting(std::string_view study_text, std::string_view section, std::string_view key) {
-  std::string_view current;
-  while (!study_text.empty()) {
-    const std::string_view line = take_line(study_text);
-    if (line.starts_with('[') && line.ends_with(']')) {
-      current = line.substr(1, line.size() - 2);
-    } else if (current == section && line.starts_with(key) && line.substr(key.size()).starts_with(" = ")) {
-      return std::string(line.substr(key.size() + 3));
-    }
-  }
-  return {};
-}
-
 std::vector<StudySetting> study_settings(std::string_view study_text) {
   std::vector<StudySetting> list;
   std::map<std::string, std::size_t> repeated;
@@ -50,25 +37,32 @@ std::vector<StudySetting> study_settings(std::string_view study_text) {
       section = name + " " + std::to_string(++repeated[name]);
     } else if (line.starts_with('[') && line.ends_with(']')) {
       section = line.substr(1, line.size() - 2);
-    } else if (!section.empty() && equals != std::string_view::npos) {
-      list.push_back({section + "." + std::string(line.substr(0, equals)), readable_setting(line.substr(equals + 3))});
+    } else if (equals != std::string_view::npos) {
+      list.push_back({section, std::string(line.substr(0, equals)), std::string(line.substr(equals + 3))});
     }
   }
   return list;
 }
 
-std::string readable_setting(std::string_view setting) {
+std::string study_setting(std::string_view study_text, std::string_view section, std::string_view key) {
+  for (const StudySetting& setting : study_settings(study_text)) {
+    if (setting.section == section && setting.key == key) return setting.value;
+  }
+  return {};
+}
+
+std::string readable_setting(std::string_view value) {
   std::string text;
-  while (!setting.empty()) {
-    const char first = setting.front();
-    const std::size_t end = first == '"' ? setting.find('"', 1) : std::string_view::npos;
+  while (!value.empty()) {
+    const char first = value.front();
+    const std::size_t end = first == '"' ? value.find('"', 1) : std::string_view::npos;
     if (end != std::string_view::npos) {
-      text += readable_quoted(setting.substr(1, end - 1));
-      setting.remove_prefix(end + 1);
+      text += readable_quoted(value.substr(1, end - 1));
+      value.remove_prefix(end + 1);
       continue;
     }
     if (first != '{' && first != '}') text += first;
-    setting.remove_prefix(1);
+    value.remove_prefix(1);
   }
   const std::size_t begin = text.find_first_not_of(' ');
   return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') - begin + 1);

@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
 #include "engine/report/display.h"
-#include "engine/report/html/parts.h"
-#include "engine/report/html/sections.h"
-#include "engine/report/tables.h"
+#include "engine/report/kinds.h"
 
 namespace poesy {
 namespace {
+
+std::vector<std::string> group_names(const StoredResult& result) {
+  std::vector<std::string> names;
+  for (const ErrorSize& group : result.groups) names.push_back(group.name);
+  return names;
+}
 
 /// Of counts of poses [G x P], the share of all poses, or of all but these.
 std::vector<double> share_of_poses(const IdentificationResult& found, const std::vector<std::uint64_t>& counts,
@@ -21,8 +25,7 @@ std::vector<double> share_of_poses(const IdentificationResult& found, const std:
 
 Bars bars_of(const StoredResult& result, ArrayPool& pool) {
   const IdentificationResult& found = result.identification;
-  Choice sizes{"size of the errors", {}};
-  for (const ErrorSize& group : result.groups) sizes.options.push_back(group.name);
+  const Choice sizes{"size of the errors", group_names(result)};
   const std::vector<std::vector<std::string>> percent(found.groups, {"%"});
   const auto quantity = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
     return BarQuantity{std::move(label), percent, pool.add(array, shares, 0.01)};
@@ -36,11 +39,9 @@ Bars bars_of(const StoredResult& result, ArrayPool& pool) {
           names_of(result.factors)};
 }
 
-}  // namespace
-
-void add_identification(const StoredResult& result, Page& page) {
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
   const IdentificationResult& found = result.identification;
-  Section section("which-errors-deform", "Which errors deform the mechanism");
+  Section& section = page.add_section("which-errors-deform", "Which errors deform the mechanism");
   section.paragraph(fmt::format(
       "Each error was set alone, and then together with those of its frame that do not deform alone, at {}. An error "
       "is harmless where nothing deforms by more than {:.3g}, which is rounding, at {} of the {} poses; a pose that "
@@ -50,8 +51,37 @@ void add_identification(const StoredResult& result, Page& page) {
       count_text(found.poses)));
   add_figure(page, section, "deforming", bars_of(result, page.figures.pool),
              "At how many of the poses each error deforms the mechanism.");
-  for (const Table& table : result_tables(result, default_ranking(result))) section.table(table);
-  page.sections.push_back(std::move(section));
+  for (const Table& table : tables) section.table(table);
 }
+
+SolveTally tally(const StoredResult& result) { return {"", {"all errors"}, 1, {result.identification.solves}}; }
+
+StudyWords words(const StoredResult& result) { return {.sizes = group_names(result)}; }
+
+ShownCells cells(const StoredResult& result) { return shown_cells(result, kSummaryRows); }
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const IdentificationResult& found = result.identification;
+  std::vector<double> percent;
+  for (const std::uint64_t below : found.single_below) {
+    percent.push_back(100.0 - 100.0 * static_cast<double>(below) / static_cast<double>(found.poses));
+  }
+  return {.option_word = "size of the errors",
+          .options = group_names(result),
+          .item_word = "error",
+          .items = names_of(result.factors),
+          .quantities = {{"poses where the error deforms alone", "deforms",
+                          std::vector<std::vector<std::string>>(found.groups, {"%"}), std::move(percent)}}};
+}
+
+}  // namespace
+
+constinit const ReportKind kIdentificationReport{.name = "identification",
+                                                 .tally = tally,
+                                                 .tables = identification_tables,
+                                                 .words = words,
+                                                 .shown_cells = cells,
+                                                 .page = add_page,
+                                                 .comparable = comparable};
 
 }  // namespace poesy

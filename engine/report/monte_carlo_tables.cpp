@@ -25,31 +25,27 @@ std::string quantile_name(double level) {
 std::string quantile_heading(double level) { return "q_" + shortest(level); }
 
 /// The lowest quantiles go first, then the smallest value; mean, spread and what is high stay.
-std::vector<Column> overall_columns(const std::vector<double>& levels) {
-  std::vector<Column> columns{text_column("response", "response"), text_column("unit", "unit"),
-                              number_column("mean", "mean"),       number_column("std", "std"),
-                              number_column("rms", "rms"),         number_column("min", "min", "", 1)};
-  for (std::size_t q = 0; q < levels.size(); ++q) {
-    const std::size_t higher = levels.size() - 1 - q;
-    const int dispensable = higher == 0 ? 0 : 1 + static_cast<int>(higher);
-    columns.push_back(number_column(quantile_name(levels[q]), quantile_heading(levels[q]), "", dispensable));
-  }
-  columns.push_back(number_column("max", "max"));
-  return columns;
-}
-
-std::vector<Cell> overall_row(const StoredResult& result, std::size_t r) {
+std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   const MonteCarloResult& found = result.monte_carlo;
-  const Unit& unit = display(result.responses[r]);
-  std::vector<Cell> row{text_cell(result.responses[r].name), text_cell(unit.name)};
-  const auto add = [&](double value) { row.push_back(number_cell(value / unit.si, kDigits)); };
-  add(found.overall_mean[r]);
-  add(found.overall_std[r]);
-  add(found.overall_rms[r]);
-  add(found.overall_min[r]);
-  for (std::size_t q = 0; q < found.levels.size(); ++q) add(found.overall_quantiles[r * found.levels.size() + q]);
-  add(found.overall_max[r]);
-  return row;
+  const auto number = [&result](std::string name, std::string heading, const std::vector<double>& values,
+                                int dispensable = 0, std::size_t stride = 1, std::size_t offset = 0) {
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
+                        [&result, &values, stride, offset](std::size_t r) {
+                          return value_cell(values[r * stride + offset], result.responses[r], kDigits);
+                        }};
+  };
+  std::vector<FilledColumn> columns{
+      name_column(result.responses, "response"),  unit_column(result.responses),
+      number("mean", "mean", found.overall_mean), number("std", "std", found.overall_std),
+      number("rms", "rms", found.overall_rms),    number("min", "min", found.overall_min, 1)};
+  const std::size_t levels = found.levels.size();
+  for (std::size_t q = 0; q < levels; ++q) {
+    const int dispensable = q + 1 == levels ? 0 : static_cast<int>(levels - q);
+    columns.push_back(number(quantile_name(found.levels[q]), quantile_heading(found.levels[q]), found.overall_quantiles,
+                             dispensable, levels, q));
+  }
+  columns.push_back(number("max", "max", found.overall_max));
+  return columns;
 }
 
 /// Precondition: there are poses and quantiles.
@@ -59,14 +55,13 @@ Table overall_table(const StoredResult& result) {
               .caption = fmt::format("{} together: responses over the samples of {}{}",
                                      counted(result.factors.size(), "error varies", "errors vary"),
                                      found.poses == 1 ? "" : "all ", counted(found.poses, "pose", "poses")),
-              .columns = overall_columns(found.levels),
-              .rows = {},
+              .columns = {},
               .notes = {fmt::format(
                   "{} at each pose; std: standard deviation; rms: root mean square; {}: {} of the samples lie "
                   "below it (quantiles to {} of their value)",
                   counted(found.solves.front().total(), "sample", "samples"), quantile_heading(found.levels.back()),
                   percent_text(found.levels.back()), percent_text(found.quantile_relative_error))}};
-  for (const std::size_t r : result.headline) table.rows.push_back(overall_row(result, r));
+  fill(table, result.headline, overall_columns(result));
   return table;
 }
 
@@ -166,15 +161,13 @@ Table poses_table(const StoredResult& result) {
                   number_column("mean_of_means", "mean of means"), number_column("largest_mean", "largest mean"),
                   number_column("largest_mean_pose", "at pose"), number_column(name, "largest " + heading),
                   number_column("largest_quantile_pose", "at pose"), number_column(name + "_low", "low", "", 1),
-                  number_column(name + "_high", "high", "", 1), number_column("poses_like_it", "poses like it")},
-      .rows = {},
-      .notes = {}};
+                  number_column(name + "_high", "high", "", 1), number_column("poses_like_it", "poses like it")}};
   for (const std::size_t r : result.headline) table.rows.push_back(poses_row(result, r));
   if (found.quantiles_ci_low.empty()) return table;
   table.notes.push_back(
       fmt::format("low, high: {} interval of the largest {}, from order statistics; inf: too few samples for an end. "
-                  "poses like it: "
-                  "other poses whose interval reaches above low",
+                  "poses like it: other "
+                  "poses whose interval reaches above low",
                   percent_text(found.conf_level), heading));
   for (const std::size_t r : result.headline) {
     if (std::string text = alike_text(result, r); !text.empty()) table.notes.push_back(std::move(text));
@@ -184,10 +177,16 @@ Table poses_table(const StoredResult& result) {
 
 }  // namespace
 
-std::vector<Table> monte_carlo_tables(const StoredResult& result) {
+std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
   const MonteCarloResult& found = result.monte_carlo;
-  if (found.poses == 0 || found.levels.empty()) return {};
-  return {overall_table(result), poses_table(result)};
+  std::vector<Table> tables;
+  if (std::optional<Table> limits = limits_table(result)) tables.push_back(std::move(*limits));
+  if (found.poses > 0 && !found.levels.empty()) {
+    tables.push_back(overall_table(result));
+    tables.push_back(poses_table(result));
+  }
+  if (std::optional<Table> convergence = convergence_table(result)) tables.push_back(std::move(*convergence));
+  return tables;
 }
 
 }  // namespace poesy

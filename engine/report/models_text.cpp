@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+std::string chart_text(const PoseChart& chart) {
+  std::string text = fmt::format("\nposes may be given by {}\n", chart.name);
+  for (const PoseCoordinate& coordinate : chart.coordinates) {
+    text += fmt::format("  {:<16} {:>8} {}\n", coordinate.name, si_unit(coordinate.dimension), coordinate.description);
+  }
+  return text;
+}
+
+std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
+  const PoseChart& chart = model.charts[curve.chart];
+  std::string origin;
+  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
+    origin += (c > 0 ? ", " : "") + readable_text({curve.origin[c], chart.coordinates[c].dimension});
+  }
+  return fmt::format("  {:<16} {}; t from {} to {} s, by {}, from the origin ({}) unless the study sets it\n",
+                     curve.name, curve.description, curve.start, curve.end, chart.name, origin);
+}
+
+/// The responses, by which metric where there is one.
+std::string responses_text(const ModelDescription& model) {
+  std::string text = "\nresponses";
+  if (!model.metric.empty()) text += fmt::format(" by [solver] metric = \"{}\"", model.metric);
+  text += model.metric == "published" ? ", which a study without the key has\n" : "\n";
+  for (const Response& response : model.responses) {
+    text += fmt::format("  {:<20} {:>4} {}\n", response.name, si_unit(response.dimension), response.description);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string models_text(const Catalog& catalog) {
+  std::string text;
+  for (const CatalogEntry& entry : catalog) {
+    text += fmt::format("{:<12} {}\n", entry.description.name, entry.description.title);
+  }
+  return text;
+}
+
+std::string model_text(const CatalogEntry& entry) {
+  const ModelDescription& model = entry.description;
+  std::string text = fmt::format("{}: {}\n\ngeometry (change it in [mechanism] geometry)\n", model.name, model.title);
+  for (const GeometryParameter& parameter : model.geometry) {
+    const Unit& unit = display_unit(parameter.dimension);
+    text += fmt::format("  {:<16} {:>8.6g} {:<4} {}\n", parameter.name, parameter.published / unit.si, unit.name,
+                        parameter.description);
+  }
+  if (!model.fidelities.empty()) {
+    text += "\nfidelity (choose it in [mechanism]; the first is the default)\n";
+    for (const std::string& fidelity : model.fidelities) text += "  " + fidelity + "\n";
+  }
+  text += "\npose coordinates and default workspace\n";
+  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    const Unit& unit =
+        coordinate.dimension == Dimension::angle ? *find_unit("rad") : display_unit(coordinate.dimension);
+    text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
+                        model.pose_upper[c] / unit.si, unit.name, coordinate.description);
+  }
+  text += fmt::format("  {}\n", model.workspace_note);
+  for (const PoseChart& chart : model.charts) text += chart_text(chart);
+  if (!model.curves.empty()) text += "\ncurves (select = \"trajectory\")\n";
+  for (const NamedCurve& curve : model.curves) text += curve_text(curve, model);
+  text += "\nfactor sets\n";
+  for (const FactorSet& set : model.factor_sets) {
+    text += fmt::format("  {:<16} {:>8} {}\n", set.name, set.factors.size(), set.description);
+  }
+  if (!model.sources.empty()) text += "\nsources of errors (of a coupling study that names none)\n";
+  for (const CouplingSource& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
+  text += "\nerror factors\n";
+  for (const Factor& factor : model.factors) {
+    text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
+  }
+  text += responses_text(model);
+  if (entry.by_platform) text += responses_text(entry.by_platform->description);
+  text += "\ndetails (given by `poesy evaluate`)\n";
+  for (const Detail& detail : model.details) {
+    text += fmt::format("  {:<20} {:>4} {}\n", detail.name, detail.components.size(), detail.description);
+  }
+  return text;
+}
+
+}  // namespace poesy

@@ -1,0 +1,144 @@
+#include "engine/report/solves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/text.h"
+#include "engine/report/display.h"
+#include "engine/report/kinds.h"
+#include "engine/report/study_settings.h"
+#include "engine/report/text_table.h"
+
+namespace poesy {
+namespace {
+
+/// max_not_converged of the study behind a result; 1 where its text does not say.
+double max_not_converged(const StoredResult& result) {
+  const std::string text = study_setting(result.study_text, "solver", "max_not_converged");
+  double share = 1.0;
+  std::from_chars(text.data(), text.data() + text.size(), share);
+  return share;
+}
+
+/// Why numbers cannot be trusted where too many solves did not converge; empty below.
+std::string doubt_text(double share) {
+  if (!(share > kManyNotConverged)) return {};
+  return " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where "
+         "they are many. Left out, they make numbers too small, because they are mostly the large errors; included, "
+         "they fill them with unfinished iterates.";
+}
+
+/// " The largest shares: ..." of the rows and of the poses; empty where there is nothing to tell apart.
+std::string largest_shares_text(const StoredResult& result, const SolveTally& tally) {
+  std::vector<std::string> places;
+  const auto add = [&](const std::vector<double>& shares, const auto& name) {
+    const auto at = std::ranges::max_element(shares, {}, [](double share) { return std::isnan(share) ? -1.0 : share; });
+    places.push_back(fmt::format("{} {}", name(static_cast<std::size_t>(at - shares.begin())), percent_text(*at)));
+  };
+  if (tally.names.size() > 1) add(tally.shares_by_row(), [&](std::size_t row) { return tally.names[row]; });
+  if (tally.poses > 1) add(tally.shares_by_pose(), [&](std::size_t m) { return place_text(result, m); });
+  return places.empty() ? std::string() : fmt::format(" The largest shares: {}.", fmt::join(places, "; "));
+}
+
+std::string count_line(std::uint64_t failed, std::uint64_t solves) {
+  const double share = solves == 0 ? 0.0 : static_cast<double>(failed) / static_cast<double>(solves);
+  return fmt::format("{} of {} ({}) did not converge", count_text(failed), counted(solves, "solve", "solves"),
+                     percent_text(share));
+}
+
+/// What is known one by one are the failures of the first fidelity.
+std::string line_of_both(const StoredResult& result, const SolveCounts& first, const SecondFidelity& second) {
+  return fmt::format("{}: {} at fidelity \"{}\", {} at \"{}\"",
+                     count_line(first.not_converged() + second.not_converged, first.total() + second.total),
+                     count_text(first.not_converged()), result.fidelities[0], count_text(second.not_converged),
+                     result.fidelities[1]);
+}
+
+/// Which of the failures the result lists.
+std::string listed_text(const StoredResult& result, const SolveTally& tally, std::uint64_t failed) {
+  const std::size_t listed = listed_failures(result).size();
+  const std::string of = tally.second ? fmt::format(" at \"{}\"", result.fidelities[0]) : "";
+  if (listed == failed) return fmt::format("lists {}{}", failed == 1 ? "it" : "all " + count_text(failed), of);
+  return fmt::format("lists {} of the {}{} (at most {} of each {}pose, and {} in all)", count_text(listed),
+                     count_text(failed), of, FailedSamples::kMost,
+                     tally.row_word.empty() ? "" : fmt::format("{} and ", tally.row_word),
+                     count_text(kMostFailuresListed));
+}
+
+std::vector<double> shares_of(const std::vector<SolveCounts>& sums) {
+  std::vector<double> list;
+  list.reserve(sums.size());
+  for (const SolveCounts& sum : sums) list.push_back(share_not_converged(sum));
+  return list;
+}
+
+}  // namespace
+
+bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves) {
+  return static_cast<double>(failed) >
+         unremarkable_failure_share(max_not_converged(result)) * static_cast<double>(solves);
+}
+
+SolveCounts SolveTally::total() const {
+  SolveCounts sum;
+  for (const SolveCounts& cell : cells) sum.merge(cell);
+  return sum;
+}
+
+std::vector<double> SolveTally::shares() const { return shares_of(cells); }
+
+std::vector<double> SolveTally::shares_by_row() const {
+  std::vector<SolveCounts> sums(names.size());
+  for (std::size_t at = 0; at < cells.size(); ++at) sums[at / poses].merge(cells[at]);
+  return shares_of(sums);
+}
+
+std::vector<double> SolveTally::shares_by_pose() const {
+  std::vector<SolveCounts> sums(poses);
+  for (std::size_t at = 0; at < cells.size(); ++at) sums[at % poses].merge(cells[at]);
+  return shares_of(sums);
+}
+
+SolveTally tally_of(const StoredResult& result) { return kind_of(result).tally(result); }
+
+double share_not_converged(const SolveCounts& solves) {
+  if (solves.total() == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
+}
+
+std::string at_first_fidelity(const StoredResult& result) {
+  return result.fidelities.empty() ? std::string() : fmt::format(" at fidelity \"{}\"", result.fidelities[0]);
+}
+
+std::string unsolved_text(const StoredResult& result, const SolveTally& tally) {
+  const SolveCounts total = tally.total();
+  const double share = share_not_converged(total);
+  return fmt::format("{} of {} solves{} ({}) did not converge.{}{}", count_text(total.not_converged()),
+                     count_text(total.total()), at_first_fidelity(result), percent_text(share), doubt_text(share),
+                     largest_shares_text(result, tally));
+}
+
+std::string failures_text(const StoredResult& result, const std::string& path, std::size_t width) {
+  const SolveTally tally = tally_of(result);
+  const SolveCounts solves = tally.total();
+  std::string text = prose_of(
+      tally.second ? line_of_both(result, solves, *tally.second) : count_line(solves.not_converged(), solves.total()),
+      width);
+  if (listed_failures(result).empty()) return text;
+  const Failure& first = listed_failures(result).front();
+  const std::string name = printable(varied_name(result, first.slot), std::string::npos);
+  const std::string pose = std::to_string(first.pose.value);
+  const std::string sample = std::to_string(first.failed.sample.value);
+  text +=
+      prose_of(fmt::format("the first of them (error, pose, sample): {} {} {}, {}; failures.csv of 'poesy export' {}",
+                           name, pose, sample, kStatusNames[static_cast<std::size_t>(first.failed.status)],
+                           listed_text(result, tally, solves.not_converged())),
+               width);
+  return text + "replay it: " + shell_command({"poesy", "replay", path, name, pose, sample}) + "\n";
+}
+
+}  // namespace poesy
