@@ -78,7 +78,7 @@ std::optional<Table> convergence_table(const StoredResult& result) {
       .name = "convergence",
       .caption = fmt::format("Convergence: {} of {} {} have a {:.3g} % interval within +-{:.3g} % of their value, {}",
                              all - missing.size(), all, indices ? "global indices" : "overall means",
-                             100.0 * found.conf_level, 100.0 * found.relative_error, samples_text(found)),
+                             100.0 * found.course.conf_level, 100.0 * found.relative_error, samples_text(found)),
       .columns = {text_column("error", "error"), text_column("response", "response"),
                   percent_column("half_width", "half the interval"),
                   number_column("samples_needed", "samples that would do, about")},

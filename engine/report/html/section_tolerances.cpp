@@ -7,7 +7,6 @@
 #include "engine/report/index_change.h"
 #include "engine/report/tables.h"
 #include "engine/report/tolerance_table.h"
-#include "engine/run/sensitivity.h"
 
 namespace poesy {
 namespace {
@@ -43,8 +42,7 @@ void add_tolerances(const StoredResult& result, Page& page) {
     page.sections.push_back(std::move(section));
     return;
   }
-  ResponseTolerances found{
-      response, tolerances(response_study(result.sensitivity, result.factor_sigma, response), reference), std::nullopt};
+  ResponseTolerances found = stored_tolerances(result, response);
   found.caveat = wrong_sizes_text(result, found);
   section.paragraph(fmt::format(
       "Tolerances, as standard deviations of normal errors, with which every error has the same effect on {}: the "

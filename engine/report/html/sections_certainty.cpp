@@ -11,44 +11,36 @@
 namespace poesy {
 namespace {
 
-/// How quantities changed with the number of samples: R responses, P slots, K numbers; SI.
-struct Course {
-  std::vector<std::uint64_t> samples;  ///< [K]
-  std::vector<double> value;           ///< [R x P x K]
-  std::vector<double> low;
-  std::vector<double> high;
-};
-
-Course course_of(const ConvergenceResult& found) {
-  Course course{found.milestones, found.quantity, found.quantity, found.quantity};
-  for (std::size_t at = 0; at < found.quantity.size(); ++at) {
-    course.low[at] -= found.half_width[at];
-    course.high[at] += found.half_width[at];
+/// With the ends of its intervals also where it states half-widths.
+EstimateCourse with_ends(EstimateCourse course) {
+  if (course.half_width.empty()) return course;
+  course.ci_low = course.ci_high = course.value;
+  for (std::size_t at = 0; at < course.value.size(); ++at) {
+    course.ci_low[at] -= course.half_width[at];
+    course.ci_high[at] += course.half_width[at];
   }
   return course;
 }
 
-std::optional<Course> course_of(const StoredResult& result) {
+std::optional<EstimateCourse> course_of(const StoredResult& result) {
   const bool indices = result.kind == "sensitivity";
   const auto& adaptive = indices ? result.sensitivity.convergence : result.monte_carlo.convergence;
-  if (adaptive) return course_of(*adaptive);
-  const std::optional<IndexHistory>& history = result.sensitivity.history;
-  if (!indices || !history) return std::nullopt;
-  return Course{history->samples, history->global, history->global_ci_low, history->global_ci_high};
+  if (adaptive) return with_ends(adaptive->course);
+  return indices ? result.sensitivity.history : std::nullopt;
 }
 
 /// The curve of one quantity with its band, in the unit shown.
-Series series_of(const Course& course, std::size_t at, double scale, std::string label, const std::string& array,
-                 ArrayPool& pool) {
+Series series_of(const EstimateCourse& course, std::size_t at, double scale, std::string label,
+                 const std::string& array, ArrayPool& pool) {
   const std::size_t numbers = course.samples.size();
   const auto add = [&](std::string_view suffix, const std::vector<double>& all) {
     return pool.add(array + std::string(suffix), std::span(all).subspan(at * numbers, numbers), 1.0 / scale);
   };
-  return {std::move(label), add("", course.value), add("_low", course.low), add("_high", course.high)};
+  return {std::move(label), add("", course.value), add("_low", course.ci_low), add("_high", course.ci_high)};
 }
 
 /// Of a sensitivity result, effects in the order of importance; of a Monte Carlo result the overall mean.
-Panel panel_of(const StoredResult& result, const Course& course, std::size_t r, ArrayPool& pool) {
+Panel panel_of(const StoredResult& result, const EstimateCourse& course, std::size_t r, ArrayPool& pool) {
   const NamedUnit& response = result.responses[r];
   const double unit = display(response).si;
   const std::string array = fmt::format("samples/{}", r);
@@ -66,7 +58,7 @@ Panel panel_of(const StoredResult& result, const Course& course, std::size_t r, 
   return panel;
 }
 
-Lines lines_of(const StoredResult& result, const Course& course, ArrayPool& pool) {
+Lines lines_of(const StoredResult& result, const EstimateCourse& course, ArrayPool& pool) {
   const std::vector<double> samples(course.samples.begin(), course.samples.end());
   Lines lines{.x = {"samples at each pose", "", pool.add("axis_samples", samples)}, .panels = {}, .log = true};
   for (const std::size_t r : headline_order(result)) lines.panels.push_back(panel_of(result, course, r, pool));
@@ -102,7 +94,7 @@ void add_certainty(const StoredResult& result, std::vector<Table>& tables, Page&
       fmt::format("Intervals are {} ones and speak of the samples alone: other poses, other sizes of errors, and "
                   "samples that did not converge are not in them.",
                   percent_text(indices ? result.sensitivity.conf_level : result.monte_carlo.conf_level)));
-  if (const std::optional<Course> course = course_of(result)) {
+  if (const std::optional<EstimateCourse> course = course_of(result)) {
     section.paragraph(
         indices ? "What a study with fewer samples would have found: curves that have become flat, with narrow bands, "
                   "would not change with more. Effects are index x sigma; errors without effect are left out."
