@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "engine/io/checkpoint.h"
-#include "engine/io/result_format.h"
 
 namespace poesy {
 namespace {
@@ -46,12 +45,11 @@ std::string filetype_of(const h5::File& file) {
 void check_version(const std::string& path, const h5::File& file) {
   const auto version = file.attribute<std::int64_t>("/", "version");
   if (version.size() != 2) throw h5::Error("attribute 'version' is not two numbers");
-  if (version[0] > result_format::kMajor) {
+  if (version[0] > kMajorVersion) {
     throw FileError(
         path,
         "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
-            ", newer than this program's " + std::to_string(result_format::kMajor) + "." +
-            std::to_string(result_format::kMinor),
+            ", newer than this program's " + std::to_string(kMajorVersion) + "." + std::to_string(kMinorVersion),
         "use the poesy that wrote it (" + printable(text_attribute(file, "poesy_version")) + ") or a newer one");
   }
 }
@@ -76,7 +74,7 @@ void check_readable(const std::string& path) {
 h5::File open_poesy_file(const std::string& path) {
   h5::File file = open_hdf5(path);
   const std::string filetype = filetype_of(file);
-  if (filetype != result_format::kFileType && filetype != result_format::kShardFileType) {
+  if (filetype != kResultFile && filetype != kShardFile) {
     throw FileError(path, "is an HDF5 file, but not a result of poesy", kOther);
   }
   check_version(path, file);
@@ -85,7 +83,7 @@ h5::File open_poesy_file(const std::string& path) {
 
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype) {
   if (filetype_of(file) == filetype) return;
-  if (filetype == result_format::kFileType) {
+  if (filetype == kResultFile) {
     throw FileError(path, "is a shard of a study, not a whole result", "put all shards together with poesy merge");
   }
   throw FileError(path, "is a whole result, not a shard of one", "give files that poesy run --shard wrote");

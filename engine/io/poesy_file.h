@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,16 @@
 #include "engine/io/trial_read.h"
 
 namespace poesy {
+
+/// The attribute `filetype` of the root, which says what a file is.
+/// @{
+inline constexpr std::string_view kResultFile = "poesy-result";
+inline constexpr std::string_view kShardFile = "poesy-shard";
+/// @}
+/// A reader refuses a newer major version; a minor version only adds.
+inline constexpr std::int64_t kMajorVersion = 1;
+inline constexpr std::int64_t kMinorVersion =
+    0;  ///< from the first release on grows with what older programs may pass over
 
 /// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, or of a newer major
 /// version; h5::Error when it is damaged in a way that HDF5 reports.

@@ -141,81 +141,10 @@ struct Verification {
 /// Recomputes the content hash of a result file. Throws FileError when it cannot be read as one.
 Verification verify_result(const std::string& path);
 
-/// Writes every table of a result file as CSV into a folder, made if missing; one file per table, first line the column
-/// names with their units. Only the first column may hold text (names of factors), nothing is quoted: in Octave
-/// `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Tables of a sensitivity result:
-///
-///     global.csv           factor | each response's index and interval in SI, then in the units people read: as
-///                               published; then all of that as corrected (see /sensitivity)
-///     index_change.csv     factor | for each response what its index changes by at a tenth of the size
-///     local_RESPONSE.csv   factor | one column a pose, SI
-///     not_converged.csv    factor | one column a pose
-///     factors.csv          factor | standard deviation
-///     failures.csv         factor | pose, sample, status (position in kStatusNames) of the listed failures
-///     poses.csv            pose | time (s) on a trajectory, coordinates, condition number
-///     tolerances_RESPONSE.csv   factor | as /tolerances: 1 if angular else 0, limb, index and interval in SI, share
-///                               of the mean square, index_change, equal-effect tolerance in SI and in the units people
-///                               read ("inf": no effect)
-///
-///     separation.csv            factor | drive_share, removable (see /separation), and for each published class 1 if
-///                               the error belongs to it; where the model separates its errors, as the next four:
-///     separation_drive.csv      factor | one column a pose, SI; like it _constraint, _effect, _residual, _removable
-///     separation_together.csv   errors | removable, of all errors together
-///     fidelity.csv              factor | linear, each response's index by both fidelities, discrepancy, relative
-///                               discrepancy, nonlinearity, SI; where the study compares two, as the next:
-///     fidelity_not_converged.csv   factor | one column a pose, samples that the second fidelity did not solve
-///
-///     history_RESPONSE.csv      factor | samples, index and interval after so many, SI; where the study has a fixed
-///                               number of samples
-///     convergence.csv           factor | samples, and for each response 1 or 0 for reached and the relative
-///     half-width;
-///                               where the study has adaptive samples, as the next:
-///     convergence_RESPONSE.csv  factor | samples at a milestone, index and half-width there, SI
-///
-/// like local_: local_ci_low_, local_ci_high_, count_, mean_, std_; like not_converged: iterations_mean,
-/// iterations_max, solves_STATUS. Tables of an evaluation: poses.csv and
-///
-///     evaluate.csv              pose, sample (or case, pose) | time (s) on a trajectory, responses, details, status
-///                               (position in kStatusNames), iterations
-///     joint_displacements.csv   pose | joints
-///     errors.csv                sample (or pose, row by row, or case) | factors
-///     cases.csv                 case | poses that count, mean and max of each response; where samples are cases
-///     parts.csv                 part | poses that were solved, and of each response the mean over them, the value of
-///     the
-///                               largest magnitude and its pose; where the rows of errors have labels, as the next:
-///
-/// evaluate.csv and errors.csv begin with the column of labels then, called "part" or "name" as in the table of errors.
-///
-/// Tables of an identification: poses.csv, groups.csv (group | sizes), and with a column for each group
-///
-///     identification.csv   factor | verdicts of the single and of both stages, over all groups and for each
-///     single_below.csv     factor | poses; like it: single_max, not_solved, coupled_below, coupled_reduced
-///     couplings.csv        the two factors, "a+b" | group, their rows in identification.csv from 0, poses
-///
-/// Tables of a Monte Carlo result: poses.csv, factors.csv, failures.csv (its factor is "all") and
-///
-///     monte_carlo_RESPONSE.csv   pose | mean, mean_ci_low, mean_ci_high, std, min, max, count, q_0.05 ... (quantiles),
-///                                rms, q_0.05_ci_low, q_0.05_ci_high ... (intervals of the quantiles)
-///     overall.csv                response | mean, std, min, max, count, q_0.05 ..., rms, q_0.05_ci_low ... over the
-///                                samples of all poses, SI; the last column names the unit
-///     histogram_RESPONSE.csv     bin | its ends, and how many samples of all poses it holds
-///     limits.csv                 response | value, limit, passed (1 or 0), tried, within, pose, row (-1: none), unit,
-///     as
-///                                /limits; of any kind of result whose study states limits
-///     not_converged.csv          pose | not_converged, iterations_mean, iterations_max, solves_STATUS
-///     convergence.csv, convergence_RESPONSE.csv   "all" | as for a sensitivity result, with the mean for the index
-///
-/// Tables of a coupling result: poses.csv and
-///
-///     coupling.csv          subset | sizes of the errors, pose, time (s) on a trajectory, and of each response effect,
-///                           interaction, worst_case, root_sum_square and cancellation, SI
-///     coupling_summary.csv  subset | sizes, and of each response the poses behind it, effect_max and its pose,
-///                           interaction_max, worst_case_max, root_sum_square_max, opposed_share, cancellation_max and
-///                           its pose
-///     not_converged.csv     pose | sizes, not_converged, iterations_mean, iterations_max, solves_STATUS of all sets of
-///                           errors that were solved
-///
-/// Returns the paths of the files written. Throws FileError.
+/// Writes every table of a result as CSV into a folder, made if missing: one file per table, first line the column
+/// names with their units. engine/RESULT_FILE.md lists them. Only the first column may hold text (names of factors),
+/// nothing is quoted: in Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns the paths
+/// of the files written. Throws FileError; InputError where a file in the folder is not poesy's.
 std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder);
 /// The same for a result that is still to be read.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);

@@ -7,23 +7,23 @@ namespace {
 
 constexpr std::string_view kByRow = "row";  ///< `judge` of an evaluation
 
-/// One number of each limit.
-template <class T, class Member>
-std::vector<T> each(const LimitVerdicts& verdicts, const Member& member) {
-  std::vector<T> list;
-  for (const LimitVerdict& one : verdicts.limits) list.push_back(static_cast<T>(std::invoke(member, one)));
-  return list;
-}
+const Axes kLimited{"limited_response"};
 
-std::int64_t position_or_none(const std::optional<std::size_t>& position) {
-  return position ? static_cast<std::int64_t>(*position) : -1;
-}
+/// In the order of the columns of limits.csv.
+const Fields<LimitVerdict> kLimitFields{
+    {"value", &LimitVerdict::value, kLimited, kResponseUnit,
+     "What is compared with it, a magnitude; infinite or NaN where too few samples were solved"},
+    {"limit", &LimitVerdict::limit, kLimited, kResponseUnit, "The limit"},
+    {"passed", &LimitVerdict::passed, kLimited, "1", "1: the limit is kept; 0: it is not"},
+    {"tried", &LimitVerdict::tried, kLimited, "1", "Draws at all poses together; of an evaluation its rows of errors"},
+    {"within", &LimitVerdict::within, kLimited, "1",
+     "Of these, those within the limit, a row at each of its poses; what was not solved is not"},
+    {"pose", &LimitVerdict::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
+    {"row", &LimitVerdict::row, kLimited, "1",
+     "Row of errors, or case, of the value, from 0; -1 where there are none"}};
 
-/// The opposite, of a position below `count`.
-std::optional<std::size_t> read_position(std::int64_t stored, std::size_t count) {
-  if (stored < 0) return std::nullopt;
-  if (static_cast<std::size_t>(stored) >= count) throw h5::Error("/limits names a place that does not exist");
-  return static_cast<std::size_t>(stored);
+void check_position(const std::optional<std::size_t>& position, std::size_t count) {
+  if (position && *position >= count) throw h5::Error("/limits names a place that does not exist");
 }
 
 std::size_t position_of(const std::string& response, const StoredResult& result) {
@@ -44,32 +44,17 @@ void describe(h5::File& file, const LimitVerdicts& verdicts) {
 
 }  // namespace
 
-void add_limits(ResultBuilder& result, const ModelDescription& model, const LimitVerdicts& verdicts) {
-  const std::string unit = "SI: response unit, see /responses/unit";
-  const Axes axes{"limited_response"};
+void add_limits(ResultBuilder& result, const ModelDescription& model, const std::optional<LimitVerdicts>& verdicts) {
+  if (!verdicts) return;
   const auto names =
-      each<std::string>(verdicts, [&](const LimitVerdict& one) { return model.responses[one.response].name; });
-  result.add_axis("limited_response", names, {"1", "Name of the response that has a limit"});
+      texts(verdicts->limits, [&](const LimitVerdict& one) { return model.responses[one.response].name; });
+  const Label label{"1", "Name of the response that has a limit"};
+  result.add_axis("limited_response", names, label);
   result.file().make_group("/limits");
-  result.show_axes("/limits", axes);
-  describe(result.file(), verdicts);
-  result.add("/limits/response", axes, names, {"1", "Name of the response that has a limit"});
-  result.add("/limits/limit", axes, each<double>(verdicts, &LimitVerdict::limit), {unit, "The limit"});
-  result.add("/limits/value", axes, each<double>(verdicts, &LimitVerdict::value),
-             {unit, "What is compared with it, a magnitude; infinite or NaN where too few samples were solved"});
-  result.add("/limits/passed", axes, each<std::uint8_t>(verdicts, &LimitVerdict::passed),
-             {"1", "1: the limit is kept; 0: it is not"});
-  result.add("/limits/tried", axes, each<std::uint64_t>(verdicts, &LimitVerdict::tried),
-             {"1", "Draws at all poses together; of an evaluation its rows of errors"});
-  result.add("/limits/within", axes, each<std::uint64_t>(verdicts, &LimitVerdict::within),
-             {"1", "Of these, those within the limit, a row at each of its poses; what was not solved is not"});
-  const auto place = [](std::optional<std::size_t> LimitVerdict::*member) {
-    return [member](const LimitVerdict& one) { return position_or_none(one.*member); };
-  };
-  result.add("/limits/pose", axes, each<std::int64_t>(verdicts, place(&LimitVerdict::pose)),
-             {"1", "Pose of the value, from 0; -1 where it is of all poses"});
-  result.add("/limits/row", axes, each<std::int64_t>(verdicts, place(&LimitVerdict::row)),
-             {"1", "Row of errors, or case, of the value, from 0; -1 where there are none"});
+  result.show_axes("/limits", kLimited);
+  describe(result.file(), *verdicts);
+  result.add("/limits/response", kLimited, names, label);
+  write_columns(result, "/limits", kLimitFields, verdicts->limits);
 }
 
 std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResult& result) {
@@ -80,26 +65,31 @@ std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResul
   if (word != kJudges.end()) verdicts.judge = *word;
   if (word == kJudges.end() && judge != kByRow) throw h5::Error("/limits has the unknown judge '" + judge + "'");
   if (verdicts.judge == Judge::share) verdicts.share = file.attribute<double>("/limits", "share").at(0);
-  const std::size_t count = axis_length(file, "limited_response");
-  const auto names = read_exactly<std::string>(file, "/limits/response", count);
-  const auto limit = read_exactly<double>(file, "/limits/limit", count);
-  const auto value = read_exactly<double>(file, "/limits/value", count);
-  const auto passed = read_exactly<std::uint8_t>(file, "/limits/passed", count);
-  const auto tried = read_exactly<std::uint64_t>(file, "/limits/tried", count);
-  const auto within = read_exactly<std::uint64_t>(file, "/limits/within", count);
-  const auto pose = read_exactly<std::int64_t>(file, "/limits/pose", count);
-  const auto row = read_exactly<std::int64_t>(file, "/limits/row", count);
-  for (std::size_t k = 0; k < count; ++k) {
-    verdicts.limits.push_back({.response = position_of(names[k], result),
-                               .limit = limit[k],
-                               .value = value[k],
-                               .passed = passed[k] != 0,
-                               .tried = tried[k],
-                               .within = within[k],
-                               .pose = read_position(pose[k], result.poses.size()),
-                               .row = read_position(row[k], tried[k])});
+  const auto names = read_along<std::string>(file, "/limits/response", kLimited);
+  verdicts.limits = read_columns(file, "/limits", kLimitFields);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    LimitVerdict& one = verdicts.limits[k];
+    one.response = position_of(names[k], result);
+    check_position(one.pose, result.poses.size());
+    check_position(one.row, one.tried);
   }
   return verdicts;
+}
+
+void append_limit_table(CsvTables& tables, const StoredResult& result, const std::optional<LimitVerdicts>& verdicts) {
+  if (!verdicts) return;
+  const std::vector<LimitVerdict>& limits = verdicts->limits;
+  const auto response = [&](std::size_t line) -> const NamedUnit& { return result.responses[limits[line].response]; };
+  CsvTable table{"limits",
+                 {"response", [response](std::size_t line) { return response(line).name; }},
+                 limits.size(),
+                 {},
+                 {"unit", [response](std::size_t line) { return response(line).unit; }}};
+  for (const FieldRow<LimitVerdict>& field : kLimitFields) {
+    table.columns.push_back(
+        list_column(field.name, limits, 0, 1, [&](const LimitVerdict& one) { return number_at(field, one, 0); }));
+  }
+  tables.push_back(std::move(table));
 }
 
 }  // namespace poesy

@@ -1,74 +1,90 @@
+#include <algorithm>
+
 #include "engine/io/result_parts.h"
 
 namespace poesy {
 namespace {
 
-const Axes kCells{"factor", "pose"};
+const Group<SeparationResult> kSeparation{
+    "/separation",
+    "What the actuators have to do with each error's effect, to first order; NaN where an error has no effect",
+    {},
+    {},
+    {{"drive", &SeparationResult::drive, kByFactorPose, kLengthPerFactorUnit,
+      "Part of the effect that enters through the actuated directions"},
+     {"constraint", &SeparationResult::constraint, kByFactorPose, kLengthPerFactorUnit,
+      "Part of the effect that enters through the constrained directions"},
+     {"effect", &SeparationResult::effect, kByFactorPose, kLengthPerFactorUnit, "The effect: both parts together"},
+     {"residual", &SeparationResult::residual, kByFactorPose, kLengthPerFactorUnit,
+      "What the best correction of the actuators leaves of the effect"},
+     {"removable_local", &SeparationResult::removable_local, kByFactorPose, "1",
+      "Share of the effect that calibration can remove at each pose: 1 - residual / effect"},
+     {"drive_share", &SeparationResult::drive_share, kByFactor, "1",
+      "D / (D + C), with D and C the root mean squares of drive and constraint over the poses"},
+     {"removable", &SeparationResult::removable, kByFactor, "1",
+      "Share that calibration can remove: 1 - residual / effect, both as root mean squares over the poses"},
+     {"removable_together",
+      &SeparationResult::removable_together,
+      {},
+      "1",
+      "The same for all errors together, independent, with the standard deviations of /factors/sigma: "
+      "1 - root of the sum of (sigma x residual)^2 over root of the sum of (sigma x effect)^2"}}};
 
-std::vector<std::string> published_of(const Study& study) {
+/// The published classes that occur, in the order of their first errors.
+std::vector<std::string> classes_of(const StoredResult& result) {
   std::vector<std::string> classes;
-  for (const FactorIndex factor : study.analysis.factors) {
-    classes.push_back(study.model().separation->published[factor.value]);
+  for (const std::string& published : result.published_class) {
+    if (!published.empty() && std::ranges::find(classes, published) == classes.end()) classes.push_back(published);
   }
   return classes;
 }
 
-void add_lengths(ResultBuilder& result, const SeparationResult& found) {
-  const auto add = [&](const char* name, const std::vector<double>& values, const char* description) {
-    result.add(std::string("/separation/") + name, kCells, values, {"SI: m / factor unit", description});
-  };
-  add("drive", found.drive, "Part of the effect that enters through the actuated directions");
-  add("constraint", found.constraint, "Part of the effect that enters through the constrained directions");
-  add("effect", found.effect, "The effect: both parts together");
-  add("residual", found.residual, "What the best correction of the actuators leaves of the effect");
-}
-
-void add_shares(ResultBuilder& result, const SeparationResult& found) {
-  result.add("/separation/removable_local", kCells, found.removable_local,
-             {"1", "Share of the effect that calibration can remove at each pose: 1 - residual / effect"});
-  result.add("/separation/drive_share", {"factor"}, found.drive_share,
-             {"1", "D / (D + C), with D and C the root mean squares of drive and constraint over the poses"});
-  result.add(
-      "/separation/removable", {"factor"}, found.removable,
-      {"1", "Share that calibration can remove: 1 - residual / effect, both as root mean squares over the poses"});
-  result.add_scalar("/separation/removable_together", found.removable_together,
-                    {"1",
-                     "The same for all errors together, independent, with the standard deviations of /factors/sigma: "
-                     "1 - root of the sum of (sigma x residual)^2 over root of the sum of (sigma x effect)^2"});
+CsvTable share_table(const StoredResult& result, const SeparationResult& found) {
+  CsvTable table = lines_of_factors(result, "separation");
+  for (const FieldRow<SeparationResult>& field : kSeparation.fields) {
+    if (field.axes == kByFactor) table.columns.push_back(field_column(field.name, field, found));
+  }
+  for (const std::string& published : classes_of(result)) {
+    table.columns.push_back({"published_" + published, [&result, published](std::size_t p) {
+                               return result.published_class[p] == published ? 1.0 : 0.0;
+                             }});
+  }
+  return table;
 }
 
 }  // namespace
 
-void add_separation(ResultBuilder& result, const Study& study, const SeparationResult& found) {
-  h5::File& file = result.file();
-  file.make_group("/separation");
-  result.show_axes("/separation", {"factor", "pose"});
-  file.set_attribute("/separation", "description",
-                     std::string("What the actuators have to do with each error's effect, to first order; NaN where an "
-                                 "error has no effect"));
-  file.set_attribute("/separation", "measure", study.model().separation->measure);
-  add_lengths(result, found);
-  add_shares(result, found);
-  result.add("/separation/published", {"factor"}, published_of(study),
+void add_separation(ResultBuilder& result, const Study& study, const std::optional<SeparationResult>& found) {
+  if (!found) return;
+  const auto& separation = study.model().separation;
+  write_group(result, kSeparation, *found);
+  result.file().set_attribute("/separation", "measure", separation->measure);
+  const auto published =
+      texts(study.analysis.factors, [&](FactorIndex factor) { return separation->published[factor.value]; });
+  result.add("/separation/published", {"factor"}, published,
              {"1", "Class of the error in the literature; empty where it gives none"});
 }
 
 void read_separation(const h5::File& file, StoredResult& result) {
-  const std::size_t factors = axis_length(file, "factor");
-  const std::size_t cells = factors * axis_length(file, "pose");
-  const auto read = [&](const char* name, std::size_t count) {
-    return read_exactly<double>(file, std::string("/separation/") + name, count);
-  };
-  result.sensitivity.separation = {.drive = read("drive", cells),
-                                   .constraint = read("constraint", cells),
-                                   .effect = read("effect", cells),
-                                   .residual = read("residual", cells),
-                                   .removable_local = read("removable_local", cells),
-                                   .drive_share = read("drive_share", factors),
-                                   .removable = read("removable", factors),
-                                   .removable_together = read("removable_together", 1).front()};
+  if (!file.exists("/separation")) return;
+  read_group(file, kSeparation, result.sensitivity.separation.emplace());
   result.separation_measure = file.attribute<std::string>("/separation", "measure").at(0);
-  result.published_class = read_exactly<std::string>(file, "/separation/published", factors);
+  result.published_class = read_along<std::string>(file, "/separation/published", {"factor"});
+}
+
+void append_separation_tables(CsvTables& tables, const StoredResult& result) {
+  if (!result.sensitivity.separation) return;
+  const SeparationResult& found = *result.sensitivity.separation;
+  tables.push_back(share_table(result, found));
+  for (const FieldRow<SeparationResult>& field : kSeparation.fields) {
+    if (field.axes != kByFactorPose) continue;
+    const bool share = field.name == "removable_local";
+    tables.push_back(cell_table(result, "separation_" + (share ? "removable" : field.name), field, found));
+  }
+  tables.push_back({"separation_together",
+                    {"errors", [](std::size_t) { return std::string("together"); }},
+                    1,
+                    {{"removable", [&found](std::size_t) { return found.removable_together; }}}});
 }
 
 }  // namespace poesy

@@ -9,7 +9,6 @@
 #include "engine/base/text.h"
 #include "engine/io/content_hash.h"
 #include "engine/io/poesy_file.h"
-#include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
 #include "engine/io/version.h"
 
@@ -19,7 +18,7 @@ namespace {
 std::string state_path(std::size_t stage) { return fmt::format("/shard/state_{}", stage + 1); }
 
 StoredShard read_checked(const std::string& path, const h5::File& file) {
-  expect_filetype(path, file, result_format::kShardFileType);
+  expect_filetype(path, file, kShardFile);
   if (stored_hash(file) != content_sha256(file)) {
     throw FileError(path, "was changed since it was written: its content does not have the hash it carries",
                     "take another copy, or run this shard again");

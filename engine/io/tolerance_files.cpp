@@ -6,7 +6,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
-#include "engine/io/export_tables.h"
+#include "engine/io/csv_table.h"
 #include "engine/io/file_writer.h"
 #include "engine/io/held_errors.h"
 #include "engine/io/study_file.h"
@@ -20,15 +20,16 @@ constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
 /// Four standard deviations of a normal error reach as far as its part is large.
 constexpr double kShareOfPart = 0.25;
 
-void write_poses(TableFolder& folder, const StoredResult& result) {
-  std::vector<std::string> columns;
-  for (const NamedUnit& coordinate : result.pose_coordinates) columns.push_back(coordinate.name);
-  folder.write(kPoses, columns, [&](CsvTable& table) {
-    for (std::size_t m = 0; m < result.poses.size(); ++m) {
-      const auto pose = result.poses[PoseIndex(m)];
-      table.row(shortest(pose[0]), pose.subspan(1));
-    }
-  });
+void write_poses(const std::string& folder, const StoredResult& result) {
+  const auto coordinate = [&](std::size_t m, std::size_t c) { return result.poses[PoseIndex(m)][c]; };
+  CsvTable table{kPoses,
+                 {result.pose_coordinates.front().name, [&](std::size_t m) { return shortest(coordinate(m, 0)); }},
+                 result.poses.size()};
+  for (std::size_t c = 1; c < result.pose_coordinates.size(); ++c) {
+    table.columns.push_back(
+        {result.pose_coordinates[c].name, [&coordinate, c](std::size_t m) { return coordinate(m, c); }});
+  }
+  write_csv(folder, table);
 }
 
 /// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
@@ -106,8 +107,7 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
   POESY_EXPECTS(tolerances.limit.has_value());
   Study study = monte_carlo_study(result, catalog);
   make_folder(folder);
-  TableFolder tables(folder);
-  if (study.poses.select == PoseSelection::Select::file) write_poses(tables, result);
+  if (study.poses.select == PoseSelection::Select::file) write_poses(folder, result);
   study.analysis.limits = {{tolerances.response, tolerances.limit->limit}};
   study.analysis.judge = Judge::rms;
   const ErrorModel as_studied = study.errors;

@@ -31,6 +31,9 @@ std::vector<double> largest_tolerances(const StoredResult& result, const Catalog
 /// Whether a sensitivity result holds what tolerances are made of; one of an older version may not.
 bool has_tolerances(const StoredResult& result);
 
+/// Those of one response, counted from the reference that the result states. Precondition: has_tolerances().
+ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response);
+
 /// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
 ///
 ///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the

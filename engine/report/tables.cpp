@@ -179,7 +179,7 @@ std::optional<Table> convergence_table(const StoredResult& result) {
   Table table{
       .name = "convergence",
       .caption = fmt::format("Convergence: {} of {} {} have a {:.3g} % interval within +-{:.3g} % of their value, {}",
-                             all - missing.size(), all, settling->quantities, 100.0 * found.conf_level,
+                             all - missing.size(), all, settling->quantities, 100.0 * found.course.conf_level,
                              100.0 * found.relative_error, samples_text(found)),
       .columns = {text_column("error", "error"), text_column("response", "response"),
                   percent_column("half_width", "half the interval"),

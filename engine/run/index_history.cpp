@@ -10,10 +10,10 @@
 namespace poesy {
 namespace {
 
-void append(const Estimate& estimate, IndexHistory& history) {
-  history.global.push_back(estimate.value);
-  history.global_ci_low.push_back(estimate.interval.low);
-  history.global_ci_high.push_back(estimate.interval.high);
+void append(const Estimate& estimate, EstimateCourse& history) {
+  history.value.push_back(estimate.value);
+  history.ci_low.push_back(estimate.interval.low);
+  history.ci_high.push_back(estimate.interval.high);
 }
 
 }  // namespace
@@ -52,8 +52,9 @@ void HistoryCollector::add(std::size_t cell, std::size_t point, std::span<const 
   }
 }
 
-IndexHistory HistoryCollector::history(const SensitivityResult& end) const {
-  IndexHistory history;
+EstimateCourse HistoryCollector::history(const SensitivityResult& end) const {
+  EstimateCourse history;
+  history.conf_level = conf_level_;
   history.samples.assign(points_.begin(), points_.end());
   const bool ends_at_a_point = !points_.empty() && points_.back() == plan_->samples();
   if (!ends_at_a_point) history.samples.push_back(plan_->samples());

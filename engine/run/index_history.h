@@ -27,7 +27,7 @@ class HistoryCollector {
   /// unit ends at a history point, which is never one of a smaller last unit but the cell's first.
   void add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell);
   /// Precondition: all units of all cells were added. end: what they came to.
-  IndexHistory history(const SensitivityResult& end) const;
+  EstimateCourse history(const SensitivityResult& end) const;
 
   /// What was added, as the state of a collector whose cells hold so many units each.
   void write(ByteWriter& to, std::span<const std::size_t> units_done) const;

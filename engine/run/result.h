@@ -62,32 +62,30 @@ struct FidelityResult {
   std::vector<std::uint64_t> not_converged;  ///< [P x M] samples that the second did not solve
 };
 
-/// How a study with adaptive samples came to its end (engine/run/rounds.h): R responses, P slots (the factors of a
-/// sensitivity study; one in a Monte Carlo study), K milestones. A quantity is a global index in a sensitivity study
-/// and a mean over the samples of all poses in a Monte Carlo study. Its half-width is the larger distance from it to an
-/// end of its interval.
+/// What quantities were after the first samples of each pose: R responses, P slots (the factors of a sensitivity study;
+/// one in a Monte Carlo study), K numbers of samples. A quantity is a global index in a sensitivity study and a mean
+/// over the samples of all poses in a Monte Carlo study. SI. How sure it is, either the ends of its interval say or its
+/// half-width, which is the larger distance from it to one of them; the others are empty.
+struct EstimateCourse {
+  std::vector<std::uint64_t> samples;   ///< [K] at each pose, ascending
+  std::vector<double> value;            ///< [R x P x K] NaN where it is not known
+  std::vector<double> ci_low = {};      ///< [R x P x K] or empty
+  std::vector<double> ci_high = {};     ///< [R x P x K] or empty
+  std::vector<double> half_width = {};  ///< [R x P x K] or empty
+  double conf_level = 0.95;             ///< of the intervals
+};
+
+/// How a study with adaptive samples came to its end (engine/run/rounds.h): R responses, P slots.
 struct ConvergenceResult {
   std::size_t min = 0;          ///< samples at each pose, as the study sets them
   std::size_t max = 0;          ///< samples at each pose, at the most
   double relative_error = 0.0;  ///< that is asked for: half-width over |quantity|
-  double conf_level = 0.95;     ///< of the intervals
-
-  std::vector<std::uint64_t> milestones;    ///< [K] samples at each pose; the last may be max, where nothing is decided
-  std::vector<double> quantity;             ///< [R x P x K] SI; NaN after the slot came to its end
-  std::vector<double> half_width;           ///< [R x P x K] likewise
+  /// At the milestones, with half-widths; the last may be max, where nothing is decided. NaN after a slot came to its
+  /// end.
+  EstimateCourse course;
   std::vector<std::uint8_t> reached;        ///< [R x P] whether the half-width at the end is small enough, 0 or 1
   std::vector<double> relative_half_width;  ///< [R x P] half-width over |quantity| at the end; NaN for 0 / 0
   std::vector<std::uint64_t> samples;       ///< [P] at each pose
-};
-
-/// What the global indices of a study with a fixed number of samples were after the first ones: R responses, P varied
-/// factors, K numbers of samples (engine/study/history_points.h). Each is what a study with exactly so many samples at
-/// each pose would find, bit by bit: a pose where its samples give no index makes it NaN.
-struct IndexHistory {
-  std::vector<std::uint64_t> samples;  ///< [K] at each pose, ascending; the last is the study's number
-  std::vector<double> global;          ///< [R x P x K] SI; the last of each is the result's index
-  std::vector<double> global_ci_low;   ///< [R x P x K]
-  std::vector<double> global_ci_high;  ///< [R x P x K]
 };
 
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined. global is the
@@ -126,8 +124,10 @@ struct SensitivityResult {
   std::optional<FidelityResult> fidelity;      ///< where the study compares two fidelities
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
-  /// Where it has a fixed number of samples; not in files of older versions.
-  std::optional<IndexHistory> history;
+  /// The global indices after fewer samples, where it has a fixed number of them, with intervals: each is what a study
+  /// with exactly so many samples at each pose (engine/study/history_points.h) would find, bit by bit. The last is the
+  /// result's. Not in files of older versions.
+  std::optional<EstimateCourse> history;
 
   /// Over all cells.
   SolveCounts total() const;

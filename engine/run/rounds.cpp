@@ -117,15 +117,16 @@ std::optional<ConvergenceResult> Rounds::result() const {
   result.min = adaptive_->min;
   result.max = max_;
   result.relative_error = adaptive_->relative_error;
-  result.conf_level = rule_.conf_level;
+  EstimateCourse& course = result.course;
+  course.conf_level = rule_.conf_level;
   for (std::size_t k = 0; k < rows_.size(); ++k)
-    result.milestones.push_back(k < milestones_.size() ? milestones_[k] : max_);
+    course.samples.push_back(k < milestones_.size() ? milestones_[k] : max_);
   for (std::size_t r = 0; r < rule_.responses; ++r) {
     for (std::size_t slot = 0; slot < samples_.size(); ++slot) {
       const std::size_t at = cell(r, slot);
       for (const Row& row : rows_) {
-        result.quantity.push_back(row.quantity[at]);
-        result.half_width.push_back(row.half_width[at]);
+        course.value.push_back(row.quantity[at]);
+        course.half_width.push_back(row.half_width[at]);
       }
       const Row& end = row_at_end(slot);
       result.reached.push_back(excess(end, at) <= 1.0 ? 1 : 0);

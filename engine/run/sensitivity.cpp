@@ -130,4 +130,9 @@ ResponseStudy response_study(const SensitivityResult& result, std::span<const do
           .background = part(result.background, result.poses)};
 }
 
+Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma, std::size_t response,
+                               const std::optional<ReferenceError>& reference) {
+  return tolerances(response_study(result, sigma, response), reference);
+}
+
 }  // namespace poesy

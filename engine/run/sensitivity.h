@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "engine/run/evaluate_unit.h"
@@ -32,5 +33,9 @@ double index_rounding(const SensitivityResult& result, std::size_t response, dou
 /// One response of a result, for tolerances, by the published index. sigma: [P] of the errors, as the study sets them.
 /// Refers to both.
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response);
+
+/// The tolerances of one response, counted from this reference; without one those of equal effect are NaN.
+Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma, std::size_t response,
+                               const std::optional<ReferenceError>& reference);
 
 }  // namespace poesy

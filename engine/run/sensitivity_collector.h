@@ -32,7 +32,7 @@ class SensitivityCollector {
   std::vector<UnitStats> cells() &&;
   /// Of the indices, whose last are those of `end`. Precondition: all units were added, those of all cells; the study
   /// has a fixed number of samples.
-  IndexHistory history(const SensitivityResult& end) const { return history_.history(end); }
+  EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
 
   /// Everything added so far.
   Bytes state() const;

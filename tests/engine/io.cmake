@@ -1,6 +1,6 @@
 poesy_test(result_file_test LABELS unit
            SOURCES engine/io/result_file_test.cpp engine/io/result_kinds_test.cpp
-                   engine/io/result_monte_carlo_test.cpp engine/io/result_coupling_test.cpp engine/io/export_test.cpp engine/io/file_writer_test.cpp engine/io/output_folder_test.cpp
+                   engine/io/result_monte_carlo_test.cpp engine/io/result_coupling_test.cpp engine/io/fields_test.cpp engine/io/export_test.cpp engine/io/file_writer_test.cpp engine/io/output_folder_test.cpp
                    engine/io/stored_study_test.cpp engine/io/tolerance_files_test.cpp
                    engine/io/result_fidelity_test.cpp engine/io/result_separation_test.cpp
            LINKS poesy_io DATA)

@@ -146,7 +146,7 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
   Section& section = add_how_sure(page, "How sure are the means", result.monte_carlo.conf_level);
   if (result.monte_carlo.convergence) {
     ArrayPool& pool = page.figures.pool;
-    const Course course = course_of(*result.monte_carlo.convergence);
+    const EstimateCourse course = with_ends(result.monte_carlo.convergence->course);
     Lines lines = over_samples(course, pool);
     for (const std::size_t r : headline_order(result)) {
       const NamedUnit& response = result.responses[r];

@@ -144,25 +144,26 @@ void PoseFigures::add_workspace(Section& section, std::vector<Field> fields, std
   add_figure(page_, section, key, WorkspaceMap{coordinates(), std::move(fields), numbers()}, caption);
 }
 
-Course course_of(const ConvergenceResult& found) {
-  Course course{found.milestones, found.quantity, found.quantity, found.quantity};
-  for (std::size_t at = 0; at < found.quantity.size(); ++at) {
-    course.low[at] -= found.half_width[at];
-    course.high[at] += found.half_width[at];
+EstimateCourse with_ends(EstimateCourse course) {
+  if (course.half_width.empty()) return course;
+  course.ci_low = course.ci_high = course.value;
+  for (std::size_t at = 0; at < course.value.size(); ++at) {
+    course.ci_low[at] -= course.half_width[at];
+    course.ci_high[at] += course.half_width[at];
   }
   return course;
 }
 
-Series series_of(const Course& course, std::size_t at, double unit, std::string label, const std::string& array,
+Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
                  ArrayPool& pool) {
   const std::size_t numbers = course.samples.size();
   const auto add = [&](const std::string& suffix, const std::vector<double>& all) {
     return pool.add(array + suffix, std::span(all).subspan(at * numbers, numbers), unit);
   };
-  return {std::move(label), add("", course.value), add("_low", course.low), add("_high", course.high)};
+  return {std::move(label), add("", course.value), add("_low", course.ci_low), add("_high", course.ci_high)};
 }
 
-Lines over_samples(const Course& course, ArrayPool& pool) {
+Lines over_samples(const EstimateCourse& course, ArrayPool& pool) {
   const std::vector<double> samples(course.samples.begin(), course.samples.end());
   return {.x = {"samples at each pose", "", pool.add("axis_samples", samples)}, .panels = {}, .log = true};
 }

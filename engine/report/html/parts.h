@@ -99,23 +99,15 @@ class PoseFigures {
   ShownCells shown_;
 };
 
-/// How quantities changed with the number of samples: R responses, P slots, K numbers; SI.
-struct Course {
-  std::vector<std::uint64_t> samples;  ///< [K] at each pose
-  std::vector<double> value;           ///< [R x P x K]
-  std::vector<double> low;             ///< lower ends of the intervals
-  std::vector<double> high;            ///< upper ends
-};
-
-/// The course of a study with adaptive samples.
-Course course_of(const ConvergenceResult& found);
+/// With the ends of its intervals also where it states half-widths.
+EstimateCourse with_ends(EstimateCourse course);
 
 /// The curve of one quantity, at this position of [R x P], with its band, in units of `unit`.
-Series series_of(const Course& course, std::size_t at, double unit, std::string label, const std::string& array,
+Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
                  ArrayPool& pool);
 
 /// The number of samples as the axis of such curves, and no panel yet.
-Lines over_samples(const Course& course, ArrayPool& pool);
+Lines over_samples(const EstimateCourse& course, ArrayPool& pool);
 
 /// The section that says how sure quantities are, begun with what their intervals are. heading: "How sure are ...".
 Section& add_how_sure(Page& page, std::string heading, double conf_level);

@@ -199,15 +199,13 @@ void add_where(const StoredResult& result, Page& page) {
 }
 
 /// With fewer samples; none where an older version wrote the result.
-std::optional<Course> course_of(const StoredResult& result) {
-  if (result.sensitivity.convergence) return course_of(*result.sensitivity.convergence);
-  const std::optional<IndexHistory>& history = result.sensitivity.history;
-  if (!history) return std::nullopt;
-  return Course{history->samples, history->global, history->global_ci_low, history->global_ci_high};
+std::optional<EstimateCourse> course_of(const StoredResult& result) {
+  if (result.sensitivity.convergence) return with_ends(result.sensitivity.convergence->course);
+  return result.sensitivity.history;
 }
 
 /// Effects on each response in the order of importance.
-Lines effects_over_samples(const StoredResult& result, const Course& course, ArrayPool& pool) {
+Lines effects_over_samples(const StoredResult& result, const EstimateCourse& course, ArrayPool& pool) {
   Lines lines = over_samples(course, pool);
   for (const std::size_t r : headline_order(result)) {
     const NamedUnit& response = result.responses[r];
@@ -225,7 +223,7 @@ Lines effects_over_samples(const StoredResult& result, const Course& course, Arr
 
 void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
   Section& section = add_how_sure(page, "How sure are the indices", result.sensitivity.conf_level);
-  if (const std::optional<Course> course = course_of(result)) {
+  if (const std::optional<EstimateCourse> course = course_of(result)) {
     section.paragraph(
         "What a study with fewer samples would have found: curves that have become flat, with narrow bands, would not "
         "change with more. Effects are index x sigma; errors without effect are left out.");
@@ -270,8 +268,7 @@ void add_tolerances(const StoredResult& result, Page& page) {
     section.paragraph(fmt::format("No error has an effect on {}, so nothing can be said about tolerances.", name));
     return;
   }
-  ResponseTolerances found{
-      response, tolerances(response_study(result.sensitivity, result.factor_sigma, response), reference), std::nullopt};
+  ResponseTolerances found = stored_tolerances(result, response);
   found.caveat = wrong_sizes_text(result, found);
   section.paragraph(fmt::format(
       "Tolerances, as standard deviations of normal errors, with which every error has the same effect on {}: the "

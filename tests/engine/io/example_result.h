@@ -84,7 +84,7 @@ class Example {
     }
     if (!study.analysis.adaptive) {
       result.history = {{50, 100}, numbered(array, 2), numbered(array + 1, 2), numbered(array + 2, 2)};
-      result.history->global_ci_high.back() = std::numeric_limits<double>::quiet_NaN();
+      result.history->ci_high.back() = std::numeric_limits<double>::quiet_NaN();
     }
     result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::iteration_cap}},
                        {1, PoseIndex(3), {SampleIndex(99), SolveStatus::non_finite}}};

@@ -16,16 +16,17 @@ void expect_same(const ConvergenceResult& found, const ConvergenceResult& expect
   EXPECT_EQ(found.min, expected.min);
   EXPECT_EQ(found.max, expected.max);
   EXPECT_EQ(found.relative_error, expected.relative_error);
-  EXPECT_EQ(found.conf_level, expected.conf_level);
-  EXPECT_EQ(found.milestones, expected.milestones);
+  EXPECT_EQ(found.course.conf_level, expected.course.conf_level);
+  EXPECT_EQ(found.course.samples, expected.course.samples);
   EXPECT_EQ(found.reached, expected.reached);
   EXPECT_EQ(found.relative_half_width, expected.relative_half_width);
   EXPECT_EQ(found.samples, expected.samples);
-  ASSERT_EQ(found.quantity.size(), expected.quantity.size());
-  for (std::size_t k = 0; k < found.quantity.size(); ++k) {
-    const bool ended = std::isnan(expected.quantity[k]);
-    EXPECT_TRUE(ended ? std::isnan(found.quantity[k]) : found.quantity[k] == expected.quantity[k]);
-    EXPECT_TRUE(ended ? std::isnan(found.half_width[k]) : found.half_width[k] == expected.half_width[k]);
+  ASSERT_EQ(found.course.value.size(), expected.course.value.size());
+  for (std::size_t k = 0; k < found.course.value.size(); ++k) {
+    const bool ended = std::isnan(expected.course.value[k]);
+    EXPECT_TRUE(ended ? std::isnan(found.course.value[k]) : found.course.value[k] == expected.course.value[k]);
+    EXPECT_TRUE(ended ? std::isnan(found.course.half_width[k])
+                      : found.course.half_width[k] == expected.course.half_width[k]);
   }
 }
 
@@ -46,10 +47,10 @@ TEST_F(ConvergenceFile, OfASensitivityResult) {
   result.convergence = {.min = 1000,
                         .max = 2500,
                         .relative_error = 0.25,
-                        .conf_level = 0.95,
-                        .milestones = {1000, 2500},
-                        .quantity = {8.0, kNaN, 4.0, 4.5, 2.0, kNaN, 1.0, 1.5},
-                        .half_width = {1.0, kNaN, 2.0, 1.5, 0.5, kNaN, 0.5, 0.25},
+                        .course = {.samples = {1000, 2500},
+                                   .value = {8.0, kNaN, 4.0, 4.5, 2.0, kNaN, 1.0, 1.5},
+                                   .half_width = {1.0, kNaN, 2.0, 1.5, 0.5, kNaN, 0.5, 0.25},
+                                   .conf_level = 0.95},
                         .reached = {1, 0, 1, 1},
                         .relative_half_width = {0.125, 1.0 / 3.0, 0.25, 0.0625},
                         .samples = {1000, 2500}};
@@ -77,10 +78,10 @@ TEST_F(ConvergenceFile, OfAMonteCarloResult) {
   result.convergence = {.min = 1000,
                         .max = 2500,
                         .relative_error = 0.25,
-                        .conf_level = 0.9,
-                        .milestones = {1000, 2000},
-                        .quantity = {8.0, 8.5, 4.0, 4.5},
-                        .half_width = {1.0, 0.5, 2.0, 0.5},
+                        .course = {.samples = {1000, 2000},
+                                   .value = {8.0, 8.5, 4.0, 4.5},
+                                   .half_width = {1.0, 0.5, 2.0, 0.5},
+                                   .conf_level = 0.9},
                         .reached = {1, 1},
                         .relative_half_width = {0.0625, 0.125},
                         .samples = {2000}};

@@ -81,9 +81,9 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   expect_same(found.background, expected.background, "background");
   ASSERT_TRUE(found.history);
   EXPECT_EQ(found.history->samples, expected.history->samples);
-  expect_same(found.history->global, expected.history->global, "history global");
-  expect_same(found.history->global_ci_low, expected.history->global_ci_low, "history global_ci_low");
-  expect_same(found.history->global_ci_high, expected.history->global_ci_high, "history global_ci_high");
+  expect_same(found.history->value, expected.history->value, "history global");
+  expect_same(found.history->ci_low, expected.history->ci_low, "history global_ci_low");
+  expect_same(found.history->ci_high, expected.history->ci_high, "history global_ci_high");
   EXPECT_EQ(found.failures, expected.failures);
   ASSERT_EQ(found.solves.size(), expected.solves.size());
   for (std::size_t cell = 0; cell < found.solves.size(); ++cell) {

@@ -12,16 +12,14 @@ StoredResult example() {
   result.factors = {{"a", "m"}, {"b", "rad"}};
   result.responses = {{"x", "m"}, {"y", "m"}};
   result.headline = {1};
-  result.sensitivity.convergence = {.min = 1000,
-                                    .max = 8000,
-                                    .relative_error = 0.01,
-                                    .conf_level = 0.95,
-                                    .milestones = {1000, 8000},
-                                    .quantity = {},
-                                    .half_width = {},
-                                    .reached = {1, 0, 1, 0},
-                                    .relative_half_width = {0.005, 0.02, 0.01, 0.025},
-                                    .samples = {1000, 8000}};
+  result.sensitivity.convergence = {
+      .min = 1000,
+      .max = 8000,
+      .relative_error = 0.01,
+      .course = {.samples = {1000, 8000}, .value = {}, .half_width = {}, .conf_level = 0.95},
+      .reached = {1, 0, 1, 0},
+      .relative_half_width = {0.005, 0.02, 0.01, 0.025},
+      .samples = {1000, 8000}};
   return result;
 }
 

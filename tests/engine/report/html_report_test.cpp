@@ -449,7 +449,7 @@ TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
   const std::string without = report(result);
   EXPECT_FALSE(data(without)["figures"].contains("convergence"));
   EXPECT_NE(without.find("did not keep how its indices settled"), std::string::npos);
-  IndexHistory history{
+  EstimateCourse history{
       {10, 100}, std::vector<double>(8, 0.5), std::vector<double>(8, 0.25), std::vector<double>(8, 1.0)};
   result.stored.sensitivity.history = history;
   result.stored.sensitivity.global_corrected.assign(4, 0.5);

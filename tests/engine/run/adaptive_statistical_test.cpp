@@ -96,10 +96,10 @@ Tally monte_carlo_tally(std::size_t poses, double relative_error) {
     const std::vector<double> all = weights(run.plan);
     double truth = 0.0;
     for (const double weight : all) truth += std::abs(weight) * 1e-3 * kFoldedMean / static_cast<double>(poses);
-    const std::size_t last = end.milestones.size() - 1;
+    const std::size_t last = end.course.samples.size() - 1;
     EXPECT_EQ(end.reached[0], 1);
-    EXPECT_LE(end.half_width[last], relative_error * end.quantity[last]);
-    tally.covered += std::abs(end.quantity[last] - truth) <= end.half_width[last] ? 1 : 0;
+    EXPECT_LE(end.course.half_width[last], relative_error * end.course.value[last]);
+    tally.covered += std::abs(end.course.value[last] - truth) <= end.course.half_width[last] ? 1 : 0;
     const double local = std::abs(all[0]) * 1e-3 * kFoldedMean;
     tally.local_covered += inside(local, found.mean_ci_low[0], found.mean_ci_high[0]) ? 1 : 0;
     tally.samples += static_cast<double>(end.samples[0]);

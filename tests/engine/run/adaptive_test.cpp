@@ -23,9 +23,9 @@ void append(Bits& bits, const std::vector<double>& values) {
 }
 
 Bits bits_of(const ConvergenceResult& found) {
-  Bits bits(found.milestones);
-  append(bits, found.quantity);
-  append(bits, found.half_width);
+  Bits bits(found.course.samples);
+  append(bits, found.course.value);
+  append(bits, found.course.half_width);
   append(bits, found.relative_half_width);
   bits.insert(bits.end(), found.reached.begin(), found.reached.end());
   bits.insert(bits.end(), found.samples.begin(), found.samples.end());
@@ -68,11 +68,11 @@ TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
   const AdaptiveRun study(adaptive_study(Kind::sensitivity, 0.015, 100'000));
   const SensitivityResult found = study.sensitivity({}).value();
   const ConvergenceResult& end = found.convergence.value();
-  const std::size_t milestones = end.milestones.size();
+  const std::size_t milestones = end.course.samples.size();
   EXPECT_EQ(end.samples[2], 1000u) << "an error without effect has nothing to wait for";
   EXPECT_LT(end.samples[1], end.samples[0]);
   EXPECT_LT(end.samples[0], 100'000u);
-  EXPECT_EQ(end.milestones.back(), end.samples[0]);
+  EXPECT_EQ(end.course.samples.back(), end.samples[0]);
   for (std::size_t cell = 0; cell < end.reached.size(); ++cell) {
     const std::size_t factor = cell % 3;
     EXPECT_EQ(end.reached[cell], 1);
@@ -80,11 +80,11 @@ TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
     const double half =
         std::max(found.global[cell] - found.global_ci_low[cell], found.global_ci_high[cell] - found.global[cell]);
     for (std::size_t k = 0; k < milestones; ++k) {
-      const double seen = end.half_width[cell * milestones + k];
-      EXPECT_EQ(std::isnan(seen), end.milestones[k] > end.samples[factor]);
-      if (end.milestones[k] != end.samples[factor]) continue;
+      const double seen = end.course.half_width[cell * milestones + k];
+      EXPECT_EQ(std::isnan(seen), end.course.samples[k] > end.samples[factor]);
+      if (end.course.samples[k] != end.samples[factor]) continue;
       EXPECT_EQ(seen, half);
-      EXPECT_EQ(end.quantity[cell * milestones + k], found.global[cell]);
+      EXPECT_EQ(end.course.value[cell * milestones + k], found.global[cell]);
     }
     if (factor == 2) continue;
     EXPECT_EQ(end.relative_half_width[cell], half / found.global[cell]);
@@ -93,7 +93,7 @@ TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
   // At the milestone before, a response of the first error was not reached.
   const auto before = [&](std::size_t response) {
     const std::size_t at = response * 3 * milestones + milestones - 2;
-    return end.half_width[at] / end.quantity[at];
+    return end.course.half_width[at] / end.course.value[at];
   };
   EXPECT_GT(std::max(before(0), before(1)), 0.015);
 }
@@ -114,10 +114,10 @@ TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
   const AdaptiveRun study(adaptive_study(Kind::sensitivity, 0.001, 4300));
   const SensitivityResult found = study.sensitivity({}).value();
   const ConvergenceResult& end = found.convergence.value();
-  EXPECT_EQ(end.milestones, (std::vector<std::uint64_t>{1000, 2000, 3000, 4300}));
+  EXPECT_EQ(end.course.samples, (std::vector<std::uint64_t>{1000, 2000, 3000, 4300}));
   EXPECT_EQ(end.samples, (std::vector<std::uint64_t>{4300, 4300, 1000}));
   EXPECT_EQ(end.reached, (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 1}));
-  EXPECT_EQ(end.quantity[3], found.global[0]) << "the last milestone is max, with its unit that is not whole";
+  EXPECT_EQ(end.course.value[3], found.global[0]) << "the last milestone is max, with its unit that is not whole";
   EXPECT_GT(end.relative_half_width[0], 0.001);
 }
 
@@ -125,7 +125,7 @@ TEST(AdaptiveSensitivity, FewerThanTheFirstMilestoneAreOneRound) {
   Study study = adaptive_study(Kind::sensitivity, 0.5, 700);
   study.analysis.adaptive->min = 2;
   const ConvergenceResult end = AdaptiveRun(study).sensitivity({})->convergence.value();
-  EXPECT_EQ(end.milestones, (std::vector<std::uint64_t>{700}));
+  EXPECT_EQ(end.course.samples, (std::vector<std::uint64_t>{700}));
   EXPECT_EQ(end.reached, (std::vector<std::uint8_t>(6, 1)));
 }
 
@@ -136,17 +136,17 @@ TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
   ASSERT_EQ(end.samples.size(), 1u);
   EXPECT_LT(end.samples[0], 100'000u);
   EXPECT_GT(end.samples[0], 1000u);
-  EXPECT_EQ(end.milestones.back(), end.samples[0]);
-  const std::size_t last = end.milestones.size() - 1;
+  EXPECT_EQ(end.course.samples.back(), end.samples[0]);
+  const std::size_t last = end.course.samples.size() - 1;
   for (std::size_t r = 0; r < 2; ++r) {
     EXPECT_EQ(end.reached[r], 1);
-    const double mean = end.quantity[r * end.milestones.size() + last];
+    const double mean = end.course.value[r * end.course.samples.size() + last];
     EXPECT_NEAR(mean, found.overall_mean[r], 1e-12 * mean);
     // Equal numbers of samples: the variance is the mean of those at the poses, over all samples.
     double variance = 0.0;
     for (std::size_t m = 0; m < 3; ++m) variance += std::pow(found.std[r * 3 + m], 2) / 3.0;
     const double half = 1.96 * std::sqrt(variance / (3.0 * static_cast<double>(end.samples[0])));
-    EXPECT_NEAR(end.half_width[r * end.milestones.size() + last], half, 1e-3 * half);
+    EXPECT_NEAR(end.course.half_width[r * end.course.samples.size() + last], half, 1e-3 * half);
   }
 }
 

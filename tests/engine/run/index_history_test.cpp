@@ -23,9 +23,9 @@ Study with_samples(Study study, std::size_t samples) {
 }
 
 /// What a history says of the indices after k of its points.
-Bits at_point(const IndexHistory& history, std::size_t k) {
+Bits at_point(const EstimateCourse& history, std::size_t k) {
   Bits bits;
-  for (const auto* values : {&history.global, &history.global_ci_low, &history.global_ci_high}) {
+  for (const auto* values : {&history.value, &history.ci_low, &history.ci_high}) {
     for (std::size_t at = k; at < values->size(); at += history.samples.size())
       bits.push_back(std::bit_cast<std::uint64_t>((*values)[at]));
   }
@@ -42,9 +42,9 @@ Bits indices(const SensitivityResult& result) {
 void expect_results_of_shorter_studies(const Study& study) {
   const SensitivityResult result = result_of(study);
   ASSERT_TRUE(result.history);
-  const IndexHistory& history = *result.history;
+  const EstimateCourse& history = *result.history;
   ASSERT_EQ(history.samples.back(), study.analysis.samples);
-  EXPECT_EQ(history.global.size(), result.global.size() * history.samples.size());
+  EXPECT_EQ(history.value.size(), result.global.size() * history.samples.size());
   EXPECT_EQ(at_point(history, history.samples.size() - 1), indices(result));
   for (std::size_t k = 0; k + 1 < history.samples.size(); ++k) {
     EXPECT_EQ(at_point(history, k), indices(result_of(with_samples(study, history.samples[k])))) << history.samples[k];
@@ -82,9 +82,9 @@ TEST_P(History, IsUnknownWhereAPoseHasNoIndex) {
   study.errors.by_factor.assign(3, Distribution::normal(0.3));  // one sample in a hundred is solved
   expect_results_of_shorter_studies(study);
   if (GetParam() == NotConverged::include) return;
-  const IndexHistory history = result_of(study).history.value();
-  EXPECT_TRUE(std::isnan(history.global.front()));
-  EXPECT_FALSE(std::isnan(history.global.back()));
+  const EstimateCourse history = result_of(study).history.value();
+  EXPECT_TRUE(std::isnan(history.value.front()));
+  EXPECT_FALSE(std::isnan(history.value.back()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Policies, History, testing::Values(NotConverged::exclude, NotConverged::include),

@@ -61,8 +61,7 @@ inline Bits bits_of(const SensitivityResult& result) {
   append(bits, result.failures);
   if (result.history) {
     bits.insert(bits.end(), result.history->samples.begin(), result.history->samples.end());
-    for (const auto* values :
-         {&result.history->global, &result.history->global_ci_low, &result.history->global_ci_high}) {
+    for (const auto* values : {&result.history->value, &result.history->ci_low, &result.history->ci_high}) {
       append(bits, *values);
     }
   }
