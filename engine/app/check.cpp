@@ -9,7 +9,7 @@
 #include "engine/app/duration.h"
 #include "engine/app/exit_code.h"
 #include "engine/app/outlook.h"
-#include "engine/io/held_errors.h"
+#include "engine/io/error_words.h"
 #include "engine/io/study_file.h"
 #include "engine/run/runner.h"
 #include "models/registry.h"

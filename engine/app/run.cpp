@@ -15,7 +15,7 @@
 #include "engine/app/run_study.h"
 #include "engine/app/whole_number.h"
 #include "engine/base/error.h"
-#include "engine/io/held_errors.h"
+#include "engine/io/error_words.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
 #include "engine/io/wording.h"

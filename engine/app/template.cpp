@@ -6,7 +6,6 @@
 #include "engine/app/find_model.h"
 #include "engine/base/error.h"
 #include "engine/io/study_file.h"
-#include "engine/io/study_keys.h"
 #include "engine/io/wording.h"
 
 namespace poesy::app {

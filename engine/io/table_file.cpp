@@ -12,7 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/io/csv_lines.h"
-#include "engine/io/error_bound.h"
+#include "engine/io/error_words.h"
 #include "engine/io/row_label.h"
 #include "engine/io/table_columns.h"
 #include "engine/io/wording.h"

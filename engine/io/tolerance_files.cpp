@@ -6,9 +6,9 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
+#include "engine/io/error_words.h"
 #include "engine/io/export_tables.h"
 #include "engine/io/file_writer.h"
-#include "engine/io/held_errors.h"
 #include "engine/io/study_file.h"
 
 namespace poesy {

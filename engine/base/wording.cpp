@@ -1,4 +1,4 @@
-#include "engine/io/wording.h"
+#include "engine/base/wording.h"
 
 #include <algorithm>
 #include <array>

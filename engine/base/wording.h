@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace poesy {
+
+/// A user's text as a message may show it: on one line, valid UTF-8, no control characters, cut off after
+/// about `most` bytes.
+std::string printable(std::string_view text, std::size_t most = 60);
+
+/// A command line, word by word, as a shell takes it.
+std::string shell_command(const std::vector<std::string>& words);
+
+/// The known word that is close to this one, as after a slip of the pen; empty when none is.
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
+
+/// "did you mean 'sigma'?" when a known word is close to this one, else the known words: "known: sigma, half_width".
+std::string suggestion(std::string_view word, std::span<const std::string_view> known);
+
+/// The names of named things, for suggestion().
+template <class Named>
+std::vector<std::string_view> names(const std::vector<Named>& things) {
+  std::vector<std::string_view> list;
+  for (const Named& thing : things) list.push_back(thing.name);
+  return list;
+}
+
+/// The first line in which two texts differ, of each as 'LINE'; "nothing more" where one has ended.
+std::pair<std::string, std::string> first_difference(const std::string& one, const std::string& other);
+
+}  // namespace poesy
