@@ -387,14 +387,13 @@ std::vector<StudyRow> limits_rows() {
 }
 
 StudyTable response_limits_table() {
-  return described(InnerRows<Nothing>{
-      .paths = {"analysis.limits"},
-      .meaning = "'poesy models MODEL' lists the responses.",
-      .rows = {InnerRow<Nothing>{
-          .name = "RESPONSE",
-          .value = {.type = "quantity", .bounds = "greater than 0"},
-          .usual = "none",
-          .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}});
+  return {.paths = {"analysis.limits"},
+          .meaning = "'poesy models MODEL' lists the responses.",
+          .keys = {{.name = "RESPONSE",
+                    .type = "quantity",
+                    .bounds = "greater than 0",
+                    .usual = "none",
+                    .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}};
 }
 
 void check_kind(const StudySection& section, const Study& study) {

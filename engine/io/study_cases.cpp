@@ -180,34 +180,30 @@ StudyRow cases_row() {
 }
 
 StudyTables case_tables() {
-  const InnerRows<Nothing> cases{.paths = {"analysis.cases"},
-                                 .meaning = "For kind = \"evaluate\".",
-                                 .rows = {InnerRow<Nothing>{.name = "name",
-                                                            .value = {.type = "text"},
-                                                            .usual = "case 1, case 2 and so on",
-                                                            .meaning = "Name of the case, without commas and quotes."},
-                                          InnerRow<Nothing>{.name = "errors",
-                                                            .value = {.type = "table"},
-                                                            .missing = "write e.g. {}",
-                                                            .example = "{ linear = \"0.1 mm\", angular = \"0.1 deg\" }",
-                                                            .meaning = "The errors that the case sets."}}};
-  const InnerRows<Nothing> errors{
-      .paths = {"analysis.cases.errors"},
-      .meaning = "The narrower wins. What is not set has the background's value, or is zero.",
-      .rows = {
-          InnerRow<Nothing>{.name = "FACTOR", .value = {.type = "quantity"}, .meaning = "One error."},
-          InnerRow<Nothing>{.name = "SET", .value = {.type = "table"}, .meaning = "The errors of a factor set."},
-          InnerRow<Nothing>{.name = "linear", .value = {.type = "length"}, .meaning = "All errors that are lengths."},
-          InnerRow<Nothing>{.name = "angular", .value = {.type = "angle"}, .meaning = "All errors that are angles."}}};
-  const InnerRows<Nothing> of_set{
+  const StudyTable cases{.paths = {"analysis.cases"},
+                         .meaning = "For kind = \"evaluate\".",
+                         .keys = {{.name = "name",
+                                   .type = "text",
+                                   .usual = "case 1, case 2 and so on",
+                                   .meaning = "Name of the case, without commas and quotes."},
+                                  {.name = "errors",
+                                   .type = "table",
+                                   .required = true,
+                                   .missing = "write e.g. {}",
+                                   .example = "{ linear = \"0.1 mm\", angular = \"0.1 deg\" }",
+                                   .meaning = "The errors that the case sets."}}};
+  const StudyTable errors{.paths = {"analysis.cases.errors"},
+                          .meaning = "The narrower wins. What is not set has the background's value, or is zero.",
+                          .keys = {{.name = "FACTOR", .type = "quantity", .meaning = "One error."},
+                                   {.name = "SET", .type = "table", .meaning = "The errors of a factor set."},
+                                   {.name = "linear", .type = "length", .meaning = "All errors that are lengths."},
+                                   {.name = "angular", .type = "angle", .meaning = "All errors that are angles."}}};
+  const StudyTable of_set{
       .paths = {"analysis.cases.errors.SET"},
       .meaning = "At least one of them.",
-      .rows = {
-          InnerRow<Nothing>{
-              .name = "linear", .value = {.type = "length"}, .meaning = "All errors of the set that are lengths."},
-          InnerRow<Nothing>{
-              .name = "angular", .value = {.type = "angle"}, .meaning = "All errors of the set that are angles."}}};
-  return {described(cases), described(errors), described(of_set)};
+      .keys = {{.name = "linear", .type = "length", .meaning = "All errors of the set that are lengths."},
+               {.name = "angular", .type = "angle", .meaning = "All errors of the set that are angles."}}};
+  return {cases, errors, of_set};
 }
 
 }  // namespace poesy

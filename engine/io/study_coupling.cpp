@@ -276,19 +276,18 @@ std::vector<StudyRow> coupling_rows_of_keys() {
 }
 
 StudyTable source_table() {
-  return described(InnerRows<Nothing>{
-      .paths = {"analysis.sources"},
-      .meaning = "For kind = \"coupling\".",
-      .rows = {InnerRow<Nothing>{.name = "name",
-                                 .value = {.type = "text"},
-                                 .usual = "source 1, source 2 and so on",
-                                 .meaning = "Name of the source, without '+', commas and quotes."},
-               InnerRow<Nothing>{
-                   .name = "factors",
-                   .value = {.type = "text or list of texts"},
-                   .missing = "write a factor set or a list of factors",
-                   .meaning = "Its errors: a factor set, all, or a list of factors, of which no other source has "
-                              "one."}}});
+  return {.paths = {"analysis.sources"},
+          .meaning = "For kind = \"coupling\".",
+          .keys = {{.name = "name",
+                    .type = "text",
+                    .usual = "source 1, source 2 and so on",
+                    .meaning = "Name of the source, without '+', commas and quotes."},
+                   {.name = "factors",
+                    .type = "text or list of texts",
+                    .required = true,
+                    .missing = "write a factor set or a list of factors",
+                    .meaning = "Its errors: a factor set, all, or a list of factors, of which no other source has "
+                               "one."}}};
 }
 
 }  // namespace poesy

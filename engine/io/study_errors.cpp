@@ -193,13 +193,13 @@ const StudyRows& errors_keys() {
 }
 
 StudyTables errors_tables() {
-  const InnerRows<Nothing> overrides{.paths = {"errors.override"},
-                                     .meaning = "'poesy models MODEL' lists the errors.",
-                                     .rows = {InnerRow<Nothing>{.name = "FACTOR",
-                                                                .value = {.type = "table"},
-                                                                .usual = "that of its dimension",
-                                                                .meaning = "Distribution of this error."}}};
-  return {described(errors_keys()), described(overrides), described(distribution_keys())};
+  const StudyTable overrides{.paths = {"errors.override"},
+                             .meaning = "'poesy models MODEL' lists the errors.",
+                             .keys = {{.name = "FACTOR",
+                                       .type = "table",
+                                       .usual = "that of its dimension",
+                                       .meaning = "Distribution of this error."}}};
+  return {described(errors_keys()), overrides, described(distribution_keys())};
 }
 
 Distribution usual_distribution(const StudySection& root, Dimension dimension) {

@@ -96,13 +96,13 @@ const StudyRows& mechanism_keys() {
 }
 
 StudyTables mechanism_tables() {
-  const InnerRows<Nothing> geometry{.paths = {"mechanism.geometry"},
-                                    .meaning = "'poesy models MODEL' lists the parameters.",
-                                    .rows = {InnerRow<Nothing>{.name = "PARAMETER",
-                                                               .value = {.type = "quantity"},
-                                                               .usual = "its published value",
-                                                               .meaning = "A parameter of the geometry."}}};
-  return {described(mechanism_keys()), described(geometry)};
+  const StudyTable geometry{.paths = {"mechanism.geometry"},
+                            .meaning = "'poesy models MODEL' lists the parameters.",
+                            .keys = {{.name = "PARAMETER",
+                                      .type = "quantity",
+                                      .usual = "its published value",
+                                      .meaning = "A parameter of the geometry."}}};
+  return {described(mechanism_keys()), geometry};
 }
 
 void read_mechanism(Study& study, const Reading& reading) {

@@ -312,35 +312,34 @@ StudyRow trajectory_row() {
 }
 
 StudyTable grid_table() {
-  return described(InnerRows<Nothing>{
-      .paths = {"poses.count"},
-      .meaning = "For select = \"grid\": a regular grid, of which all feasible points are poses.",
-      .rows = {InnerRow<Nothing>{.name = "COORDINATE",
-                                 .value = {.type = "integer", .bounds = "at least 1"},
-                                 .missing = "give a number for every pose coordinate of the model",
-                                 .meaning =
-                                     "Points along this pose coordinate, evenly spaced, both ends included; 1 is the "
-                                     "middle."}}});
+  return {.paths = {"poses.count"},
+          .meaning = "For select = \"grid\": a regular grid, of which all feasible points are poses.",
+          .keys = {{.name = "COORDINATE",
+                    .type = "integer",
+                    .bounds = "at least 1",
+                    .required = true,
+                    .missing = "give a number for every pose coordinate of the model",
+                    .meaning = "Points along this pose coordinate, evenly spaced, both ends included; 1 is the "
+                               "middle."}}};
 }
 
 StudyTable workspace_table() {
-  return described(InnerRows<Nothing>{
-      .paths = {"poses.workspace"},
-      .meaning = "The box in which poses are sought.",
-      .rows = {InnerRow<Nothing>{.name = "COORDINATE",
-                                 .value = {.type = "list of two quantities"},
-                                 .missing = "give a range for every pose coordinate of the model",
-                                 .meaning = "Lower and upper end of the range of this pose coordinate."}}});
+  return {.paths = {"poses.workspace"},
+          .meaning = "The box in which poses are sought.",
+          .keys = {{.name = "COORDINATE",
+                    .type = "list of two quantities",
+                    .required = true,
+                    .missing = "give a range for every pose coordinate of the model",
+                    .meaning = "Lower and upper end of the range of this pose coordinate."}}};
 }
 
 StudyTable limits_table() {
-  return described(InnerRows<Nothing>{
-      .paths = {"poses.limits"},
-      .meaning = "Limits of joints.",
-      .rows = {InnerRow<Nothing>{.name = "JOINT",
-                                 .value = {.type = "list of two quantities"},
-                                 .usual = "none",
-                                 .meaning = "Lower and upper end of the range of this joint's displacement."}}});
+  return {.paths = {"poses.limits"},
+          .meaning = "Limits of joints.",
+          .keys = {{.name = "JOINT",
+                    .type = "list of two quantities",
+                    .usual = "none",
+                    .meaning = "Lower and upper end of the range of this joint's displacement."}}};
 }
 
 }  // namespace

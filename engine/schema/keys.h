@@ -23,27 +23,27 @@ struct StudyWord {
 
 /// What is said of one key.
 struct StudyKey {
-  std::string_view name;         ///< in capitals what stands for a name of the model's: "FACTOR"
-  std::string type;              ///< "integer", "length", "list of numbers", ...
-  std::string bounds;            ///< "at least 1"; empty where the type says all
-  std::vector<StudyWord> words;  ///< that it takes, where it takes no others
-  bool required;                 ///< wherever it holds
-  std::string missing;           ///< what to do where it is missing; empty: leaving it out is no error of its own
-  std::string usual;             ///< the default: a value in backquotes, or a clause that says which it is
-  std::string example;           ///< a TOML value that is no default
-  std::vector<std::string_view> only_for;  ///< words of the table's chooser for which it holds; empty: all
-  bool may_stay;                           ///< where it does not hold it is ignored, not refused
-  std::string_view meaning;                ///< a sentence
+  std::string_view name;              ///< in capitals what stands for a name of the model's: "FACTOR"
+  std::string type;                   ///< "integer", "length", "list of numbers", ...
+  std::string bounds = {};            ///< "at least 1"; empty where the type says all
+  std::vector<StudyWord> words = {};  ///< that it takes, where it takes no others
+  bool required = false;              ///< wherever it holds
+  std::string missing = {};  ///< what to do where it is missing = {}; empty: leaving it out is no error of its own
+  std::string usual = {};    ///< the default: a value in backquotes, or a clause that says which it is
+  std::string example = {};  ///< a TOML value that is no default
+  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which it holds; empty: all
+  bool may_stay = false;                        ///< where it does not hold it is ignored, not refused
+  std::string_view meaning;                     ///< a sentence
 };
 
 /// A table of a study file, or several that have the same keys.
 struct StudyTable {
   /// "analysis.groups", with '.' between names and without the numbers of a list; empty for the file itself.
   std::vector<std::string_view> paths;
-  std::string_view meaning;    ///< a sentence
-  std::string_view chooser;    ///< the key by whose word other keys of this table hold or not; empty: all hold
-  std::string_view owner;      ///< how messages speak of the chooser's word: "select ="
-  std::vector<StudyKey> keys;  ///< in the order in which they are listed
+  std::string_view meaning;       ///< a sentence
+  std::string_view chooser = {};  ///< the key by whose word other keys of this table hold or not; empty: all hold
+  std::string_view owner = {};    ///< how messages speak of the chooser's word: "select ="
+  std::vector<StudyKey> keys;     ///< in the order in which they are listed
 
   /// Null where it has none of that name.
   const StudyKey* find(std::string_view key) const;
@@ -211,59 +211,56 @@ std::string usual_text(const KeyValue<Object>& value) {
 template <class... Path>
 using OwnerOf = typename detail::OwnerOf<Path...>::type;
 
-/// A text, in the member at this path of members.
-template <class... Path>
-KeyValue<OwnerOf<Path...>> text_at(Path... path) {
+/// A value in the member at this path of members, which `read` makes of a StudyValue and `text` writes as TOML.
+template <class Read, class Text, class... Path>
+KeyValue<OwnerOf<Path...>> value_at(std::string type, std::string_view bounds, Read read, Text text, Path... path) {
   using Object = OwnerOf<Path...>;
-  return {.type = "text",
-          .read = [=](const StudyValue& value, Object& object) { detail::at(object, path...) = value.text(); },
-          .text = [=](const Object& object) { return in_quotes(detail::at(object, path...)); }};
+  return {.type = std::move(type),
+          .bounds = std::string(bounds),
+          .read =
+              [=](const StudyValue& value, Object& object) {
+                auto& member = detail::at(object, path...);
+                member = static_cast<std::remove_reference_t<decltype(member)>>(read(value));
+              },
+          .text = [=](const Object& object) { return text(detail::at(object, path...)); }};
+}
+
+/// A text.
+template <class... Path>
+auto text_at(Path... path) {
+  return value_at(
+      "text", "", [](const StudyValue& value) { return value.text(); }, in_quotes, path...);
 }
 
 /// A whole number between these, both included.
 template <class... Path>
-KeyValue<OwnerOf<Path...>> whole_at(std::int64_t least, std::int64_t most, Path... path) {
-  using Object = OwnerOf<Path...>;
-  return {.type = "integer",
-          .bounds = "at least " + std::to_string(least),
-          .read =
-              [=](const StudyValue& value, Object& object) {
-                auto& member = detail::at(object, path...);
-                member = static_cast<std::remove_reference_t<decltype(member)>>(value.whole_number(least, most));
-              },
-          .text = [=](const Object& object) { return std::to_string(detail::at(object, path...)); }};
+auto whole_at(std::int64_t least, std::int64_t most, Path... path) {
+  const auto read = [=](const StudyValue& value) { return value.whole_number(least, most); };
+  const auto text = [](auto number) { return std::to_string(number); };
+  return value_at("integer", "at least " + std::to_string(least), read, text, path...);
 }
 
 /// A number without a unit.
 template <class... Path>
-KeyValue<OwnerOf<Path...>> number_at(const NumberBounds& bounds, Path... path) {
-  using Object = OwnerOf<Path...>;
-  return {.type = "number",
-          .bounds = std::string(bounds.words),
-          .read = [=](const StudyValue& value,
-                      Object& object) { detail::at(object, path...) = read_number(value, bounds); },
-          .text = [=](const Object& object) { return shortest(detail::at(object, path...)); }};
-}
-
-/// A length or an angle, above zero.
-template <class... Path>
-KeyValue<OwnerOf<Path...>> positive_at(Dimension dimension, Path... path) {
-  using Object = OwnerOf<Path...>;
-  return {.type = std::string(name(dimension)),
-          .bounds = "greater than 0",
-          .read = [=](const StudyValue& value,
-                      Object& object) { detail::at(object, path...) = value.positive_quantity(dimension); },
-          .text = [=](const Object& object) { return exact_value(detail::at(object, path...), dimension); }};
+auto number_at(const NumberBounds& bounds, Path... path) {
+  const auto read = [=](const StudyValue& value) { return read_number(value, bounds); };
+  return value_at("number", bounds.words, read, shortest, path...);
 }
 
 /// A length or an angle.
 template <class... Path>
-KeyValue<OwnerOf<Path...>> quantity_at(Dimension dimension, Path... path) {
-  using Object = OwnerOf<Path...>;
-  return {
-      .type = std::string(name(dimension)),
-      .read = [=](const StudyValue& value, Object& object) { detail::at(object, path...) = value.quantity(dimension); },
-      .text = [=](const Object& object) { return exact_value(detail::at(object, path...), dimension); }};
+auto quantity_at(Dimension dimension, Path... path) {
+  const auto read = [=](const StudyValue& value) { return value.quantity(dimension); };
+  const auto text = [=](double si) { return exact_value(si, dimension); };
+  return value_at(std::string(name(dimension)), "", read, text, path...);
+}
+
+/// A length or an angle, above zero.
+template <class... Path>
+auto positive_at(Dimension dimension, Path... path) {
+  const auto read = [=](const StudyValue& value) { return value.positive_quantity(dimension); };
+  const auto text = [=](double si) { return exact_value(si, dimension); };
+  return value_at(std::string(name(dimension)), "greater than 0", read, text, path...);
 }
 
 /// A value of an enumeration, with its word's meaning; the word is name(value).
@@ -275,17 +272,14 @@ struct WordFor {
 
 /// One word of an enumeration.
 template <class Enum, class... Path>
-KeyValue<OwnerOf<Path...>> word_at(std::vector<WordFor<Enum>> words, Path... path) {
-  using Object = OwnerOf<Path...>;
-  KeyValue<Object> value{.type = "text"};
-  for (const WordFor<Enum>& word : words) value.words.push_back({name(word.value), word.meaning});
-  value.read = [=](const StudyValue& written, Object& object) {
-    std::vector<std::string_view> known;
-    for (const WordFor<Enum>& word : words) known.push_back(name(word.value));
-    detail::at(object, path...) = words[written.word(known)].value;
-  };
-  value.text = [=](const Object& object) { return in_quotes(name(detail::at(object, path...))); };
-  return value;
+auto word_at(std::vector<WordFor<Enum>> words, Path... path) {
+  std::vector<std::string_view> known;
+  for (const WordFor<Enum>& word : words) known.push_back(name(word.value));
+  const auto read = [=](const StudyValue& value) { return words[value.word(known)].value; };
+  auto made = value_at(
+      "text", "", read, [](Enum value) { return in_quotes(name(value)); }, path...);
+  for (const WordFor<Enum>& word : words) made.words.push_back({name(word.value), word.meaning});
+  return made;
 }
 
 /// What is said of the keys of a table.
