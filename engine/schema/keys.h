@@ -189,12 +189,8 @@ auto& at(Object& object, Member member, Rest... rest) {
   return at(object.*member, rest...);
 }
 
-template <class... Path>
-struct OwnerOf;
 template <class Class, class Type, class... Rest>
-struct OwnerOf<Type Class::*, Rest...> {
-  using type = Class;
-};
+Class owner_of(Type Class::*, Rest...);
 
 /// "1e-15", "1e8" for 1e+08.
 std::string without_plus(std::string text);
@@ -209,7 +205,7 @@ std::string usual_text(const KeyValue<Object>& value) {
 
 /// The object that the first of these pointers to members belongs to.
 template <class... Path>
-using OwnerOf = typename detail::OwnerOf<Path...>::type;
+using OwnerOf = decltype(detail::owner_of(Path()...));
 
 /// A value in the member at this path of members, which `read` makes of a StudyValue and `text` writes as TOML.
 template <class Read, class Text, class... Path>

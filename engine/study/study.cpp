@@ -59,17 +59,20 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
-  std::unique_ptr<Model> model;  // first without the study's points, so that each message names the right key
-  try {
-    model = entry.build(mechanism.geometry, mechanism.fidelity);
-  } catch (const std::invalid_argument& reason) {
-    throw InputError(mechanism.place, std::string("impossible geometry: ") + reason.what(),
-                     "correct it, or leave it out to keep the published value");
+  if (mechanism.points.empty()) {
+    try {
+      return entry.build(mechanism.geometry, mechanism.fidelity);
+    } catch (const std::invalid_argument& reason) {
+      throw InputError(mechanism.place, std::string("impossible geometry: ") + reason.what(),
+                       "correct it, or leave it out to keep the published value");
+    }
   }
-  if (mechanism.points.empty()) return model;
   try {
     return entry.build_with_points(mechanism.geometry, mechanism.fidelity, mechanism.points);
   } catch (const std::invalid_argument& reason) {
+    MechanismChoice without_points = mechanism;
+    without_points.points.clear();
+    static_cast<void>(build_model(without_points));  // throws where the geometry is impossible by itself
     throw InputError(
         mechanism.points_place, reason.what(),
         "name points around the platform, such as its joints' centres, or leave the key out to take these");
