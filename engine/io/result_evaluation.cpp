@@ -4,7 +4,7 @@
 
 #include "engine/io/result_format.h"
 #include "engine/io/result_parts.h"
-#include "engine/io/row_label.h"
+#include "engine/io/table_file.h"
 #include "engine/run/cases.h"
 
 namespace poesy {

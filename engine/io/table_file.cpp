@@ -13,7 +13,6 @@
 #include "engine/base/units.h"
 #include "engine/io/csv_lines.h"
 #include "engine/io/error_words.h"
-#include "engine/io/row_label.h"
 #include "engine/io/wording.h"
 
 namespace poesy {
@@ -355,6 +354,20 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
   table.values = std::move(rows.values);
   table.rows = table.values.size() / table.factors.size();
   return table;
+}
+
+std::optional<std::string> label_problem(std::string_view label) {
+  constexpr std::size_t kMostBytes = 60;
+  if (label.empty()) return "is empty";
+  if (label.size() > kMostBytes) return "is longer than " + std::to_string(kMostBytes) + " bytes";
+  if (printable(label, kMostBytes) != label) return "has characters that cannot be printed";
+  if (const std::size_t at = label.find_first_of(",;\"'`"); at != std::string_view::npos) {
+    return "has a " + std::string(label[at] == ',' ? "comma" : label[at] == ';' ? "semicolon" : "quote");
+  }
+  if (std::string_view("=+-@").find(label.front()) != std::string_view::npos) {
+    return "begins with '" + std::string(1, label.front()) + "'";
+  }
+  return std::nullopt;
 }
 
 }  // namespace poesy
