@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/io/study_file.h"
-#include "engine/io/study_keys.h"
 #include "engine/report/tables.h"
 #include "models/registry.h"
 

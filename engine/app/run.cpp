@@ -16,7 +16,7 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/io/held_errors.h"
+#include "engine/io/error_words.h"
 #include "engine/io/result_file.h"
 #include "engine/io/study_file.h"
 #include "engine/run/study_run.h"

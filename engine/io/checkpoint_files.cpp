@@ -8,7 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/io/file_writer.h"
-#include "engine/io/second_name.h"
+#include "engine/io/text_file.h"
 
 namespace poesy {
 namespace {

@@ -3,8 +3,9 @@
 #include <utility>
 
 #include "engine/io/result_parts.h"
-#include "engine/io/row_label.h"
 #include "engine/io/row_outcomes.h"
+#include "engine/io/table_file.h"
+#include "engine/run/cases.h"
 
 namespace poesy {
 namespace {

@@ -9,10 +9,10 @@
 #include <limits>
 
 #include "engine/base/text.h"
-#include "engine/io/study_file_parts.h"
-#include "engine/io/study_file_section.h"
+#include "engine/io/study_parts.h"
 #include "engine/io/text_file.h"
 #include "engine/run/coupling_rows.h"
+#include "engine/schema/keys_section.h"
 
 namespace poesy {
 namespace {
@@ -20,7 +20,6 @@ namespace {
 constexpr std::size_t kMostBytes = 1 << 20;
 /// Bounds the depth to which dotted keys nest tables, which the TOML library frees by recursion.
 constexpr std::size_t kLongestLine = 16384;
-constexpr std::int64_t kVersion = 1;
 
 /// Whether a file, not a pipe, has the signature of HDF5.
 bool begins_like_hdf5(const std::string& path) {
@@ -58,59 +57,6 @@ toml::table parse(const std::string& text, const std::string& path) {
                      "this is not TOML: " + printable(reason, 120),
                      "correct this line; 'poesy template MODEL' shows a complete study");
   }
-}
-
-void check_format(const StudySection& root) {
-  const StudyValue format = root.require("format", "begin a study with format = \"poesy-study\"");
-  if (format.text() != "poesy-study") {
-    format.fail("is '" + printable(format.text()) + "'", "a study has format = \"poesy-study\"");
-  }
-  const StudyValue version = root.require("version", "write version = 1");
-  const std::int64_t number = version.whole_number(1);
-  if (number > kVersion) {
-    version.fail("is " + std::to_string(number) + ", but this poesy knows version 1 only", "use a newer poesy");
-  }
-}
-
-SolverOptions::Method read_method(const StudyValue& value) {
-  using Method = SolverOptions::Method;
-  constexpr std::array kMethods{Method::newton, Method::gauss_newton};
-  return kMethods[value.word(std::array{name(kMethods[0]), name(kMethods[1])})];
-}
-
-SolverOptions read_solver(const StudySection& section, const ModelDescription& model) {
-  SolverOptions solver;
-  solver.tolerance = model.tolerance;
-  if (const auto value = section.find("method")) solver.method = read_method(*value);
-  if (const auto value = section.find("tolerance")) {
-    solver.tolerance = value->number();
-    if (!(solver.tolerance > 0.0)) {
-      value->fail("is " + shortest(solver.tolerance), "it must be greater than zero, e.g. 1e-15");
-    }
-  }
-  if (const auto value = section.find("max_iterations")) {
-    solver.max_iterations = static_cast<int>(value->whole_number(1, std::numeric_limits<int>::max()));
-  }
-  return solver;
-}
-
-/// What becomes of samples that were not solved. "fail" is short for "exclude" and a limit of 0.
-void read_not_converged(const StudySection& section, Study& study) {
-  constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::exclude};
-  constexpr std::size_t kFail = 2;
-  if (const auto value = section.find("not_converged")) {
-    const std::size_t word = value->word(std::array{name(kPolicies[0]), name(kPolicies[1]), std::string_view("fail")});
-    study.not_converged = kPolicies[word];
-    if (word == kFail) {
-      section.refuse("max_not_converged", "not_converged = \"fail\", which allows none");
-      study.max_not_converged = 0.0;
-    }
-  }
-  const auto limit = section.find("max_not_converged");
-  if (!limit) return;
-  study.max_not_converged = limit->number();
-  if (study.max_not_converged >= 0.0 && study.max_not_converged <= 1.0) return;
-  limit->fail("is " + shortest(study.max_not_converged), "it is a share of all samples, from 0 to 1, e.g. 0.001");
 }
 
 /// What a study asks for at each pose, and what these numbers are the product of.
@@ -172,11 +118,11 @@ void check_fidelities(const StudySection& root, const Study& study) {
     root.section("analysis").refuse("linearity", "a study without fidelity = \"both\"");
   } else if (study.analysis.kind != Analysis::Kind::sensitivity) {
     const std::vector<std::string>& fidelities = study.model().fidelities;
-    const StudyValue fidelity = root.section("mechanism").require("fidelity", "");
+    const StudyValue fidelity = root.section("mechanism").require("fidelity");
     fidelity.fail("is \"both\", but kind = \"" + std::string(name(study.analysis.kind)) + "\" solves at one fidelity",
                   "write \"" + fidelities[0] + "\" or \"" + fidelities[1] + "\", or take kind = \"sensitivity\"");
   } else if (study.analysis.adaptive) {
-    const StudyValue samples = root.section("analysis").require("samples", "");
+    const StudyValue samples = root.section("analysis").require("samples");
     samples.fail(
         "ends at a relative error, but fidelity = \"both\" compares two fidelities on the same samples",
         "write a fixed number, e.g. samples = " + std::to_string(Analysis().samples) + ", or choose one fidelity");
@@ -184,27 +130,36 @@ void check_fidelities(const StudySection& root, const Study& study) {
 }
 
 Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use) {
-  check_format(root);
-  root.allow();
+  const Reading reading{root, catalog, use};
   Study study;
-  if (const auto title = root.find("title")) study.title = title->text();
-  study.mechanism = read_mechanism(root, catalog);
-  study.poses = read_pose_selection(root, study.model(), use);
-  study.errors = read_error_model(root, study.model());
-  study.analysis = read_analysis(root, study.model(), use);
-  const StudySection solver = root.section("solver");
-  solver.allow();
-  study.solver = read_solver(solver, study.model());
-  read_not_converged(solver, study);
-  const StudySection run = root.section("run");
-  run.allow();
-  if (const auto seed = run.find("seed")) study.seed = static_cast<std::uint64_t>(seed->whole_number(0));
+  for (const std::string_view key : {"format", "version"}) {
+    read_key(row_of(file_keys(), key), root.require(key), study, reading);
+  }
+  read_keys(file_keys(), root, study, reading, Extent::partial);
+  read_mechanism(study, reading);
+  read_solver(study, reading);
+  read_poses_section(study, reading);
+  read_errors_section(study, reading);
+  read_analysis(study, reading);
+  read_keys(run_keys(), root.section("run"), study, reading);
   if (use == StudyUse::run) check_fidelities(root, study);
   check_size(root, study);
   return study;
 }
 
 }  // namespace
+
+const StudyTables& study_tables() {
+  static const StudyTables tables = [] {
+    StudyTables all{described(file_keys())};
+    for (const StudyTables& more : {mechanism_tables(), poses_tables(), errors_tables(), analysis_tables(),
+                                    StudyTables{described(solver_keys()), described(run_keys())}}) {
+      all.insert(all.end(), more.begin(), more.end());
+    }
+    return all;
+  }();
+  return tables;
+}
 
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) {
   if (begins_like_hdf5(path)) {
@@ -216,7 +171,7 @@ Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) 
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use) {
   check_lines(text, path);
   const toml::table table = parse(text, path);
-  const StudySection root(table, "", {path, 1, 1});
+  const StudySection root(table, "", {path, 1, 1}, study_tables());
   Study study = study_from(root, catalog, use);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   if (use == StudyUse::run) check_error_bounds(root, study, *model);

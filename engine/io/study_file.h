@@ -30,4 +30,7 @@ std::string resolved_text(const Study& study);
 /// Precondition: the mechanism offers this kind (something deforms, for identification; sources, for coupling).
 std::string template_text(const CatalogEntry& entry, Analysis::Kind kind);
 
+/// The whole reference of study files, as Markdown.
+std::string study_reference();
+
 }  // namespace poesy

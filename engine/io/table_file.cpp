@@ -13,12 +13,118 @@
 #include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/io/csv_lines.h"
-#include "engine/io/error_bound.h"
-#include "engine/io/row_label.h"
-#include "engine/io/table_columns.h"
+#include "engine/io/error_words.h"
+#include "engine/io/table_file.h"
 
 namespace poesy {
 namespace {
+
+bool contains(std::span<const std::string_view> list, std::string_view name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// A column of numbers that a table may have.
+struct KnownColumn {
+  std::string_view name;   ///< as the header has it
+  Dimension dimension;     ///< of its numbers
+  std::string_view meant;  ///< the name that it means: its own, unless it is another word for it
+};
+
+/// What the header of a table may name.
+struct KnownColumns {
+  std::vector<KnownColumn> numbers;           ///< what is read
+  std::vector<std::string_view> facts = {};   ///< other columns that `poesy export` writes: passed over
+  std::vector<std::string_view> labels = {};  ///< of which one may name the rows
+  std::string_view what;                      ///< a column of numbers, for messages: "pose coordinate"
+};
+
+/// A column of a table that is being read.
+struct TableColumn {
+  /// What its cells are.
+  enum class Role { number, fact, label };
+  Role role;                                ///< of its cells
+  std::string_view name;                    ///< KnownColumn::meant, or one of KnownColumns::labels; refers to these
+  std::string_view title;                   ///< as the header has it, with its unit; refers to the lines
+  Dimension dimension = Dimension::number;  ///< of its numbers
+  double si = 1.0;                          ///< by which its numbers are multiplied
+
+  /// "z [mm]": how the header may say the unit in which people read such numbers.
+  std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
+};
+
+/// "z [mm]" taken apart: "z" and "mm". Without brackets there is no unit.
+struct Title {
+  explicit Title(std::string_view text) : name(text) {
+    const std::size_t bracket = text.find('[');
+    if (bracket == std::string_view::npos || !text.ends_with(']')) return;
+    unit = text.substr(bracket + 1, text.size() - bracket - 2);
+    name = text.substr(0, text.find_last_not_of(" \t", bracket - 1) + 1);
+    if (bracket == 0) name = {};
+  }
+
+  std::string_view name;
+  std::optional<std::string_view> unit;
+};
+
+/// The size in SI of a column's unit.
+double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
+  if (!title.unit || *title.unit == si_unit(dimension)) return 1.0;
+  const std::string remedy = "write one of: " + unit_names(dimension) + ", or leave it out for SI";
+  const std::string column = "column '" + printable(cell.text) + "'";
+  const Unit* unit = find_unit(*title.unit);
+  if (unit == nullptr) throw InputError(cell.place, column + " has an unknown unit", remedy);
+  if (unit->dimension == dimension) return unit->si;
+  throw InputError(cell.place,
+                   column + " has a unit of " + std::string(name(unit->dimension)) + ", but this column is a " +
+                       std::string(name(dimension)),
+                   remedy);
+}
+
+[[noreturn]] void refuse_unknown(const CsvCell& cell, const Title& title, const KnownColumns& known) {
+  if (cell.text.find('"') != std::string_view::npos) {
+    throw InputError(cell.place, "column " + printable(cell.text) + " is in quotes, which poesy does not read",
+                     "save the table without quotes");
+  }
+  if (cell.text.find('\t') != std::string_view::npos) {
+    throw InputError(cell.place, "columns are separated by tabs, but poesy reads commas",
+                     "save the table with commas between columns");
+  }
+  throw InputError(cell.place,
+                   "column '" + printable(title.name) + "' is no " + std::string(known.what) + " of the model",
+                   suggestion(title.name, names(known.numbers)));
+}
+
+TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
+  using enum TableColumn::Role;
+  const Title title(cell.text);
+  const auto found = std::ranges::find(known.numbers, title.name, &KnownColumn::name);
+  if (found != known.numbers.end()) {
+    return {number, found->meant, cell.text, found->dimension, size_of(cell, title, found->dimension)};
+  }
+  if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
+  if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};
+  refuse_unknown(cell, title, known);
+}
+
+/// Reads the first line. A name may be followed by the unit of its numbers in brackets, "z [mm]"; without one they are
+/// SI. Throws InputError with its place for a column that is unknown, is there a second time, or has a unit that is
+/// unknown or measures something else, and for two columns that name the rows.
+std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known) {
+  std::vector<TableColumn> columns;
+  for (const CsvCell& cell : lines.next()) {
+    const TableColumn column = column_of(cell, known);
+    if (std::ranges::find(columns, column.name, &TableColumn::name) != columns.end()) {
+      throw InputError(cell.place, "column '" + std::string(column.name) + "' stands here a second time", "remove it");
+    }
+    if (column.role == TableColumn::Role::label &&
+        std::ranges::find(columns, column.role, &TableColumn::role) != columns.end()) {
+      throw InputError(cell.place, "column '" + std::string(column.name) + "' names the rows, which another one does",
+                       "remove one of the two");
+    }
+    columns.push_back(column);
+  }
+  return columns;
+}
 
 /// Whether a table of poses has a column of times.
 enum class Timed { no, yes };
@@ -48,10 +154,6 @@ std::string one_of(const std::vector<std::vector<std::string_view>>& headers) {
     for (const std::string_view name : header) text += (name == header.front() ? "" : ",") + std::string(name);
   }
   return text;
-}
-
-bool contains(std::span<const std::string_view> list, std::string_view name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
 }
 
 /// The position of the header whose names these columns are, in any order.
@@ -253,6 +355,20 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
   table.values = std::move(rows.values);
   table.rows = table.values.size() / table.factors.size();
   return table;
+}
+
+std::optional<std::string> label_problem(std::string_view label) {
+  constexpr std::size_t kMostBytes = 60;
+  if (label.empty()) return "is empty";
+  if (label.size() > kMostBytes) return "is longer than " + std::to_string(kMostBytes) + " bytes";
+  if (printable(label, kMostBytes) != label) return "has characters that cannot be printed";
+  if (const std::size_t at = label.find_first_of(",;\"'`"); at != std::string_view::npos) {
+    return "has a " + std::string(label[at] == ',' ? "comma" : label[at] == ';' ? "semicolon" : "quote");
+  }
+  if (std::string_view("=+-@").find(label.front()) != std::string_view::npos) {
+    return "begins with '" + std::string(1, label.front()) + "'";
+  }
+  return std::nullopt;
 }
 
 }  // namespace poesy

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "engine/model/model.h"
 #include "engine/model/pose_set.h"
@@ -27,5 +29,14 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 /// columns "sample", "pose" and "case", which `poesy export` writes into errors.csv, are passed over. Errors as
 /// read_poses; an unknown factor is an InputError too, and so is an error that makes no sense (Model::error_bound).
 ErrorTable read_errors(const std::string& path, const Model& model);
+
+/// What a name that a user gives to a row may not be, as a clause ("begins with '='"), or none when it may stand in
+/// tables, CSV, spreadsheets and pages as it is: 1 to 60 bytes of printable UTF-8 on one line, without commas,
+/// semicolons and quotes, and not beginning with = + - or @, which spreadsheets take for a formula.
+std::optional<std::string> label_problem(std::string_view label);
+
+/// The rule of label_problem() in words, for remedies.
+inline constexpr std::string_view kLabelRule =
+    "write at most 60 printable characters, without commas, semicolons and quotes, that do not begin with = + - or @";
 
 }  // namespace poesy

@@ -1,5 +1,7 @@
 #include "engine/io/text_file.h"
 
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -42,6 +44,25 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
   }
   if (std::ferror(file.get()) != 0) unreadable(path, errno);
   return text;
+}
+
+void put_at_second_name(const std::string& path, const std::string& second, LinkFile link_file) {
+  namespace fs = std::filesystem;
+  const std::string temporary = second + ".tmp";
+  std::error_code error;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  if (link_file(path.c_str(), temporary.c_str()) != 0) {
+    fs::copy_file(path, temporary, fs::copy_options::overwrite_existing, error);
+  }
+  if (!error) fs::rename(temporary, second, error);
+  // Between two names of one file a rename does nothing, and a copy may have failed halfway.
+  fs::remove(temporary, ignored);
+  if (error) throw FileError(second, "cannot be put in place (" + error.message() + ")", "check the folder");
+}
+
+void put_at_second_name(const std::string& path, const std::string& second) {
+  put_at_second_name(path, second, ::link);
 }
 
 }  // namespace poesy

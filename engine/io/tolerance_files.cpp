@@ -7,8 +7,8 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/io/csv_table.h"
+#include "engine/io/error_words.h"
 #include "engine/io/file_writer.h"
-#include "engine/io/held_errors.h"
 #include "engine/io/study_file.h"
 
 namespace poesy {

@@ -7,67 +7,30 @@
 
 namespace poesy {
 
-std::string_view name(PoseSelection::Select select) {
-  switch (select) {
-    case PoseSelection::Select::interior:
-      return "interior";
-    case PoseSelection::Select::file:
-      return "file";
-    case PoseSelection::Select::boundary:
-      return "boundary";
-    case PoseSelection::Select::grid:
-      return "grid";
-    case PoseSelection::Select::trajectory:
-      break;
-  }
-  return "trajectory";
+namespace {
+
+/// In the order of the enumerations.
+/// @{
+constexpr std::array<std::string_view, 5> kSelectNames{"interior", "file", "boundary", "grid", "trajectory"};
+constexpr std::array<std::string_view, 5> kKindNames{"sensitivity", "identification", "evaluate", "monte-carlo",
+                                                     "coupling"};
+constexpr std::array<std::string_view, 2> kJudgeNames{"rms", "share"};
+constexpr std::array<std::string_view, 2> kNotConvergedNames{"exclude", "include"};
+constexpr std::array<std::string_view, 2> kMethodNames{"newton", "gauss-newton"};
+/// @}
+
+template <class Enum, std::size_t kCount>
+std::string_view name_among(const std::array<std::string_view, kCount>& names, Enum value) {
+  return names.at(static_cast<std::size_t>(value));
 }
 
-std::string_view name(Analysis::Kind kind) {
-  switch (kind) {
-    case Analysis::Kind::sensitivity:
-      return "sensitivity";
-    case Analysis::Kind::identification:
-      return "identification";
-    case Analysis::Kind::evaluate:
-      return "evaluate";
-    case Analysis::Kind::monte_carlo:
-      return "monte-carlo";
-    case Analysis::Kind::coupling:
-      break;
-  }
-  return "coupling";
-}
+}  // namespace
 
-std::string_view name(Judge judge) {
-  switch (judge) {
-    case Judge::rms:
-      return "rms";
-    case Judge::share:
-      break;
-  }
-  return "share";
-}
-
-std::string_view name(NotConverged policy) {
-  switch (policy) {
-    case NotConverged::exclude:
-      return "exclude";
-    case NotConverged::include:
-      break;
-  }
-  return "include";
-}
-
-std::string_view name(SolverOptions::Method method) {
-  switch (method) {
-    case SolverOptions::Method::newton:
-      return "newton";
-    case SolverOptions::Method::gauss_newton:
-      break;
-  }
-  return "gauss-newton";
-}
+std::string_view name(PoseSelection::Select select) { return name_among(kSelectNames, select); }
+std::string_view name(Analysis::Kind kind) { return name_among(kKindNames, kind); }
+std::string_view name(Judge judge) { return name_among(kJudgeNames, judge); }
+std::string_view name(NotConverged policy) { return name_among(kNotConvergedNames, policy); }
+std::string_view name(SolverOptions::Method method) { return name_among(kMethodNames, method); }
 
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model) {
   std::vector<double> errors(model.factors.size(), 0.0);
@@ -96,17 +59,20 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
-  std::unique_ptr<Model> model;  // first without the study's points, so that each message names the right key
-  try {
-    model = entry.build(mechanism.geometry, mechanism.fidelity);
-  } catch (const std::invalid_argument& reason) {
-    throw InputError(mechanism.place, std::string("impossible geometry: ") + reason.what(),
-                     "correct it, or leave it out to keep the published value");
+  if (mechanism.points.empty()) {
+    try {
+      return entry.build(mechanism.geometry, mechanism.fidelity);
+    } catch (const std::invalid_argument& reason) {
+      throw InputError(mechanism.place, std::string("impossible geometry: ") + reason.what(),
+                       "correct it, or leave it out to keep the published value");
+    }
   }
-  if (mechanism.points.empty()) return model;
   try {
     return entry.build_with_points(mechanism.geometry, mechanism.fidelity, mechanism.points);
   } catch (const std::invalid_argument& reason) {
+    MechanismChoice without_points = mechanism;
+    without_points.points.clear();
+    static_cast<void>(build_model(without_points));  // throws where the geometry is impossible by itself
     throw InputError(
         mechanism.points_place, reason.what(),
         "name points around the platform, such as its joints' centres, or leave the key out to take these");

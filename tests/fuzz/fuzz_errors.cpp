@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/io/row_label.h"
 #include "engine/io/table_file.h"
 #include "models/registry.h"
 #include "tests/fuzz/target.h"

@@ -1,4 +1,4 @@
-#include "engine/io/error_bound.h"
+#include "engine/io/error_words.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/io/second_name.h"
+#include "engine/io/text_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/inotify.h>

@@ -1,16 +1,14 @@
-#include "engine/io/study_keys.h"
+#include "engine/io/study_parts.h"
 
 #include <gtest/gtest.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <set>
 #include <sstream>
 #include <tuple>
 
-#include "engine/io/study_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/temp_folder.h"
 
@@ -167,7 +165,7 @@ std::vector<Use> uses() {
     toml::table study = toml::parse(texts[s]);
     std::size_t visited = 0;
     visit(study, "", [&](toml::table& table, const std::string& path) {
-      const StudyTable* described = find_study_table(path);
+      const StudyTable* described = find_table(study_tables(), path);
       if (described == nullptr) throw std::logic_error("no description of [" + path + "]");
       const std::string word = word_of(table, *described);
       for (auto&& [key, value] : table) {
@@ -281,54 +279,13 @@ TEST(StudyKeys, HaveTheDefaultsThatTheyName) {
   }
 }
 
-TEST(StudyKeys, TakeTheWordsThatTheyName) {
-  for (const Use& use : all_uses()) {
-    if (use.key->words.empty()) continue;
-    std::string known;
-    for (const StudyWord& word : use.key->words) known += (known.empty() ? "known: " : ", ") + std::string(word.name);
-    const std::string reason = refusal(changed(use, "\"?\""));
-    EXPECT_TRUE(reason.ends_with(known)) << reason << " but " << known;
-  }
-}
-
-/// What lies just outside bounds, as a study has it for one type or another, and what its refusal says.
-struct Outside {
-  std::string_view bounds;
-  std::vector<std::string> values;
-  std::string says;
-};
-
-TEST(StudyKeys, HaveTheBoundsThatTheyName) {
-  const std::array known{Outside{"at least 0", {"-1"}, "it must be at least 0"},
-                         Outside{"at least 1", {"0"}, "it must be at least 1"},
-                         Outside{"at least 2", {"1"}, "it must be at least 2"},
-                         Outside{"greater than 0",
-                                 {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
-                                 "it must be greater than zero"},
-                         Outside{"at least 1e-30 m or rad",
-                                 {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
-                                 "it must be at least 1e-30 m or 1e-30 rad"},
-                         Outside{"greater than 1", {"1"}, "it must be greater than 1"},
-                         Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
-                         Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
-  for (const Use& use : all_uses()) {
-    if (use.key->bounds.empty()) continue;
-    const auto outside = std::ranges::find(known, use.key->bounds, &Outside::bounds);
-    ASSERT_NE(outside, known.end()) << use.full_name;
-    const bool refused = std::ranges::any_of(outside->values, [&](const std::string& value) {
-      const std::string reason = refusal(changed(use, value));
-      return reason.find(use.full_name) != std::string::npos && reason.find(outside->says) != std::string::npos;
-    });
-    EXPECT_TRUE(refused) << use.full_name;
-  }
-}
-
 TEST(StudyKeys, AreFoundAtEveryPathOfAStudy) {
-  EXPECT_EQ(find_study_table("errors.override.delta_1"), find_study_table("errors.linear"));
-  EXPECT_EQ(find_study_table("analysis.cases[12].errors.all"), find_study_table("analysis.cases.errors.SET"));
-  EXPECT_EQ(find_study_table("")->keys.front().name, "format");
-  EXPECT_EQ(find_study_table("analysis.cases.errors.all.more"), nullptr);
-  EXPECT_EQ(find_study_table("analysi"), nullptr);
+  EXPECT_EQ(find_table(study_tables(), "errors.override.delta_1"), find_table(study_tables(), "errors.linear"));
+  EXPECT_EQ(find_table(study_tables(), "analysis.cases[12].errors.all"),
+            find_table(study_tables(), "analysis.cases.errors.SET"));
+  EXPECT_EQ(find_table(study_tables(), "")->keys.front().name, "format");
+  EXPECT_EQ(find_table(study_tables(), "analysis.cases.errors.all.more"), nullptr);
+  EXPECT_EQ(find_table(study_tables(), "analysi"), nullptr);
 }
 
 /// Without comment signs and with single spaces.

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/io/row_label.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 #include "tests/support/temp_folder.h"

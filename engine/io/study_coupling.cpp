@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <set>
 
 #include "engine/base/text.h"
-#include "engine/io/study_file_parts.h"
+#include "engine/io/study_parts.h"
+#include "engine/io/study_text.h"
 #include "engine/run/coupling_rows.h"
 
 namespace poesy {
@@ -20,7 +23,9 @@ Choice read_choice(const StudyValue& value) {
   return value.word(kWords) == 0 ? Choice::all : Choice::independent;
 }
 
-void read_limbs(const StudyValue& value, const ModelDescription& model, ErrorPattern& pattern) {
+void read_limbs(const StudyValue& value, Study& study, const Reading&) {
+  const ModelDescription& model = study.model();
+  ErrorPattern& pattern = study.analysis.coupling.pattern;
   if (value.is_text()) {
     pattern.limbs = read_choice(value);
     return;
@@ -36,7 +41,8 @@ void read_limbs(const StudyValue& value, const ModelDescription& model, ErrorPat
              "name one of them, or write \"all\" or \"independent\"");
 }
 
-void read_components(const StudyValue& value, ErrorPattern& pattern) {
+void read_components(const StudyValue& value, Study& study, const Reading&) {
+  ErrorPattern& pattern = study.analysis.coupling.pattern;
   if (value.is_text()) {
     pattern.components = read_choice(value);
     return;
@@ -74,7 +80,7 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
   if (source.name.find('+') != std::string::npos) {
     section.find("name")->fail("is '" + printable(source.name) + "'", "write it without '+', which joins sources");
   }
-  const StudyValue factors = section.require("factors", "write a factor set or a list of factors");
+  const StudyValue factors = section.require("factors");
   source.factors = read_factors(factors, model);
   require_own_factors(factors, source, others, model);
   if (error_blocks(source, pattern, model).empty()) {
@@ -106,24 +112,63 @@ std::vector<ErrorSource> usual_sources(const StudySection& analysis, const Model
   return sources;
 }
 
-std::vector<ErrorSource> read_sources(const StudyValue& value, const ModelDescription& model,
-                                      const ErrorPattern& pattern) {
-  std::vector<ErrorSource> sources;
+void read_sources(const StudyValue& value, Study& study, const Reading&) {
   const std::vector<StudyValue> list = value.list();
   if (list.size() < kFewestSources || list.size() > kMostSources) {
     value.fail("has " + std::to_string(list.size()) + (list.size() == 1 ? " source" : " sources") +
                    ", but there must be " + std::to_string(kFewestSources) + " to " + std::to_string(kMostSources),
                "group factors into fewer or more sources");
   }
-  for (const StudyValue& one : list) sources.push_back(read_source(one.section(), sources, pattern, model));
-  return sources;
+  CouplingStudy& coupling = study.analysis.coupling;
+  for (const StudyValue& one : list) {
+    coupling.sources.push_back(read_source(one.section(), coupling.sources, coupling.pattern, study.model()));
+  }
 }
 
-std::vector<double> read_sizes(const StudyValue& value, Dimension dimension) {
-  std::vector<double> sizes;
-  for (const StudyValue& size : value.list()) sizes.push_back(size.positive_quantity(dimension));
-  if (sizes.empty()) value.fail("is empty", "write at least one size");
-  return sizes;
+std::string sources_lines(const Study& study) {
+  std::string text;
+  for (const ErrorSource& source : study.analysis.coupling.sources) {
+    text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", in_quotes(source.name),
+                        factors_text(source.factors, study.model()));
+  }
+  return text;
+}
+
+/// Sizes of this dimension.
+KeyValue<Study> sizes_at(Dimension dimension, std::vector<double> CouplingStudy::*member) {
+  const auto read = [=](const StudyValue& value, Study& study) {
+    std::vector<double>& sizes = study.analysis.coupling.*member;
+    for (const StudyValue& size : value.list()) sizes.push_back(size.positive_quantity(dimension));
+    if (sizes.empty()) value.fail("is empty", "write at least one size");
+  };
+  return {.type = "list of " + std::string(name(dimension)) + "s", .bounds = "greater than 0", .read = read};
+}
+
+template <Dimension kDimension>
+std::string sizes_line(const Study& study) {
+  const CouplingStudy& coupling = study.analysis.coupling;
+  std::vector<std::string> sizes;
+  for (const double size : kDimension == Dimension::length ? coupling.linear : coupling.angular) {
+    sizes.push_back(exact_value(size, kDimension));
+  }
+  return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
+}
+
+std::string choice_text(Choice choice, const std::string& some) {
+  if (choice == Choice::some) return some;
+  return choice == Choice::all ? "\"all\"" : "\"independent\"";
+}
+
+std::string limbs_text(const Study& study) {
+  const ErrorPattern& pattern = study.analysis.coupling.pattern;
+  return choice_text(pattern.limbs, std::to_string(pattern.limb));
+}
+
+std::string components_text(const Study& study) {
+  const ErrorPattern& pattern = study.analysis.coupling.pattern;
+  std::vector<std::string> axes;
+  for (const std::string& axis : pattern.axes) axes.push_back(in_quotes(axis));
+  return choice_text(pattern.components, list_text(axes));
 }
 
 /// The first factor of this dimension that the study gives a size; null when there is none.
@@ -182,28 +227,67 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
 
 }  // namespace
 
-CouplingStudy read_coupling(const StudySection& analysis, const ModelDescription& model, StudyUse use) {
-  CouplingStudy study;
-  if (const auto value = analysis.find("limbs")) read_limbs(*value, model, study.pattern);
-  if (const auto value = analysis.find("components")) read_components(*value, study.pattern);
+void complete_coupling(Study& whole, const Reading& reading) {
+  const StudySection analysis = reading.root.section("analysis");
+  const ModelDescription& model = whole.model();
+  CouplingStudy& study = whole.analysis.coupling;
   const auto linear = analysis.find("linear");
   const auto angular = analysis.find("angular");
-  if (linear) study.linear = read_sizes(*linear, Dimension::length);
-  if (angular) study.angular = read_sizes(*angular, Dimension::angle);
   if (linear && angular) require_equal_numbers(*angular, study);
   if (linear || angular) require_different_runs(linear ? *linear : *angular, study);
-  if (const auto value = analysis.find("sources")) {
-    study.sources = read_sources(*value, model, study.pattern);
-  } else if (use == StudyUse::run) {
-    study.sources = usual_sources(analysis, model, study.pattern);
-  }
-  if (use == StudyUse::run) {
-    require_sizes(analysis, "linear", Dimension::length, study, model);
-    require_sizes(analysis, "angular", Dimension::angle, study, model);
-    refuse_idle_sizes(analysis, "linear", Dimension::length, study, model);
-    refuse_idle_sizes(analysis, "angular", Dimension::angle, study, model);
-  }
-  return study;
+  if (reading.use == StudyUse::evaluate) return;
+  if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
+  require_sizes(analysis, "linear", Dimension::length, study, model);
+  require_sizes(analysis, "angular", Dimension::angle, study, model);
+  refuse_idle_sizes(analysis, "linear", Dimension::length, study, model);
+  refuse_idle_sizes(analysis, "angular", Dimension::angle, study, model);
+}
+
+std::vector<StudyRow> coupling_rows_of_keys() {
+  return {StudyRow{.name = "linear",
+                   .value = sizes_at(Dimension::length, &CouplingStudy::linear),
+                   .meaning =
+                       "Sizes of lengths: each is a run of its own, in which every error is at once as large as that. "
+                       "Required where a source has lengths; as many as of angular, if there are both.",
+                   .lines = sizes_line<Dimension::length>},
+          StudyRow{.name = "angular",
+                   .value = sizes_at(Dimension::angle, &CouplingStudy::angular),
+                   .meaning = "Sizes of angles, in the same way.",
+                   .lines = sizes_line<Dimension::angle>},
+          StudyRow{.name = "limbs",
+                   .value = {.type = "text or integer", .text = limbs_text},
+                   .meaning =
+                       "all: errors of every limb, together; a number: of that limb alone; independent: each limb on "
+                       "its own, in the worst case and the root sum square.",
+                   .reader = read_limbs},
+          StudyRow{.name = "components",
+                   .value = {.type = "text or list of texts", .text = components_text},
+                   .meaning =
+                       "all: every component of an error, together; a list such as [\"x\", \"z\"]: those and scalars; "
+                       "independent: each component of each error on its own, as for limbs.",
+                   .reader = read_components},
+          StudyRow{.name = "sources",
+                   .value = {.type = "list of tables"},
+                   .usual = "those of the literature, where the model has them",
+                   .meaning = "2 to 8 sources of errors: each alone, and every combination of them at once.",
+                   .reader = read_sources,
+                   .lines = sources_lines,
+                   .late = 2}};
+}
+
+StudyTable source_table() {
+  return {.paths = {"analysis.sources"},
+          .meaning = "For kind = \"coupling\".",
+          .keys = {{.name = "name",
+                    .type = "text",
+                    .usual = "source 1, source 2 and so on",
+                    .meaning = "Name of the source, without '+', commas and quotes."},
+                   {.name = "factors",
+                    .type = "text or list of texts",
+                    .required = true,
+                    .missing = "write a factor set or a list of factors",
+                    .meaning = "Its errors: a factor set, all, or a list of factors, of which no other source has "
+                               "one."}}};
 }
 
 }  // namespace poesy

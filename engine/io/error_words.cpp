@@ -1,9 +1,10 @@
-#include "engine/io/held_errors.h"
+#include "engine/io/error_words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "engine/io/study_text.h"
@@ -50,6 +51,14 @@ std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study)
 }
 
 }  // namespace
+
+std::optional<std::string> beyond_bound(const Model& model, FactorIndex factor, double size, std::string_view what) {
+  const ErrorBound bound = model.error_bound(factor);
+  if (std::abs(size) < bound.size) return std::nullopt;
+  const Factor& named = model.description().factors[factor.value];
+  return "gives " + named.name + " " + std::string(what) + " of " + readable_text({size, named.dimension}) +
+         ", no less than " + bound.part + " (" + readable_text({bound.size, named.dimension}) + ")";
+}
 
 std::string held_errors_text(const Study& study) {
   if (!study.analysis.background) return {};

@@ -1,17 +1,14 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "engine/io/error_bound.h"
-#include "engine/io/study_file_parts.h"
+#include "engine/io/error_words.h"
+#include "engine/io/study_parts.h"
 #include "engine/run/coupling_rows.h"
 
 namespace poesy {
 namespace {
 
 constexpr std::string_view kRemedy = "write a smaller one";
-
-/// The key of a dimension wherever a study sets errors by it.
-std::string_view key_of(Dimension dimension) { return dimension == Dimension::length ? "linear" : "angular"; }
 
 /// Throws at the section's value of this key, or at the section where it has none.
 [[noreturn]] void refuse(const StudySection& section, std::string_view key, const std::string& problem) {
@@ -78,7 +75,7 @@ class Bounds {
       const auto& sizes = is_length ? study_.analysis.coupling.linear : study_.analysis.coupling.angular;
       for (std::size_t z = 0; z < sizes.size(); ++z) {
         const auto problem = beyond_bound(model_, factor, sizes[z], "an error");
-        if (problem) analysis_.require(key_of(dimension), "").list()[z].fail(*problem, kRemedy);
+        if (problem) analysis_.require(error_kind(dimension)).list()[z].fail(*problem, kRemedy);
       }
     }
   }
@@ -88,23 +85,23 @@ class Bounds {
     const Dimension dimension = model_.description().factors[factor.value].dimension;
     const double size = dimension == Dimension::length ? linear : angular;
     if (const auto problem = beyond_bound(model_, factor, size, "an error")) {
-      refuse(section, key_of(dimension), *problem);
+      refuse(section, error_kind(dimension), *problem);
     }
   }
 
   [[noreturn]] void refuse_distribution(const Factor& factor, const std::string& problem) const {
     const StudySection errors = root_.section("errors");
     const auto own = errors.section("override").find(factor.name);
-    const auto value = own ? own : errors.find(key_of(factor.dimension));
-    if (!value) refuse(errors, key_of(factor.dimension), problem);
+    const auto value = own ? own : errors.find(error_kind(factor.dimension));
+    if (!value) refuse(errors, error_kind(factor.dimension), problem);
     const StudySection distribution = value->section();
     refuse(distribution, distribution.find("half_width") ? "half_width" : "sigma", problem);
   }
 
   /// At the error itself, at what sets all of its dimension, or at the case, where a factor set does.
   [[noreturn]] void refuse_case(std::size_t c, const Factor& factor, const std::string& problem) const {
-    const StudySection errors = analysis_.require("cases", "").list()[c].section().section("errors");
-    for (const std::string_view key : {std::string_view(factor.name), key_of(factor.dimension)}) {
+    const StudySection errors = analysis_.require("cases").list()[c].section().section("errors");
+    for (const std::string_view key : {std::string_view(factor.name), error_kind(factor.dimension)}) {
       if (const auto value = errors.find(key)) value->fail(problem, kRemedy);
     }
     throw InputError(errors.place(), "case '" + printable(study_.analysis.cases[c].name) + "' " + problem, kRemedy);

@@ -1,4 +1,4 @@
-#include "engine/io/study_file_section.h"
+#include "engine/schema/keys_section.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
-#include "engine/io/study_keys.h"
+#include "engine/schema/keys.h"
 
 namespace poesy {
 namespace {
@@ -59,8 +59,8 @@ std::string unit_remedy(std::string_view text, Dimension dimension) {
 
 }  // namespace
 
-StudyValue::StudyValue(const toml::node& node, std::string name, const Place& section)
-    : node_(&node), name_(std::move(name)), place_(place_in(section, node.source())) {}
+StudyValue::StudyValue(const toml::node& node, std::string name, const Place& section, const StudyTables& tables)
+    : node_(&node), name_(std::move(name)), place_(place_in(section, node.source())), tables_(&tables) {}
 
 void StudyValue::fail(std::string_view problem, std::string_view remedy) const {
   throw InputError(place_, name_ + " " + std::string(problem), remedy);
@@ -124,7 +124,7 @@ std::size_t StudyValue::word(std::span<const std::string_view> words) const {
 StudySection StudyValue::section() const {
   const auto* table = node_->as_table();
   if (table == nullptr) wrong_type("write a section [" + name_ + "] or { key = value }");
-  return StudySection(*table, name_, place_);
+  return StudySection(*table, name_, place_, *tables_);
 }
 
 std::vector<StudyValue> StudyValue::list() const {
@@ -132,13 +132,17 @@ std::vector<StudyValue> StudyValue::list() const {
   if (array == nullptr) wrong_type("write a list in [ ]");
   std::vector<StudyValue> values;
   for (const toml::node& element : *array) {
-    values.emplace_back(element, name_ + "[" + std::to_string(values.size()) + "]", place_);
+    values.emplace_back(element, name_ + "[" + std::to_string(values.size()) + "]", place_, *tables_);
   }
   return values;
 }
 
-StudySection::StudySection(const toml::table& table, std::string name, Place place)
-    : table_(&table), described_(find_study_table(name)), name_(std::move(name)), place_(std::move(place)) {}
+StudySection::StudySection(const toml::table& table, std::string name, Place place, const StudyTables& tables)
+    : table_(&table),
+      name_(std::move(name)),
+      place_(std::move(place)),
+      tables_(&tables),
+      described_(find_table(tables, name_)) {}
 
 std::vector<std::string> StudySection::keys() const {
   std::vector<std::string> list;
@@ -162,8 +166,8 @@ void StudySection::allow(std::span<const std::string_view> known, std::string_vi
 void StudySection::refuse_all_but_those_for(std::string_view word) const {
   POESY_EXPECTS(described_ != nullptr && !described_->chooser.empty());
   for (const StudyKey& key : described_->keys) {
-    if (holds_for(key, word) || key.may_stay) continue;
-    refuse(key.name, std::string(described_->chooser) + " = \"" + std::string(word) + "\"");
+    if (holds_for(key.only_for, word) || key.may_stay) continue;
+    refuse(key.name, described_->owner_of(word));
   }
 }
 
@@ -176,18 +180,19 @@ std::optional<StudyValue> StudySection::find(std::string_view key) const {
   POESY_EXPECTS(described_ != nullptr && (described_->has_names_of_model() || described_->find(key) != nullptr));
   const toml::node* node = table_->get(key);
   if (node == nullptr) return std::nullopt;
-  return StudyValue(*node, full_name(key), place_);
+  return StudyValue(*node, full_name(key), place_, *tables_);
 }
 
 StudyValue StudySection::require(std::string_view key, std::string_view remedy) const {
   if (auto value = find(key)) return *std::move(value);
-  throw InputError(place_, "key '" + std::string(key) + "' is missing" + where(), remedy);
+  throw InputError(place_, "key '" + std::string(key) + "' is missing" + where(),
+                   remedy.empty() ? described_->remedy(key) : remedy);
 }
 
 StudySection StudySection::section(std::string_view key) const {
   static const toml::table kNothing;
   const auto value = find(key);
-  return value ? value->section() : StudySection(kNothing, full_name(key), place_);
+  return value ? value->section() : StudySection(kNothing, full_name(key), place_, *tables_);
 }
 
 Place StudySection::place_of_key(std::string_view key) const {

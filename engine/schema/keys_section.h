@@ -18,13 +18,15 @@ namespace poesy {
 
 class StudySection;
 struct StudyTable;
+/// The tables of a study file, with every key.
+using StudyTables = std::vector<StudyTable>;
 
 /// One value of a study file. Every function throws InputError at the value's place when the value is not what is
 /// asked for. Refers to the parsed file, which must outlive it.
 class StudyValue {
  public:
   /// `name` is the value's full name for messages: "errors.linear.sigma".
-  StudyValue(const toml::node& node, std::string name, const Place& section);
+  StudyValue(const toml::node& node, std::string name, const Place& section, const StudyTables& tables);
 
   /// Where it stands.
   const Place& place() const { return place_; }
@@ -61,13 +63,14 @@ class StudyValue {
   const toml::node* node_;
   std::string name_;
   Place place_;
+  const StudyTables* tables_;
 };
 
 /// A table of a study file, in the same way. A key must be described where it stands, or asking for it is a bug.
 class StudySection {
  public:
-  /// `name` is empty for the file as a whole.
-  StudySection(const toml::table& table, std::string name, Place place);
+  /// `name` is empty for the file as a whole. The tables must outlive it.
+  StudySection(const toml::table& table, std::string name, Place place, const StudyTables& tables);
 
   /// Where it begins.
   const Place& place() const { return place_; }
@@ -76,7 +79,7 @@ class StudySection {
   /// The keys that the file gives, in the order of their bytes.
   std::vector<std::string> keys() const;
 
-  /// Throws for a key that is not described (engine/io/study_keys.h). For sections whose keys are all fixed.
+  /// Throws for a key that is not described (engine/schema/keys.h). For sections whose keys are all fixed.
   void allow() const;
   /// Throws for a key that is not one of these; `what` says what the keys of this section are.
   void allow(std::span<const std::string_view> known, std::string_view what) const;
@@ -87,8 +90,8 @@ class StudySection {
 
   /// Empty when it is missing.
   std::optional<StudyValue> find(std::string_view key) const;
-  /// Throws when it is missing; the remedy says what to write.
-  StudyValue require(std::string_view key, std::string_view remedy) const;
+  /// Throws when it is missing; the remedy is that of its description, unless another is given.
+  StudyValue require(std::string_view key, std::string_view remedy = {}) const;
   /// Empty when it is missing.
   StudySection section(std::string_view key) const;
 
@@ -98,9 +101,10 @@ class StudySection {
   std::string where() const;
 
   const toml::table* table_;
-  const StudyTable* described_;
   std::string name_;
   Place place_;
+  const StudyTables* tables_;
+  const StudyTable* described_;
 };
 
 }  // namespace poesy

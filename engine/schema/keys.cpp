@@ -1,0 +1,319 @@
+#include "engine/schema/keys.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cctype>
+#include <limits>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+/// "groups" of "groups[0]".
+std::string_view without_number(std::string_view name) { return name.substr(0, name.find('[')); }
+
+bool stands_for_names(std::string_view name) {
+  return !name.empty() && std::ranges::all_of(name, [](unsigned char letter) { return std::isupper(letter) != 0; });
+}
+
+/// Takes the first name of a path off it.
+std::string_view first_name(std::string_view& path) {
+  const std::size_t end = std::min(path.find('.'), path.size());
+  const std::string_view name = path.substr(0, end);
+  path.remove_prefix(std::min(end + 1, path.size()));
+  return name;
+}
+
+bool fits(std::string_view described, std::string_view path) {
+  while (!described.empty() && !path.empty()) {
+    const std::string_view pattern = first_name(described);
+    const std::string_view name = first_name(path);
+    if (pattern != without_number(name) && !stands_for_names(pattern)) return false;
+  }
+  return described.empty() && path.empty();
+}
+
+std::string plain(std::string_view text) {
+  std::string out(text);
+  std::erase(out, '`');
+  return out;
+}
+
+/// "required where select is interior, boundary or grid".
+std::string condition(const StudyTable& table, const StudyKey& key) {
+  std::string text(key.required ? "required" : "");
+  for (std::size_t w = 0; w < key.only_for.size(); ++w) {
+    const std::string_view joint = w == 0 ? "" : w + 1 < key.only_for.size() ? ", " : " or ";
+    if (w == 0) text += (text.empty() ? "where " : " where ") + std::string(table.chooser) + " is ";
+    text += std::string(joint) + std::string(key.only_for[w]);
+  }
+  return text;
+}
+
+std::string as_sentence(std::string_view clause) {
+  std::string text(clause);
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text + ".";
+}
+
+constexpr std::size_t kColumns = 120;
+
+/// One paragraph as comment lines; lines after the first are two columns further in than `indent`.
+std::string paragraph(std::string_view text, std::size_t indent) {
+  const std::size_t margin = indent + 2;
+  std::string out;
+  for (const std::string& line : wrapped(text, kColumns - margin - 2, kColumns - margin)) {
+    out += "#" + std::string(out.empty() ? margin - 1 : margin + 1, ' ') + line + "\n";
+  }
+  return out;
+}
+
+/// The key, and one step further in its words.
+std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t depth) {
+  std::string text = paragraph(fmt::format("{}: {}", key.name, explanation(table, key)), 2 * depth);
+  for (const StudyWord& word : key.words) {
+    text += paragraph(fmt::format("{}: {}", word.name, word.meaning), 2 * depth + 2);
+  }
+  return text;
+}
+
+/// The default, which has backquotes where it is a value; else the example.
+std::string shown_value(const StudyKey& key) {
+  if (!key.usual.starts_with('`')) return key.example;
+  return key.usual.substr(1, key.usual.find('`', 1) - 1);
+}
+
+/// Text inside a cell of a Markdown table, whose bars would end it.
+std::string cell(std::string_view text) {
+  std::string out;
+  for (const char character : text) out += character == '|' ? std::string("\\|") : std::string(1, character);
+  return out;
+}
+
+std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
+
+/// "`a`, `b`".
+std::string codes(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const std::string_view word : words) text += (text.empty() ? "" : ", ") + code(word);
+  return text;
+}
+
+std::string heading(const StudyTable& table) {
+  if (table.paths.front().empty()) return "The file itself";
+  std::string text;
+  for (const std::string_view path : table.paths) {
+    text += (text.empty() ? "" : ", ") + code("[" + std::string(path) + "]");
+  }
+  return text;
+}
+
+std::string type_text(const StudyKey& key) { return key.type + (key.bounds.empty() ? "" : ", " + key.bounds); }
+
+std::string holds_text(const StudyKey& key) {
+  if (key.only_for.empty()) return "all";
+  return codes(key.only_for) + (key.may_stay ? "; else ignored" : "");
+}
+
+std::string row(const StudyKey& key, bool chosen) {
+  const std::string holds = chosen ? fmt::format(" {} |", holds_text(key)) : "";
+  return fmt::format("| `{}` | {} | {} |{} {} |\n", key.name, type_text(key),
+                     key.required ? "*required*" : cell(key.usual), holds, cell(key.meaning));
+}
+
+/// The words of each key that takes some.
+std::string words_of(const StudyTable& table) {
+  std::string text;
+  for (const StudyKey& key : table.keys) {
+    if (key.words.empty()) continue;
+    text += fmt::format("\nWords of `{}`:\n\n", key.name);
+    for (const StudyWord& word : key.words) text += fmt::format("- `{}`: {}\n", word.name, word.meaning);
+  }
+  return text;
+}
+
+std::string section(const StudyTable& table) {
+  const bool chosen = !table.chooser.empty();
+  const std::string column = chosen ? fmt::format(" `{}` |", table.chooser) : "";
+  std::string text = fmt::format("\n## {}\n\n{}\n\n| key | type | default |{} meaning |\n|---|---|---|{}---|\n",
+                                 heading(table), table.meaning, column, chosen ? "---|" : "");
+  for (const StudyKey& key : table.keys) text += row(key, chosen);
+  return text + words_of(table);
+}
+
+}  // namespace
+
+const StudyKey* StudyTable::find(std::string_view key) const {
+  const auto found = std::ranges::find(keys, key, &StudyKey::name);
+  return found == keys.end() ? nullptr : &*found;
+}
+
+std::vector<std::string_view> StudyTable::names() const {
+  std::vector<std::string_view> list;
+  for (const StudyKey& key : keys) list.push_back(key.name);
+  return list;
+}
+
+bool StudyTable::has_names_of_model() const { return std::ranges::any_of(keys, is_name_of_model); }
+
+std::string StudyTable::owner_of(std::string_view word) const {
+  const std::string begin = owner.empty() ? std::string(chooser) + " =" : std::string(owner);
+  return begin + " \"" + std::string(word) + "\"";
+}
+
+std::string StudyTable::remedy(std::string_view key) const {
+  auto found = std::ranges::find(keys, key, &StudyKey::name);
+  if (found == keys.end()) found = std::ranges::find_if(keys, is_name_of_model);
+  POESY_EXPECTS(found != keys.end());
+  std::string text = found->missing;
+  if (const std::size_t at = text.find("{}"); at != std::string::npos) {
+    text.replace(at, 2, std::string(key) + " = " + found->example);
+  }
+  return text;
+}
+
+const StudyTable* find_table(const StudyTables& tables, std::string_view path) {
+  for (const StudyTable& table : tables) {
+    if (std::ranges::any_of(table.paths, [&](std::string_view described) { return fits(described, path); })) {
+      return &table;
+    }
+  }
+  return nullptr;
+}
+
+bool is_name_of_model(const StudyKey& key) { return stands_for_names(key.name); }
+
+bool holds_for(std::span<const std::string_view> only_for, std::string_view word) {
+  return only_for.empty() || std::ranges::find(only_for, word) != only_for.end();
+}
+
+std::string explanation(const StudyTable& table, const StudyKey& key) {
+  std::string text(key.meaning);
+  if (!key.bounds.empty()) text += " " + as_sentence(key.bounds);
+  if (key.required || !(key.only_for.empty() || key.may_stay)) text += " " + as_sentence(condition(table, key));
+  if (!key.usual.empty()) text += " Default: " + plain(key.usual) + ".";
+  return text;
+}
+
+std::string tables_reference(const StudyTables& tables) {
+  std::string text;
+  for (const StudyTable& table : tables) text += section(table);
+  return text;
+}
+
+std::string comment(std::string_view text) {
+  std::string out = "# ";
+  for (const char character : text) {
+    out += character;
+    if (character == '\n') out += "# ";
+  }
+  return out + "\n";
+}
+
+const StudyTable& TemplateLines::table(std::string_view path) const {
+  const StudyTable* found = find_table(*tables_, path);
+  POESY_EXPECTS(found != nullptr);
+  return *found;
+}
+
+const StudyKey& TemplateLines::key(std::string_view path, std::string_view name) const {
+  const StudyKey* found = table(path).find(name);
+  POESY_EXPECTS(found != nullptr);
+  return *found;
+}
+
+std::string TemplateLines::explained(std::string_view path, std::string_view name, std::string_view line) const {
+  const std::string one_line = fmt::format("{}  # {}\n", line, explanation(table(path), key(path, name)));
+  if (key(path, name).words.empty() && one_line.size() <= kColumns + 1) return one_line;
+  return fmt::format("{}{}\n", explanation_lines(path, name), line);
+}
+
+std::string TemplateLines::usual(std::string_view path, std::string_view name, std::string_view sign) const {
+  return explained(path, name, fmt::format("{}{} = {}", sign, name, shown_value(key(path, name))));
+}
+
+std::string TemplateLines::explanation_lines(std::string_view path, std::string_view name) const {
+  return key_lines(table(path), key(path, name), 0);
+}
+
+std::string TemplateLines::inline_table(std::string_view path) const {
+  std::vector<std::string> shown;
+  for (const StudyKey& key : table(path).keys) {
+    if (const std::string value = shown_value(key); !value.empty())
+      shown.push_back(fmt::format("{} = {}", key.name, value));
+  }
+  return fmt::format("{{ {} }}", fmt::join(shown, ", "));
+}
+
+std::string_view TemplateLines::example(std::string_view path, std::string_view name) const {
+  return key(path, name).example;
+}
+
+std::string TemplateLines::keys_lines(std::string_view path, std::size_t depth) const {
+  std::string text;
+  for (const StudyKey& key : table(path).keys) text += key_lines(table(path), key, depth);
+  return text;
+}
+
+std::string_view TemplateLines::meaning(std::string_view path) const { return table(path).meaning; }
+
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char character : text) {
+    const auto code = static_cast<unsigned char>(character);
+    if (code < 0x20 || code == 0x7F) {
+      out += fmt::format("\\u{:04X}", code);
+    } else {
+      if (character == '"' || character == '\\') out += '\\';
+      out += character;
+    }
+  }
+  return out + '"';
+}
+
+std::string exact_value(double si, Dimension dimension) {
+  return dimension == Dimension::number ? shortest(si) : in_quotes(to_text({si, dimension}));
+}
+
+std::string readable_value(double si, Dimension dimension) {
+  const std::string exact = exact_value(si, dimension);
+  if (dimension == Dimension::number) return exact;
+  const std::string text = readable_text({si, dimension});
+  const bool as_exact = parse_quantity(text).si == si;
+  return as_exact && text.size() + 2 <= exact.size() + 1 ? in_quotes(text) : exact;
+}
+
+std::string list_text(std::span<const std::string> values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
+
+NumberBounds above_zero(std::string_view example) {
+  return {0.0, std::numeric_limits<double>::infinity(), false, "greater than 0",
+          fmt::format("it must be greater than zero, e.g. {}", example)};
+}
+
+NumberBounds above_one(std::string_view example) {
+  return {1.0, std::numeric_limits<double>::infinity(), false, "greater than 1",
+          fmt::format("it must be greater than 1, e.g. {}", example)};
+}
+
+NumberBounds between_0_and_1(std::string_view example) {
+  return {0.0, 1.0, false, "between 0 and 1", fmt::format("it must lie between 0 and 1, e.g. {}", example)};
+}
+
+double read_number(const StudyValue& value, const NumberBounds& bounds) {
+  const double number = value.number();
+  const bool inside = bounds.ends_included ? bounds.least <= number && number <= bounds.most
+                                           : bounds.least < number && number < bounds.most;
+  if (!inside) value.fail("is " + shortest(number), bounds.remedy);
+  return number;
+}
+
+std::string detail::without_plus(std::string text) {
+  if (const std::size_t at = text.find("e+"); at != std::string::npos) {
+    text.erase(at + 1, std::max(text.find_first_not_of("+0", at + 1), at + 2) - at - 1);
+  }
+  return text;
+}
+
+}  // namespace poesy
