@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {

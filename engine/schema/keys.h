@@ -28,7 +28,7 @@ struct StudyKey {
   std::string bounds = {};            ///< "at least 1"; empty where the type says all
   std::vector<StudyWord> words = {};  ///< that it takes, where it takes no others
   bool required = false;              ///< wherever it holds
-  std::string missing = {};  ///< what to do where it is missing = {}; empty: leaving it out is no error of its own
+  std::string missing = {};  ///< what to do where it is missing; empty: it may be left out
   std::string usual = {};    ///< the default: a value in backquotes, or a clause that says which it is
   std::string example = {};  ///< a TOML value that is no default
   std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which it holds; empty: all

@@ -54,7 +54,7 @@ TEST_P(SecondName, IsNotTouchedWhenThereIsNoFirst) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, SecondName, testing::Values(::link, no_hard_links),
-                         [](const auto& info) { return std::string(info.param == ::link ? "HardLink" : "Copy"); });
+                         [](const auto& each) { return std::string(each.param == ::link ? "HardLink" : "Copy"); });
 
 /// The names that were taken away from a folder while `act` was under way, as the kernel tells them.
 template <class Act>
