@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -22,7 +21,7 @@ struct Example {
   std::string line;
 };
 
-/// The program, or one of its commands: what CLI11 has to know, and what help and manual tell besides.
+/// The program, or one of its commands: what CLI11 has to know, and the notes and examples of its help.
 class Command : public CLI::App {
  public:
   /// program: that the command belongs to; null for the program itself.
@@ -93,7 +92,7 @@ struct Entry {
   std::string_view meaning;
 };
 
-/// What help and manual tell besides the commands.
+/// What help and manual tell in addition to the commands.
 std::span<const Entry> exit_codes();
 std::span<const Entry> files();
 std::span<const Entry> environment();

@@ -23,8 +23,8 @@ std::string shown_name(const CLI::Option& option) {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
-/// "did you mean 'run'? " where one is near, or begins like this. An option of one letter
-/// is near to any other.
+/// "did you mean 'run'? " where one is near, or begins like this. An option of one letter has no suggestion, because
+/// any other letter is as near.
 std::string nearest_text(const std::string& word, const std::vector<std::string>& known) {
   if (is_option(word) && word.size() == 2) return {};
   const std::vector<std::string_view> views(known.begin(), known.end());

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
-#include <utility>
 
 #include "engine/app/command_line.h"
 #include "engine/app/ending.h"

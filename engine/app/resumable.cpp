@@ -1,9 +1,6 @@
 #include "engine/app/resumable.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 

@@ -13,14 +13,14 @@ namespace poesy {
 
 /// A text for each line of a CSV file.
 struct CsvText {
-  std::string heading;
-  std::function<std::string(std::size_t line)> text;
+  std::string heading;                                ///< as it is written
+  std::function<std::string(std::size_t line)> text;  ///< as it is written
 };
 
 /// A number for each line of a CSV file.
 struct CsvColumn {
-  std::string heading;  ///< with its unit, see with_unit()
-  std::function<double(std::size_t line)> number;
+  std::string heading;                             ///< with its unit, see with_unit()
+  std::function<double(std::size_t line)> number;  ///< SI, or in the heading's unit
 };
 
 /// A CSV file: in the first line the names of the columns, then one line for each thing.

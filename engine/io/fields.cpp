@@ -35,9 +35,13 @@ void ResultBuilder::show_axes(const std::string& group, const Axes& axes) {
 
 std::size_t axis_length(const h5::File& file, const std::string& name) { return h5::size(file.shape("/" + name)); }
 
+void check_shape(const h5::File& file, const std::string& path, const h5::Shape& shape) {
+  if (file.shape(path) != shape) throw h5::Error(path + " does not have the shape it should have");
+}
+
 template <h5::Element T>
 std::vector<T> read_shaped(const h5::File& file, const std::string& path, const h5::Shape& shape) {
-  if (file.shape(path) != shape) throw h5::Error(path + " does not have the shape it should have");
+  check_shape(file, path, shape);
   return file.read<T>(path);
 }
 

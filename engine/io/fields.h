@@ -19,6 +19,8 @@ namespace poesy {
 
 /// Names of the axes of a dataset, slowest first.
 using Axes = std::vector<std::string>;
+
+/// Axes that many datasets have.
 /// @{
 inline const Axes kByResponse{"response"};
 inline const Axes kByFactor{"factor"};
@@ -80,6 +82,9 @@ class ResultBuilder {
 /// The number of positions on an axis at the root.
 std::size_t axis_length(const h5::File& file, const std::string& name);
 
+/// Throws h5::Error where a dataset has another shape.
+void check_shape(const h5::File& file, const std::string& path, const h5::Shape& shape);
+
 /// All elements of a dataset. Throws h5::Error where it has another shape.
 template <h5::Element T>
 std::vector<T> read_shaped(const h5::File& file, const std::string& path, const h5::Shape& shape);
@@ -99,8 +104,8 @@ using Member =
 /// A number of a result that is an attribute of a group or of a dataset.
 template <class Found>
 struct Attribute {
-  std::string name;
-  double Found::*member;
+  std::string name;       ///< as the file has it
+  double Found::*member;  ///< the number
 };
 
 /// How a list of numbers is stored.
@@ -124,30 +129,31 @@ struct FieldRow {
         attributes(std::move(beside)),
         stored(as) {}
 
-  std::string name;  ///< in its group
-  Member<Found> member;
-  Axes axes;         ///< at the root; none for a scalar
-  std::string unit;  ///< "m", "1", or one of the texts above
-  std::string description;
+  std::string name;         ///< in its group
+  Member<Found> member;     ///< its elements
+  Axes axes;                ///< at the root; none for a scalar
+  std::string unit;         ///< "m", "1", or one of the texts above
+  std::string description;  ///< a sentence for people
   /// Name of the dataset with which it came: files of older versions have neither, and the member stays empty. Empty
   /// where all files have it. A result without such elements is written without the dataset.
   std::string since;
   std::vector<Attribute<Found>> attributes;  ///< written beside it, not read
-  Stored stored;
+  Stored stored;                             ///< in which form
 };
 
+/// Rows of a group, in the order in which they are written.
 template <class Found>
 using Fields = std::vector<FieldRow<Found>>;
 
 /// A group of a result file.
 template <class Found>
 struct Group {
-  std::string path;  ///< "/sensitivity"
-  std::string description;
+  std::string path;                               ///< "/sensitivity"
+  std::string description;                        ///< a sentence for people
   std::vector<Attribute<Found>> attributes = {};  ///< numbers of the group as a whole
   /// Members that are the lengths of axes.
   std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};
-  Fields<Found> fields;
+  Fields<Found> fields;  ///< its datasets
 };
 
 namespace detail {
@@ -284,7 +290,11 @@ void read_fields(const h5::File& file, const std::string& group, const Fields<Fo
 /// The same in a list: as many things as the rows' axis has positions.
 template <class Thing>
 std::vector<Thing> read_columns(const h5::File& file, const std::string& group, const Fields<Thing>& fields) {
-  std::vector<Thing> things(axis_length(file, fields.front().axes.front()));
+  const std::size_t length = axis_length(file, fields.front().axes.front());
+  for (const FieldRow<Thing>& field : fields) {
+    if (field.since.empty()) check_shape(file, group + "/" + field.name, {length});
+  }
+  std::vector<Thing> things(length);
   read_fields(file, group, fields, std::span(things));
   return things;
 }

@@ -77,7 +77,7 @@ const CourseWords& convergence_words(Analysis::Kind kind) {
   return of_indices(kind) ? kIndexConvergence : kMeanConvergence;
 }
 
-/// What a convergence says besides its course: of each quantity, and of each slot.
+/// What a convergence says in addition to its course: one number for each quantity, or for each slot.
 Fields<ConvergenceResult> end_fields(Analysis::Kind kind) {
   const Axes quantities = of_indices(kind) ? Axes{"response", "factor"} : Axes{"response"};
   const Axes slots = of_indices(kind) ? Axes{"factor"} : Axes{};

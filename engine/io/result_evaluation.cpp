@@ -21,7 +21,8 @@ constexpr const char* kRowByRow = "row-by-row";
 constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
 /// @}
 
-/// What all solves say that is no response and no detail. axes: rows and columns of the datasets of solves.
+/// What is stored of every solve in addition to responses and details. axes: rows and columns of the datasets of
+/// solves.
 Fields<EvaluationResult> solve_fields(const Axes& axes) {
   return {{"iterations", &EvaluationResult::iterations, axes, "1", "Iterations of the solve"},
           {"joint_displacements",

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -128,9 +127,10 @@ void read_samples(const StudyValue& value, Study& study, const Reading& reading)
   if (adaptive.conf_level == 0.0) return;
   analysis.conf_level = adaptive.conf_level;
   const auto other = reading.root.section("analysis").find("conf_level");
-  if (!other || other->number() == adaptive.conf_level) return;
+  const double level = other ? read_number(*other, between_0_and_1("0.95")) : adaptive.conf_level;
+  if (level == adaptive.conf_level) return;
   section.require("conf_level")
-      .fail("is " + shortest(adaptive.conf_level) + ", but analysis.conf_level is " + shortest(other->number()),
+      .fail("is " + shortest(adaptive.conf_level) + ", but analysis.conf_level is " + shortest(level),
             "write the level of the intervals once");
 }
 

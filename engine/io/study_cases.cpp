@@ -5,7 +5,6 @@
 
 #include "engine/base/text.h"
 #include "engine/io/study_parts.h"
-#include "engine/io/study_text.h"
 
 namespace poesy {
 namespace {
@@ -72,6 +71,7 @@ std::vector<double> read_case_errors(const StudySection& section, const ModelDes
 }
 
 void read_cases(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::evaluate) return;  // `evaluate` passes over them
   const std::vector<double> background = background_errors(study.analysis.background, study.model());
   std::vector<ErrorCase>& cases = study.analysis.cases;
   for (const StudyValue& one : value.list()) {
@@ -120,6 +120,7 @@ const InnerRows<ErrorSize>& group_keys() {
 }
 
 void read_groups(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::identification) return;  // `evaluate` passes over them
   std::vector<ErrorSize>& groups = study.analysis.groups;
   for (const StudyValue& one : value.list()) {
     ErrorSize group{};

@@ -24,6 +24,7 @@ Choice read_choice(const StudyValue& value) {
 }
 
 void read_limbs(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
   const ModelDescription& model = study.model();
   ErrorPattern& pattern = study.analysis.coupling.pattern;
   if (value.is_text()) {
@@ -42,6 +43,7 @@ void read_limbs(const StudyValue& value, Study& study, const Reading&) {
 }
 
 void read_components(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
   ErrorPattern& pattern = study.analysis.coupling.pattern;
   if (value.is_text()) {
     pattern.components = read_choice(value);
@@ -113,6 +115,7 @@ std::vector<ErrorSource> usual_sources(const StudySection& analysis, const Model
 }
 
 void read_sources(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
   const std::vector<StudyValue> list = value.list();
   if (list.size() < kFewestSources || list.size() > kMostSources) {
     value.fail("has " + std::to_string(list.size()) + (list.size() == 1 ? " source" : " sources") +
@@ -137,6 +140,7 @@ std::string sources_lines(const Study& study) {
 /// Sizes of this dimension.
 KeyValue<Study> sizes_at(Dimension dimension, std::vector<double> CouplingStudy::*member) {
   const auto read = [=](const StudyValue& value, Study& study) {
+    if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
     std::vector<double>& sizes = study.analysis.coupling.*member;
     for (const StudyValue& size : value.list()) sizes.push_back(size.positive_quantity(dimension));
     if (sizes.empty()) value.fail("is empty", "write at least one size");

@@ -3,10 +3,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include "engine/base/text.h"
 #include "engine/io/study_parts.h"

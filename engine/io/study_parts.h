@@ -19,14 +19,14 @@ inline constexpr std::int64_t kMostPoses = 10'000'000;
 inline constexpr std::int64_t kMostCells = 10'000'000;              ///< (factor, pose) pairs of a result
 inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;  ///< of a run
 
-/// What a row's reader may look at besides the value.
+/// What a row's reader may look at in addition to the value.
 struct Reading {
   const StudySection& root;  ///< the whole file
   const Catalog& catalog;    ///< of mechanisms
   StudyUse use;              ///< how much must be there
 };
 
-/// Of tables whose rows need nothing besides the value.
+/// The scope of tables whose rows need the value alone.
 struct Nothing {};
 
 /// A row of a study's own tables.

@@ -267,7 +267,7 @@ std::vector<StudyRow> box_rows() {
                .reader = read_count,
                .lines = count_line},
       StudyRow{.name = "workspace",
-               .value = {.type = "table", .text = {}},
+               .value = {.type = "table"},
                .usual = "the model's own workspace",
                .only_for = of_box,
                .meaning = "A range for every pose coordinate.",
@@ -370,6 +370,7 @@ void read_poses_section(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("poses");
   study.poses.place = section.place();
   read_keys(poses_keys(), section, study, reading, complete ? Extent::complete : Extent::partial);
+  if (study.poses.select == PoseSelection::Select::file) static_cast<void>(section.require("file"));
   if (section.find("workspace") || !holds_for(row_of(poses_keys(), "workspace").only_for, name(study.poses.select))) {
     return;
   }

@@ -78,7 +78,9 @@ std::string points_line(const Study& study) {
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
   constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::exclude};
   constexpr std::size_t kFail = 2;
-  const std::size_t word = value.word(std::array{name(kPolicies[0]), name(kPolicies[1]), std::string_view("fail")});
+  std::vector<std::string_view> known;
+  for (const StudyWord& each : row_of(solver_keys(), "not_converged").value.words) known.push_back(each.name);
+  const std::size_t word = value.word(known);
   study.not_converged = kPolicies[word];
   if (word != kFail) return;
   reading.root.section("solver").refuse("max_not_converged", "not_converged = \"fail\", which allows none");

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "engine/model/model.h"
-#include "engine/model/pose_set.h"
 #include "engine/run/runner.h"
 #include "engine/study/trajectory.h"
 

@@ -1,7 +1,6 @@
 #include "engine/io/tolerance_files.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "engine/base/contract.h"

@@ -28,9 +28,9 @@ struct StudyKey {
   std::string bounds = {};            ///< "at least 1"; empty where the type says all
   std::vector<StudyWord> words = {};  ///< that it takes, where it takes no others
   bool required = false;              ///< wherever it holds
-  std::string missing = {};  ///< what to do where it is missing; empty: it may be left out
-  std::string usual = {};    ///< the default: a value in backquotes, or a clause that says which it is
-  std::string example = {};  ///< a TOML value that is no default
+  std::string missing = {};           ///< what to do where it is missing; empty: it may be left out
+  std::string usual = {};             ///< the default: a value in backquotes, or a clause that says which it is
+  std::string example = {};           ///< a TOML value that is no default
   std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which it holds; empty: all
   bool may_stay = false;                        ///< where it does not hold it is ignored, not refused
   std::string_view meaning;                     ///< a sentence
@@ -164,7 +164,7 @@ struct Key {
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;
   /// The key's lines of the resolved text, where they are not "KEY = VALUE"; may be none.
   std::string (*lines)(const Object& object) = nullptr;
-  int late = 0;  ///< in the resolved text, keys stand behind those with a smaller number
+  int late = 0;  ///< in the resolved text, a key comes after those with a smaller number
 };
 
 /// A table of typed rows.

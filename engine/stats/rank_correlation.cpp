@@ -60,7 +60,7 @@ Known known(std::span<const double> x, std::span<const double> y) {
 /// 1, 0 or -1; 0 for what only rounding tells apart, as the effects of errors that are mirror images of each other.
 int order(double a, double b) {
   constexpr double kEqual = 1e-9;
-  if (std::abs(a - b) <= kEqual * std::max(std::abs(a), std::abs(b))) return 0;
+  if (std::abs(a - b) < kEqual * std::max(std::abs(a), std::abs(b))) return 0;
   return (a > b) - (a < b);
 }
 

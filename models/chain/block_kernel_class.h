@@ -244,7 +244,8 @@ class BlockKernel {
   // Per sample, in rows of capacity_.
   double* value_;
   double* q_;
-  double* memory_;        ///< published: residual of the last round; follow: displacements of an earlier one
+  double*
+      memory_;  ///< published: residual of the last round; follow: displacements of an earlier one; map: coordinates
   double* smallest_;      ///< published: smallest change so far
   double* flat_;          ///< published: rounds since then; direct: -1 where the start is a fit's
   std::uint32_t* index_;  ///< which sample this is

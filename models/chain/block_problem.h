@@ -135,7 +135,7 @@ inline constexpr std::size_t kMostLanes = 8;
 /// Samples that fit into rows of scratch, with room for the lanes behind the last one.
 static constexpr std::size_t kernel_capacity(std::size_t count) { return (count / kMostLanes + 2) * kMostLanes; }
 
-/// Rows that a pass may keep of earlier rounds: residuals, or displacements.
+/// Rows that a pass keeps: residuals or displacements of earlier rounds, or the coordinates of a map.
 static constexpr std::size_t kernel_memory(const KernelChain& chain) {
   return 6 * chain.pairs > chain.joints ? 6 * chain.pairs : chain.joints;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/contract.h"
@@ -23,6 +24,7 @@ Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
 Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(incidence.transpose() * incidence);
   const Eigen::Index limbs = incidence.cols();
+  POESY_EXPECTS(limbs < 2 || solver.eigenvalues()[1] > 1e-9);
   Eigen::MatrixXd rows(limbs - 1, limbs);
   for (Eigen::Index row = 0; row + 1 < limbs; ++row) {
     rows.row(row) = std::sqrt(solver.eigenvalues()[row + 1]) * solver.eigenvectors().col(row + 1).transpose();

@@ -12,12 +12,12 @@
 namespace poesy::chain {
 
 /// What errors leave to first order, in few numbers. Of L limbs with F passive joints the mismatch that no joint can
-/// take away has D = 6 (L - 1) - F independent components: so often is the mechanism over-constrained. y [D] are its
-/// coordinates in an orthonormal basis by the metric, |y|^2 = sum |delta_mu|_W^2 over the pairs, so that an error has D
-/// numbers instead of six for each pair.
+/// take away has D = 6 (L - 1) - F independent components; D is how often the mechanism is over-constrained. y [D] are
+/// its coordinates in an orthonormal basis by the metric, |y|^2 = sum |delta_mu|_W^2 over the pairs, so that an error
+/// has D numbers instead of six for each pair.
 class ResidualSpace {
  public:
-  /// Scratch for the chain, which must outlive it.
+  /// Scratch for the chain, which must outlive it. Precondition: its pairs connect all limbs.
   explicit ResidualSpace(const ParallelChain& chain);
 
   /// Where the first order was prepared, and returned true; metric: null for W = 1.

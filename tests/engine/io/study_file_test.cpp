@@ -144,6 +144,18 @@ TEST(ReadStudyToEvaluate, NeedsTheMechanismOnly) {
   EXPECT_EQ(study.solver.max_iterations, 50);
 }
 
+TEST(ReadStudyToEvaluate, NeedsTheNameOfAFileOfPoses) {
+  const std::string text =
+      "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\nselect = \"file\"\n";
+  EXPECT_THROW(study_of(text, StudyUse::evaluate), InputError);
+  EXPECT_EQ(study_of(text + "file = \"p.csv\"\n", StudyUse::evaluate).poses.file, "p.csv");
+}
+
+TEST(ReadStudyToEvaluate, PassesOverKeysOfAnotherKind) {
+  const std::string text = changed("kind = \"sensitivity\"", "kind = \"sensitivity\"\ngroups = []\nsources = []");
+  EXPECT_TRUE(study_of(text, StudyUse::evaluate).analysis.groups.empty());
+}
+
 TEST(ReadStudyToEvaluate, TakesKindsAndPosesThatCannotBeRunYet) {
   for (const std::string select : {"boundary", "grid"}) {
     const std::string text = changed("\"interior\"", "\"" + select + "\"");

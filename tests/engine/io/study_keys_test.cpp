@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <set>
 #include <sstream>
@@ -276,6 +277,48 @@ TEST(StudyKeys, HaveTheDefaultsThatTheyName) {
       EXPECT_FALSE(key.required && !key.usual.empty()) << table.paths.front() << " " << key.name;
       EXPECT_EQ(left_out.contains(&key), !key.usual.empty()) << table.paths.front() << " " << key.name;
     }
+  }
+}
+
+TEST(StudyKeys, TakeTheWordsThatTheyName) {
+  for (const Use& use : all_uses()) {
+    if (use.key->words.empty()) continue;
+    std::string known;
+    for (const StudyWord& word : use.key->words) known += (known.empty() ? "known: " : ", ") + std::string(word.name);
+    const std::string reason = refusal(changed(use, "\"?\""));
+    EXPECT_TRUE(reason.ends_with(known)) << reason << " but " << known;
+  }
+}
+
+/// What lies just outside bounds, as a study has it for one type or another, and what its refusal says.
+struct Outside {
+  std::string_view bounds;
+  std::vector<std::string> values;
+  std::string says;
+};
+
+TEST(StudyKeys, HaveTheBoundsThatTheyName) {
+  const std::array known{Outside{"at least 0", {"-1"}, "it must be at least 0"},
+                         Outside{"at least 1", {"0"}, "it must be at least 1"},
+                         Outside{"at least 2", {"1"}, "it must be at least 2"},
+                         Outside{"greater than 0",
+                                 {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
+                                 "it must be greater than zero"},
+                         Outside{"at least 1e-30 m or rad",
+                                 {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
+                                 "it must be at least 1e-30 m or 1e-30 rad"},
+                         Outside{"greater than 1", {"1"}, "it must be greater than 1"},
+                         Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
+                         Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
+  for (const Use& use : all_uses()) {
+    if (use.key->bounds.empty()) continue;
+    const auto outside = std::ranges::find(known, use.key->bounds, &Outside::bounds);
+    ASSERT_NE(outside, known.end()) << use.full_name;
+    const bool refused = std::ranges::any_of(outside->values, [&](const std::string& value) {
+      const std::string reason = refusal(changed(use, value));
+      return reason.find(use.full_name) != std::string::npos && reason.find(outside->says) != std::string::npos;
+    });
+    EXPECT_TRUE(refused) << use.full_name;
   }
 }
 

@@ -15,7 +15,7 @@ Study with_cases() {
   return study;
 }
 
-TEST(RunStudy, FindsWhatTheRunOfASensitivityStudyFindsAndItsChangesWithSize) {
+TEST(RunStudy, FindsASensitivityStudysResultAndItsChanges) {
   const Prepared prepared(study_of(Kind::sensitivity, 200));
   const auto result = run_study(prepared.study);
   ASSERT_TRUE(result);

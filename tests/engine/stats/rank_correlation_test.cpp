@@ -70,6 +70,11 @@ TEST(KendallTau, TakesWhatOnlyRoundingTellsApartForEqual) {
   EXPECT_DOUBLE_EQ(kendall_tau(x, y), (6.0 - 1.0) / std::sqrt(9.0 * 7.0));
 }
 
+TEST(KendallTau, OrdersWhatIsInfinite) {
+  const std::array x{1.0, 2.0, std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(kendall_tau(x, std::array{1.0, 2.0, 3.0}), 1.0);
+}
+
 TEST(KendallTau, LeavesOutWhatIsNotKnown) {
   const std::array x{1.0, kNaN, 2.0, 3.0};
   const std::array y{2.0, -9.0, 3.0, kNaN};

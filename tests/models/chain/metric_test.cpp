@@ -292,7 +292,7 @@ std::array<double, 3> responses_by(const Metric& metric, const Eigen::VectorXd& 
 
 /// Three of twelve independent mismatches are left to the 2UPR-RPU's nine passive joints: it is over-constrained
 /// thrice.
-TEST(FirstOrderOfAChain, HasAsManyCoordinatesAsTheChainIsOverConstrained) {
+TEST(FirstOrderOfAChain, HasACoordinateForEachConstraintTooMany) {
   for (const bool weighted : {true, false}) {
     for (const BlockSamples& samples : every_chain(1, 0.0)) {
       const Metric* metric = weighted ? &*samples.metric : nullptr;
