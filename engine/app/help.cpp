@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kNarrowest = 30;
 constexpr std::size_t kWidest = 110;     ///< longer lines are hard to read
-constexpr std::size_t kTwoColumns = 72;  ///< narrower: what a thing means stands below it
+constexpr std::size_t kTwoColumns = 72;  ///< narrower: what a thing means is below it
 constexpr std::size_t kMeanings = 28;    ///< column where meanings begin
 constexpr std::size_t kBelow = 6;
 

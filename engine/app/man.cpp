@@ -29,7 +29,7 @@ std::string italic(std::string_view text) { return "\\fI" + roff(text) + "\\fR";
 
 std::string section(const std::string& name) { return ".SH " + name + "\n"; }
 
-/// What is explained stands out, its meaning is indented.
+/// A name at the margin, its meaning indented.
 std::string item(const std::string& head, std::string_view meaning) {
   return ".TP\n" + head + "\n" + roff(meaning) + "\n";
 }

@@ -110,7 +110,7 @@ double parse_duration(const std::string& text, const std::string& option) {
     const Quantity quantity = parse_quantity(text);
     if (quantity.dimension == Dimension::time && quantity.si > 0.0) return quantity.si;
   } catch (const QuantityError&) {
-    // The same answer for all that is no time.
+    // One answer for everything that cannot be read as a time.
   }
   throw InputError({}, option + " is '" + printable(text) + "'", kRemedy);
 }

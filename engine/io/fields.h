@@ -181,7 +181,7 @@ inline void restore(std::int64_t from, std::optional<std::size_t>& to) {
   to = from < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(from));
 }
 
-/// An element as a number. Precondition: it is no text.
+/// An element as a number. Precondition: it is not a text.
 template <class Value>
 double number(const Value& value) {
   if constexpr (std::is_arithmetic_v<Value>) {

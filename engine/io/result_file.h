@@ -48,7 +48,7 @@ void write_result(const std::string& path, const Study& study, const SelectedPos
                   const RunFacts& facts);
 
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
-/// folder does not exist, when what stands there is one of the inputs, or neither named like a result (.h5) nor an HDF5
+/// folder does not exist, when the file there is one of the inputs, or neither named like a result (.h5) nor an HDF5
 /// file, FileError when the folder cannot be written.
 void check_result_path(const std::string& path, std::span<const std::string> inputs = {});
 

@@ -250,8 +250,8 @@ std::vector<std::string_view> names_of_numbers(std::span<const TableColumn> colu
   return list;
 }
 
-/// The columns of a table of poses or a trajectory. `poesy export` calls the time "time", and has numbers of the poses
-/// and their condition numbers besides.
+/// The columns of a table of poses or a trajectory. `poesy export` calls the time "time", and adds the numbers of the
+/// poses and their condition numbers.
 KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   KnownColumns known{.numbers = {}, .facts = {"pose", "condition"}, .what = "pose coordinate"};
   const auto add = [&](std::string_view name, Dimension dimension, std::string_view meant) {

@@ -13,7 +13,7 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
 /// Gives a file a second name: POSIX link(), or what stands for it in a test. 0, or -1 and errno.
 using LinkFile = int (*)(const char* existing, const char* second);
 
-/// Puts what stands at `path` at `second` as well, in place of what is there. `path` stays all the while, and `second`
+/// Puts the file at `path` at `second` as well, in place of what is there. `path` stays all the while, and `second`
 /// is replaced at once. A file system without hard links gets a copy. Throws FileError; then both are as they were.
 void put_at_second_name(const std::string& path, const std::string& second, LinkFile link_file);
 

@@ -56,7 +56,7 @@ struct Largest {
   }
 };
 
-/// What stands of one subset at all poses.
+/// The numbers of one subset at all poses.
 struct Summary {
   std::uint64_t count = 0;
   std::uint64_t opposed = 0;

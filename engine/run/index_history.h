@@ -16,7 +16,7 @@ namespace poesy {
 /// What the global indices of a sensitivity study were at its history points (engine/study/history_points.h), put
 /// together as units are merged. As soon as all poses of a slot have reached a point, its indices are computed and what
 /// the poses had is dropped: as cells are solved slot by slot, that of one slot is in memory at a time, 16 bytes for
-/// each response, pose and point; of continued runs and of shards, that of the slots which they cut besides.
+/// each response, pose and point. A continued run, and a shard, also holds that of the slots that it cuts.
 class HistoryCollector {
  public:
   /// Refers to the plan.

@@ -89,7 +89,7 @@ class TemplateLines {
   std::string usual(std::string_view table, std::string_view key, std::string_view sign = "") const;
   /// "KEY: explanation" in comment lines, and below it the words that the key takes.
   std::string explanation_lines(std::string_view table, std::string_view key) const;
-  /// The same for every key of a table, `depth` steps further in: what may stand in an inline table.
+  /// The same for every key of a table, `depth` steps further in: what an inline table may hold.
   std::string keys_lines(std::string_view table, std::size_t depth = 1) const;
   /// An inline table of the keys whose default or example is a value: "{ min = 1000, max = 1000000 }".
   std::string inline_table(std::string_view table) const;
@@ -136,7 +136,7 @@ NumberBounds between_0_and_1(std::string_view example);
 /// A number inside the bounds. Throws InputError at the value's place.
 double read_number(const StudyValue& value, const NumberBounds& bounds);
 
-/// How a value stands in an object, and what a study file may say for it.
+/// Where a value is in an object, and what a study file may say for it.
 template <class Object>
 struct KeyValue {
   std::string type;                                           ///< as StudyKey has it
@@ -146,7 +146,7 @@ struct KeyValue {
   std::function<std::string(const Object&)> text = {};        ///< TOML; none: the row has lines of its own, or none
 };
 
-/// A row: one key of a table, and where its value stands in an object.
+/// A row: one key of a table, and where its value is in an object.
 template <class Object, class Scope>
 struct Key {
   std::string_view name;     ///< as StudyKey has it

@@ -85,8 +85,8 @@ void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
   }
 }
 
-/// Adds to these rows of all samples what some of the errors do, from the v-th on. So few rows of samples at a time are
-/// read that the processor fetches them ahead by itself.
+/// Adds to these rows of all samples what some of the errors do, from the v-th on. Reads few rows of samples at a time,
+/// so that the processor fetches them ahead by itself.
 template <class T, class Shape, class Measure>
 template <std::size_t errors>
 void BlockKernel<T, Shape, Measure>::add_mapped(const KernelMap& map, std::size_t first, std::size_t v) {

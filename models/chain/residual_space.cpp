@@ -10,6 +10,7 @@
 namespace poesy::chain {
 namespace {
 
+/// [pairs, L]: 1 where a limb is k, -1 where it is i.
 Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
   Eigen::MatrixXd incidence = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(chain.pairs.size()),
                                                     static_cast<Eigen::Index>(chain.limbs.size()));
@@ -20,7 +21,7 @@ Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
   return incidence;
 }
 
-/// Rows that are the motions of two limbs as a pair sees them, without what all limbs have in common.
+/// [L - 1, L] N with N^T N = incidence^T incidence: the motions of the limbs without what all have in common.
 Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(incidence.transpose() * incidence);
   const Eigen::Index limbs = incidence.cols();
@@ -32,7 +33,7 @@ Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
   return rows;
 }
 
-/// The upper triangle R [D, D] with |R y| = |rows y| for every y, in place.
+/// The upper triangle R [D, D] with |R y| = factor |rows y| for every y.
 void triangle(Eigen::HouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& rows, double factor,
               Eigen::MatrixXd& R) {
   qr.compute(rows);
@@ -46,9 +47,8 @@ void triangle(Eigen::HouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& 
 
 ResidualSpace::ResidualSpace(const ParallelChain& chain)
     : chain_(&chain),
-      incidence_(incidence_of(chain)),
-      independent_(independent_rows(incidence_)),
-      of_pairs_(incidence_ * independent_.completeOrthogonalDecomposition().pseudoInverse()),
+      independent_(independent_rows(incidence_of(chain))),
+      of_pairs_(incidence_of(chain) * independent_.completeOrthogonalDecomposition().pseudoInverse()),
       of_limb_(chain.limbs.size()) {
   const std::size_t rows = 6 * (chain.limbs.size() - 1);
   const std::size_t joints = chain.passive_joints();
@@ -57,8 +57,8 @@ ResidualSpace::ResidualSpace(const ParallelChain& chain)
   basis_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(dimensions_));
   workspace_.resize(static_cast<Eigen::Index>(dimensions_));
   for (Eigen::MatrixXd& of_limb : of_limb_) of_limb.resize(static_cast<Eigen::Index>(dimensions_), 6);
-  delta_mu_.resize(6 * incidence_.rows(), static_cast<Eigen::Index>(dimensions_));
-  rows_.resize(3 * incidence_.rows(), static_cast<Eigen::Index>(dimensions_));
+  delta_mu_.resize(6 * of_pairs_.rows(), static_cast<Eigen::Index>(dimensions_));
+  rows_.resize(3 * of_pairs_.rows(), static_cast<Eigen::Index>(dimensions_));
   for (Eigen::MatrixXd& R : norms_)
     R.setZero(static_cast<Eigen::Index>(dimensions_), static_cast<Eigen::Index>(dimensions_));
 }

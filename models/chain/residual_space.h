@@ -37,9 +37,8 @@ class ResidualSpace {
   void find_norms(const Metric& metric);
 
   const ParallelChain* chain_;
-  Eigen::MatrixXd incidence_;     ///< [pairs, L] 1 where a limb is k, -1 where it is i
-  Eigen::MatrixXd independent_;   ///< [L - 1, L] F with F^T F = incidence^T incidence
-  Eigen::MatrixXd of_pairs_;      ///< [pairs, L - 1] incidence = of_pairs F
+  Eigen::MatrixXd independent_;   ///< [L - 1, L] N with N^T N = incidence^T incidence
+  Eigen::MatrixXd of_pairs_;      ///< [pairs, L - 1] incidence = of_pairs N
   std::size_t dimensions_ = 0;    ///< D
   lie::Matrix6<double> root_;     ///< U with U^T U = W
   lie::Matrix6<double> inverse_;  ///< of U

@@ -43,4 +43,15 @@ void expect_input_error(Read&& read, const Place& place, const std::vector<std::
   }
 }
 
+/// Why `read` refuses its input; empty where it does not.
+template <class Read>
+std::string refusal_of(Read&& read) {
+  try {
+    read();
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
 }  // namespace poesy::test

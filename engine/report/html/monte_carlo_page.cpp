@@ -26,7 +26,7 @@ Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
   Outline drawn;
   double sum = static_cast<double>(counts.front()) / all;
   for (std::size_t b = 1; b + 1 < bins; ++b) {
-    // Bins that are left over stand at the largest value.
+    // Bins that are left over are at the largest value.
     if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
     const double share = static_cast<double>(counts[b]) / all;
     const double density = share / ((edges[b + 1] - edges[b]) / unit);

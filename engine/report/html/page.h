@@ -55,7 +55,7 @@ class Section {
 /// What a report consists of.
 struct Page {
   std::string title;                  ///< of the study, or of the result
-  std::string subtitle;               ///< what stands below the title
+  std::string subtitle;               ///< below the title
   std::vector<std::string> warnings;  ///< what a reader must know first
   std::deque<Section> sections;       ///< in order
   FigureSet figures;                  ///< of all sections

@@ -40,8 +40,9 @@ std::vector<double> root_sum_squares(std::span<const double> values, std::size_t
 /// correlation is known.
 std::optional<PoseOrder> explaining_order(const StoredResult& result, std::span<const double> values);
 
-/// How the columns of a heat map of these values [P x M] stand at first: the name of the order that explains their root
-/// sum squares; empty, as they come, where there is none, and on a trajectory, whose poses have an order already.
+/// How the columns of a heat map of these values [P x M] are ordered at first: the name of the order that explains
+/// their root sum squares; empty, as they come, where there is none, and on a trajectory, whose poses have an order
+/// already.
 std::string first_order(const StoredResult& result, std::span<const double> values);
 
 /// The indices, and all errors together; by the published estimator where one of both has no other.

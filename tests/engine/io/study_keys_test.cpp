@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "tests/support/fake_model.h"
+#include "tests/support/input_error.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -214,12 +215,7 @@ std::string read(const std::string& text) {
 
 /// Why the study is refused; empty when it is not.
 std::string refusal(const std::string& text) {
-  try {
-    read(text);
-    return {};
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return test::refusal_of([&] { read(text); });
 }
 
 std::string literal(std::string_view usual) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/input_error.h"
+
 namespace poesy {
 namespace {
 
@@ -71,12 +73,7 @@ Part read(const std::string& text, Extent extent = Extent::complete) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    read(text);
-    return {};
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return test::refusal_of([&] { read(text); });
 }
 
 TEST(Keys, SetTheMembersOfTheirRows) {
