@@ -9,7 +9,7 @@
 #include "engine/app/ending.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/report/ranking.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 

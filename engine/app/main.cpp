@@ -6,7 +6,7 @@
 #include "engine/app/ending.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/app/terminal.h"
-#include "engine/io/version.h"
+#include "engine/files/version.h"
 
 namespace poesy::app {
 namespace {

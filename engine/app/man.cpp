@@ -7,7 +7,7 @@
 
 #include "engine/app/command_line.h"
 #include "engine/app/ending.h"
-#include "engine/io/version.h"
+#include "engine/files/version.h"
 
 namespace poesy::app {
 namespace {

@@ -3,9 +3,9 @@
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
 #include "engine/base/error.h"
-#include "engine/io/result_file.h"
-#include "engine/io/shard_file.h"
-#include "engine/io/stored_study.h"
+#include "engine/files/result_file.h"
+#include "engine/files/shard_file.h"
+#include "engine/files/stored_study.h"
 #include "models/registry.h"
 
 namespace poesy::app {

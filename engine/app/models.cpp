@@ -4,7 +4,7 @@
 #include "engine/app/ending.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/io/study_file.h"
+#include "engine/study/study_file.h"
 #include "engine/report/tables.h"
 #include "models/registry.h"
 

@@ -7,9 +7,9 @@
 #include "engine/app/command_line.h"
 #include "engine/app/ending.h"
 #include "engine/app/results.h"
-#include "engine/io/file_writer.h"
-#include "engine/io/output_path.h"
-#include "engine/report/html/report.h"
+#include "engine/files/file_writer.h"
+#include "engine/files/output_path.h"
+#include "engine/kinds/report.h"
 
 namespace poesy::app {
 namespace {

@@ -12,12 +12,12 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/units.h"
-#include "engine/io/shard_file.h"
-#include "engine/io/study_file.h"
+#include "engine/files/shard_file.h"
+#include "engine/study/study_file.h"
 #include "engine/report/solves.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
-#include "engine/run/study_run.h"
+#include "engine/kinds/study_run.h"
 #include "models/registry.h"
 
 namespace poesy::app {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "engine/app/ending.h"
-#include "engine/io/checkpoint.h"
-#include "engine/io/result_file.h"
+#include "engine/files/checkpoint.h"
+#include "engine/files/result_file.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
 #include "engine/study/study.h"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "engine/app/command_line.h"
-#include "engine/io/checkpoint_files.h"
-#include "engine/io/run_lock.h"
+#include "engine/files/checkpoint_files.h"
+#include "engine/files/run_lock.h"
 #include "engine/run/checkpoints.h"
 #include "engine/run/runner.h"
 

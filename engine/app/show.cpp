@@ -14,13 +14,13 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/io/error_words.h"
-#include "engine/io/result_file.h"
+#include "engine/study/error_words.h"
+#include "engine/files/result_file.h"
 #include "engine/report/display.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
-#include "engine/report/two_rankings.h"
+#include "engine/kinds/sensitivity/two_rankings.h"
 
 namespace poesy::app {
 namespace {

@@ -14,12 +14,12 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/io/tolerance_files.h"
-#include "engine/report/index_change.h"
-#include "engine/report/ranking.h"
+#include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/kinds/sensitivity/index_change.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/report/text_table.h"
-#include "engine/report/tolerance_table.h"
-#include "engine/run/sensitivity.h"
+#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/sensitivity/indices.h"
 #include "models/registry.h"
 
 namespace poesy::app {

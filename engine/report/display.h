@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/io/result_file.h"
+#include "engine/files/result_file.h"
 #include "engine/report/table.h"
 
 /// How values are shown: every table makes its columns and cells here.

@@ -3,9 +3,9 @@
 #include <span>
 #include <string>
 
-#include "engine/io/result_file.h"
+#include "engine/files/result_file.h"
 #include "engine/report/table.h"
-#include "engine/report/two_rankings.h"
+#include "engine/kinds/sensitivity/two_rankings.h"
 
 namespace poesy {
 

@@ -10,7 +10,7 @@
 
 #include "engine/base/text.h"
 #include "engine/report/display.h"
-#include "engine/report/kinds.h"
+#include "engine/kinds/report_kind.h"
 #include "engine/report/study_settings.h"
 #include "engine/report/text_table.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/io/result_file.h"
+#include "engine/files/result_file.h"
 
 /// How the solves of a result of any kind ended, and when a reader is warned of those that did not converge.
 namespace poesy {
@@ -24,7 +24,7 @@ constexpr double unremarkable_failure_share(double allowed) {
 /// Whether so many solves of a result did not converge that a reader is warned: more than unremarkable_failure_share.
 bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves);
 
-/// What the second of two fidelities made of the same draws as the first (run/fidelity.h).
+/// What the second of two fidelities made of the same draws as the first (kinds/sensitivity/fidelity.h).
 struct SecondFidelity {
   std::uint64_t not_converged = 0;  ///< of its solves
   std::uint64_t total = 0;          ///< its solves

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/report/display.h"
-#include "engine/report/kinds.h"
+#include "engine/kinds/report_kind.h"
 #include "engine/report/text_table.h"
 
 namespace poesy {

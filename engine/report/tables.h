@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/io/result_file.h"
+#include "engine/files/result_file.h"
 #include "engine/model/catalog.h"
-#include "engine/report/ranking.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 

@@ -7,7 +7,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/run/result.h"
-#include "engine/run/team.h"
+#include "engine/run/ranks/team.h"
 
 namespace poesy {
 

@@ -6,7 +6,7 @@
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
 #include "engine/run/counts.h"
-#include "engine/study/history_points.h"
+#include "engine/kinds/sensitivity/history_points.h"
 
 namespace poesy {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/monte_carlo.h"
+#include "engine/run/pose_unit.h"
 
 namespace poesy {
 namespace {

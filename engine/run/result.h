@@ -51,7 +51,7 @@ struct SeparationResult {
 };
 
 /// What a second fidelity of the model makes of the same draws, compared with the first: R responses, P errors, M
-/// poses; SI. See run/fidelity.h.
+/// poses; SI. See kinds/sensitivity/fidelity.h.
 struct FidelityResult {
   double linearity = 0.01;                   ///< what the two measures below may be for a verdict of 1
   std::vector<double> global;                ///< [R x P] as of SensitivityResult, by the second fidelity
@@ -111,10 +111,10 @@ struct SensitivityResult {
   std::vector<double> global_corrected_ci_low;   ///< [R x P]
   std::vector<double> global_corrected_ci_high;  ///< [R x P]
   std::vector<double> rounding;                  ///< [R] standard deviation up to which an effect may be rounding
-  /// [R x P] index at a tenth of the study's sizes over that at these sizes, less 1 (run/linearity.h); NaN where that
+  /// [R x P] index at a tenth of the study's sizes over that at these sizes, less 1 (kinds/sensitivity/linearity.h); NaN where that
   /// is not known. Empty in files of older versions.
   std::vector<double> index_change;
-  /// [2 x R] Kendall's tau with the ranking by points of the metric at kPointsRadii (run/points_radius.h). Empty where
+  /// [2 x R] Kendall's tau with the ranking by points of the metric at kPointsRadii (kinds/sensitivity/points_radius.h). Empty where
   /// the mechanism has no such metric, and in files of older versions.
   std::vector<double> radius_tau;
   std::vector<double> background;              ///< [R x M] all varied errors zero; NaN where that was not solved
@@ -125,7 +125,7 @@ struct SensitivityResult {
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
   /// The global indices after fewer samples, where it has a fixed number of them, with intervals: each is what a study
-  /// with exactly so many samples at each pose (engine/study/history_points.h) would find, bit by bit. The last is the
+  /// with exactly so many samples at each pose (engine/kinds/sensitivity/history_points.h) would find, bit by bit. The last is the
   /// result's. Not in files of older versions.
   std::optional<EstimateCourse> history;
 
@@ -262,7 +262,7 @@ struct IdentificationResult {
 };
 
 /// What error sources do one by one and together: R responses, Z sizes, K subsets of the sources, M poses; SI. NaN
-/// where a solve that a number rests on does not count. What each number means: engine/run/coupling.h.
+/// where a solve that a number rests on does not count. What each number means: engine/kinds/coupling/coupling.h.
 struct CouplingResult {
   std::size_t responses = 0;  ///< R
   std::size_t sizes = 0;      ///< Z

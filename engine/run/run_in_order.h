@@ -10,7 +10,7 @@
 
 #include "engine/run/result.h"
 #include "engine/run/run_in_slots.h"
-#include "engine/run/run_over_ranks.h"
+#include "engine/run/ranks/run_over_ranks.h"
 #include "engine/run/runner.h"
 
 namespace poesy {

@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/identification.h"
-#include "engine/run/monte_carlo.h"
-#include "engine/run/monte_carlo_collector.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/run/pose_unit.h"
+#include "engine/kinds/monte_carlo/collector.h"
 #include "engine/run/pending_units.h"
 #include "engine/run/rounds.h"
 #include "engine/run/run_in_order.h"
-#include "engine/run/sensitivity.h"
-#include "engine/run/sensitivity_collector.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/collector.h"
 #include "engine/stats/mean_interval.h"
-#include "engine/study/history_points.h"
+#include "engine/kinds/sensitivity/history_points.h"
 
 namespace poesy {
 namespace {

@@ -11,7 +11,7 @@
 #include "engine/run/checkpoints.h"
 #include "engine/run/result.h"
 #include "engine/run/shard.h"
-#include "engine/run/team.h"
+#include "engine/run/ranks/team.h"
 #include "engine/study/plan.h"
 
 namespace poesy {

@@ -12,7 +12,7 @@
 #include "engine/base/index.h"
 #include "engine/model/catalog.h"
 #include "engine/random/distribution.h"
-#include "engine/study/pose_selection.h"
+#include "engine/study/poses/pose_selection.h"
 
 namespace poesy {
 
@@ -81,7 +81,7 @@ struct ErrorPattern {
   std::vector<std::string> axes;    ///< for some: "x", "y", "z"; scalars are kept besides
 };
 
-/// What a coupling study asks for. See engine/run/coupling.h.
+/// What a coupling study asks for. See engine/kinds/coupling/coupling.h.
 struct CouplingStudy {
   std::vector<double> linear;        ///< [Z] m, sizes of the runs; empty where no error is a length
   std::vector<double> angular;       ///< [Z] rad; empty where no error is an angle
@@ -146,7 +146,7 @@ enum class NotConverged {
   include   ///< the last iterate counts, as in the published procedure
 };
 
-/// What a study file says, complete and consistent. See engine/io/study_file.h for reading one.
+/// What a study file says, complete and consistent. See engine/study/study_file.h for reading one.
 struct Study {
   std::string title;                                   ///< free text
   MechanismChoice mechanism;                           ///< which, and its geometry

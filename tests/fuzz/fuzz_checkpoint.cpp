@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/io/checkpoint.h"
-#include "engine/io/sha256.h"
+#include "engine/files/checkpoint.h"
+#include "engine/files/sha256.h"
 #include "engine/run/evaluation_state.h"
-#include "engine/run/monte_carlo_collector.h"
-#include "engine/run/sensitivity.h"
-#include "engine/run/sensitivity_collector.h"
+#include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/collector.h"
 #include "tests/fuzz/small_plans.h"
 #include "tests/fuzz/target.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/io/table_file.h"
+#include "engine/study/table_file.h"
 #include "models/registry.h"
 #include "tests/fuzz/target.h"
 

@@ -1,15 +1,15 @@
 // A result file, or a shard of one. What reads is printed, reported and exported. A crash or a hang of HDF5 in the
-// child that reads first (engine/io/trial_read.h) is no finding; one in this process is.
+// child that reads first (engine/files/trial_read.h) is no finding; one in this process is.
 #include <sys/resource.h>
 
 #include <filesystem>
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/io/output_folder.h"
-#include "engine/io/result_file.h"
-#include "engine/io/shard_file.h"
-#include "engine/report/html/report.h"
+#include "engine/files/output_folder.h"
+#include "engine/files/result_file.h"
+#include "engine/files/shard_file.h"
+#include "engine/kinds/report.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"

@@ -7,11 +7,11 @@
 #include <limits>
 #include <string>
 
-#include "engine/io/checkpoint.h"
-#include "engine/io/shard_file.h"
-#include "engine/run/cases.h"
+#include "engine/files/checkpoint.h"
+#include "engine/files/shard_file.h"
+#include "engine/kinds/evaluate/cases.h"
 #include "engine/run/evaluation_state.h"
-#include "tests/engine/io/example_result.h"
+#include "tests/engine/kinds/example_result.h"
 #include "tests/fuzz/small_plans.h"
 
 namespace {

@@ -1,4 +1,4 @@
-"""Checks the example results of tests/engine/io/example_result.h: names, units and every value, with h5py and xarray.
+"""Checks the example results of tests/engine/kinds/example_result.h: names, units and every value, with h5py and xarray.
 
 usage: check_values.py SENSITIVITY.h5 EVALUATE.h5 PAIRED.h5
 """

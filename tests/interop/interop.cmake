@@ -13,7 +13,7 @@ foreach(tool POESY_PYTHON POESY_OCTAVE POESY_H5DUMP)
 endforeach()
 
 add_executable(write_examples interop/write_examples.cpp)
-target_link_libraries(write_examples PRIVATE poesy_io poesy_options)
+target_link_libraries(write_examples PRIVATE poesy_kinds poesy_options)
 
 set(examples ${CMAKE_CURRENT_BINARY_DIR}/interop)
 file(MAKE_DIRECTORY ${examples})

@@ -3,7 +3,7 @@
 #include <exception>
 #include <string>
 
-#include "tests/engine/io/example_result.h"
+#include "tests/engine/kinds/example_result.h"
 
 int main(int argc, char** argv) try {
   using poesy::Pairing;

@@ -14,6 +14,6 @@ poesy_test(three_prs_test LABELS unit
                    models/three_prs/model_test.cpp models/three_prs/separation_test.cpp
                    models/three_prs/trajectory_test.cpp
            LINKS poesy_models poesy_study nlohmann_json::nlohmann_json DATA)
-poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_run poesy_models)
+poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_kinds poesy_models)
 # Of every mechanism in the registry, whatever it is.
-poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_io poesy_models)
+poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_kinds poesy_models)

@@ -10,7 +10,7 @@
 #include <set>
 #include <tuple>
 
-#include "engine/io/study_file.h"
+#include "engine/study/study_file.h"
 
 namespace poesy {
 namespace {

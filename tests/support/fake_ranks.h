@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "engine/run/team.h"
+#include "engine/run/ranks/team.h"
 
 namespace poesy::test {
 

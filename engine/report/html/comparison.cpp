@@ -8,7 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
-#include "engine/report/kinds.h"
+#include "engine/kinds/report_kind.h"
 
 namespace poesy {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "engine/io/version.h"
+#include "engine/files/version.h"
 #include "engine/report/html/markup.h"
-#include "engine/report/html/report.h"
+#include "engine/kinds/report.h"
 
 namespace poesy {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "engine/report/display.h"
-#include "engine/report/kinds.h"
+#include "engine/kinds/report_kind.h"
 
 namespace poesy {
 

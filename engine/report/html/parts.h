@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/io/result_file.h"
+#include "engine/files/result_file.h"
 #include "engine/report/html/figures.h"
 #include "engine/report/html/page.h"
 

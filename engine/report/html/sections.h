@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/report/html/page.h"
-#include "engine/report/html/report.h"
+#include "engine/kinds/report.h"
 
 /// The sections that results of all kinds have.
 namespace poesy {

@@ -5,7 +5,7 @@
 
 #include "engine/report/display.h"
 #include "engine/report/html/sections.h"
-#include "engine/report/kinds.h"
+#include "engine/kinds/report_kind.h"
 #include "engine/report/study_settings.h"
 
 namespace poesy {

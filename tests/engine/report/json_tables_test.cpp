@@ -6,7 +6,7 @@
 #include <set>
 
 #include "engine/report/tables.h"
-#include "tests/engine/report/ranked_result.h"
+#include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {
 namespace {

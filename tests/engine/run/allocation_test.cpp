@@ -12,7 +12,7 @@
 
 #include "bench/published_study.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/monte_carlo.h"
+#include "engine/run/pose_unit.h"
 #include "models/registry.h"
 #include "tests/models/chain/block_samples.h"
 

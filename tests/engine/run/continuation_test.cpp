@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/engine/run/study_kinds.h"
+#include "tests/engine/kinds/study_kinds.h"
 
 namespace poesy {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/run/run_in_order.h"
-#include "tests/engine/run/study_kinds.h"
+#include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
 
 namespace poesy {

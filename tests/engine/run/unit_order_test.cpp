@@ -5,9 +5,9 @@
 #include <random>
 
 #include "bench/published_study.h"
-#include "engine/io/result_file.h"
+#include "engine/files/result_file.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/sensitivity.h"
+#include "engine/kinds/sensitivity/indices.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {

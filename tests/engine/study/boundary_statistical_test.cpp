@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "engine/study/boundary.h"
+#include "engine/study/poses/boundary.h"
 #include "tests/engine/study/region.h"
 
 namespace poesy {

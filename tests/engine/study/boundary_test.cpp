@@ -1,4 +1,4 @@
-#include "engine/study/boundary.h"
+#include "engine/study/poses/boundary.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/study/pose_selection.h"
+#include "engine/study/poses/pose_selection.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/study/pose_selection.h"
+#include "engine/study/poses/pose_selection.h"
 #include "tests/support/fake_model.h"
 
 namespace poesy::test {

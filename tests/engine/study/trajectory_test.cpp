@@ -1,10 +1,10 @@
-#include "engine/study/trajectory.h"
+#include "engine/study/poses/trajectory.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/study/pose_selection.h"
+#include "engine/study/poses/pose_selection.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 

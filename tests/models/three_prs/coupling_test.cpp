@@ -1,4 +1,4 @@
-#include "engine/run/coupling.h"
+#include "engine/kinds/coupling/coupling.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/study/pose_selection.h"
+#include "engine/study/poses/pose_selection.h"
 #include "tests/models/three_prs/reference.h"
 
 namespace poesy::three_prs {

@@ -6,9 +6,9 @@
 #include <variant>
 
 #include "engine/base/error.h"
-#include "engine/io/result_file.h"
-#include "engine/io/study_file.h"
-#include "engine/run/study_run.h"
+#include "engine/files/result_file.h"
+#include "engine/study/study_file.h"
+#include "engine/kinds/study_run.h"
 #include "models/registry.h"
 
 namespace {

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/files/fields.h"
+#include "engine/files/result_file.h"
+
+/// CSV files as plain values. They refer to the result that they show.
+namespace poesy {
+
+/// A text for each line of a CSV file.
+struct CsvText {
+  std::string heading;                                ///< as it is written
+  std::function<std::string(std::size_t line)> text;  ///< as it is written
+};
+
+/// A number for each line of a CSV file.
+struct CsvColumn {
+  std::string heading;                             ///< with its unit, see with_unit()
+  std::function<double(std::size_t line)> number;  ///< SI, or in the heading's unit
+};
+
+/// A CSV file: in the first line the names of the columns, then one line for each thing.
+struct CsvTable {
+  std::string name;                                ///< of the file, without ".csv"
+  CsvText first;                                   ///< the first cell of a line, or its first cells with their commas
+  std::size_t lines = 0;                           ///< without the names
+  std::vector<CsvColumn> columns = {};             ///< NaN is written as "NaN", a count with all its digits
+  CsvText last = {};                               ///< a cell after the numbers; none where it has no heading
+  std::function<bool(std::size_t line)> has = {};  ///< whether the file has this line; all where empty
+};
+
+/// Several, in the order in which they are listed.
+using CsvTables = std::vector<CsvTable>;
+
+/// "name [unit]", or the name alone for a pure number.
+std::string with_unit(const std::string& name, const std::string& unit);
+
+/// Writes it into an existing folder. Gives the path. Throws FileError.
+std::string write_csv(const std::string& folder, const CsvTable& table);
+
+/// The SI units of things that may differ: "m", or "m or rad".
+std::string si_units(const std::vector<NamedUnit>& things);
+/// The units in which people read them: "mm or deg".
+std::string display_units(const std::vector<NamedUnit>& things);
+
+/// The unit of a row of fields.h in CSV. response: of its numbers, where they belong to one.
+std::string csv_unit(const std::string& unit, const StoredResult& result, const NamedUnit* response = nullptr);
+
+/// A table with a line for each error of the result.
+CsvTable lines_of_factors(const StoredResult& result, std::string name);
+/// A table with a line for each pose.
+CsvTable lines_of_poses(const StoredResult& result, std::string name);
+
+/// A column of the elements first, first + step, ... of a list, or of get(element).
+template <class Thing, class Get = std::identity>
+CsvColumn list_column(std::string heading, const std::vector<Thing>& list, std::size_t first = 0, std::size_t step = 1,
+                      Get get = {}) {
+  return {std::move(heading), [&list, first, step, get](std::size_t line) {
+            return static_cast<double>(std::invoke(get, list[first + line * step]));
+          }};
+}
+
+/// The same of a row of fields.h.
+template <class Found>
+CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t first = 0,
+                       std::size_t step = 1) {
+  return {std::move(heading),
+          [&field, &found, first, step](std::size_t line) { return number_at(field, found, first + line * step); }};
+}
+
+/// Appends "pose_0", "pose_1", ... with the unit: a column for each pose of a row along [factor x pose], the last axes
+/// of the row. first: its first element.
+template <class Found>
+void append_pose_columns(CsvTable& table, const StoredResult& result, const FieldRow<Found>& field, const Found& found,
+                         std::size_t first, const std::string& unit) {
+  const std::size_t poses = result.poses.size();
+  for (std::size_t m = 0; m < poses; ++m) {
+    const std::string heading = with_unit("pose_" + std::to_string(m), unit);
+    table.columns.push_back(field_column(heading, field, found, first + m, poses));
+  }
+}
+
+/// A table with a line for each error and a column for each pose, of a row along [factor x pose].
+template <class Found>
+CsvTable cell_table(const StoredResult& result, std::string name, const FieldRow<Found>& field, const Found& found) {
+  CsvTable table = lines_of_factors(result, std::move(name));
+  append_pose_columns(table, result, field, found, 0, csv_unit(field.unit, result));
+  return table;
+}
+
+}  // namespace poesy

@@ -1,0 +1,466 @@
+#include "engine/files/h5.h"
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+
+#include "engine/base/contract.h"
+
+namespace poesy::h5 {
+namespace {
+
+static_assert(std::is_same_v<hid_t, std::int64_t>, "File stores HDF5's ids as 64-bit integers");
+
+// The innermost entry of HDF5's error stack is the reason; the outer ones only say who called.
+herr_t take_reason(unsigned depth, const H5E_error2_t* entry, void* reason) {
+  if (depth == 0 && entry->desc != nullptr) *static_cast<std::string*>(reason) = entry->desc;
+  return 0;
+}
+
+[[noreturn]] void fail(const char* action, const std::string& object) {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_reason, &reason);
+  throw Error(std::string("cannot ") + action + " " + object + (reason.empty() ? "" : " (" + reason + ")"));
+}
+
+template <class Result>
+Result checked(Result result, const char* action, const std::string& object) {
+  if (result < 0) fail(action, object);
+  return result;
+}
+
+/// Owns an id of any kind.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Handle(hid_t id, Close close, const char* action, const std::string& object)
+      : id_(checked(id, action, object)), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ != H5I_INVALID_HID) close_(id_);
+  }
+
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::string attribute_name(const std::string& path, const std::string& name) {
+  return "attribute '" + name + "' of " + path;
+}
+
+Handle property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "make a property list for", "a new object"}; }
+
+Handle open_object(hid_t file, const std::string& path) {
+  return {H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, "open", path};
+}
+
+Handle open_dataset(hid_t file, const std::string& path) {
+  return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open dataset", path};
+}
+
+Handle open_attribute(hid_t file, const std::string& path, const std::string& name) {
+  return {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "open",
+          attribute_name(path, name)};
+}
+
+Handle text_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make", "the text type");
+  checked(H5Tset_size(type.get(), H5T_VARIABLE), "size", "the text type");
+  checked(H5Tset_cset(type.get(), H5T_CSET_UTF8), "set the encoding of", "the text type");
+  return type;
+}
+
+template <class T>
+Handle element_type() {
+  if constexpr (std::is_same_v<T, std::string>) return text_type();
+  hid_t type = H5T_IEEE_F64LE;
+  if constexpr (std::is_same_v<T, std::int64_t>) type = H5T_STD_I64LE;
+  if constexpr (std::is_same_v<T, std::uint64_t>) type = H5T_STD_U64LE;
+  if constexpr (std::is_same_v<T, std::uint32_t>) type = H5T_STD_U32LE;
+  if constexpr (std::is_same_v<T, std::uint8_t>) type = H5T_STD_U8LE;
+  return {H5Tcopy(type), H5Tclose, "make", "a number type"};
+}
+
+Handle space_of(const Shape& shape) {
+  if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose, "make", "a scalar space"};
+  const std::vector<hsize_t> lengths(shape.begin(), shape.end());
+  return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose, "make", "a space"};
+}
+
+// Sixteen GiB of doubles. Two such numbers can be multiplied without overflow.
+constexpr hsize_t kMostElements = hsize_t{1} << 31U;
+constexpr std::size_t kWidestNumber = 16;
+
+Shape shape_of(hid_t space, const std::string& object) {
+  const int rank = checked(H5Sget_simple_extent_ndims(space), "read the shape of", object);
+  std::vector<hsize_t> lengths(static_cast<std::size_t>(rank));
+  checked(H5Sget_simple_extent_dims(space, lengths.data(), nullptr), "read the shape of", object);
+  hsize_t count = 1;
+  for (const hsize_t length : lengths) {
+    if (length > 0 && count > kMostElements / length) throw Error(object + " has more elements than any result");
+    count *= length;
+  }
+  return {lengths.begin(), lengths.end()};
+}
+
+std::vector<const char*> pointers(std::span<const std::string> strings) {
+  std::vector<const char*> list;
+  for (const std::string& text : strings) list.push_back(text.c_str());
+  return list;
+}
+
+/// The memory that HDF5 takes elements from: the values themselves, or pointers to texts.
+template <class T, class Write>
+herr_t with_elements(std::span<const T> values, const Write& write) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return write(pointers(values).data());
+  } else {
+    return write(values.data());
+  }
+}
+
+/// A dataset or attribute as HDF5 reads it: its type, its space, and the call that reads it.
+struct Source {
+  Handle type;
+  Handle space;
+  std::string object;
+
+  std::size_t count() const { return size(shape_of(space.get(), object)); }
+  bool variable_text() const { return H5Tis_variable_str(type.get()) > 0; }
+};
+
+Source source_of_dataset(hid_t dataset, const std::string& path) {
+  return {.type = {H5Dget_type(dataset), H5Tclose, "read the type of", path},
+          .space = {H5Dget_space(dataset), H5Sclose, "read the shape of", path},
+          .object = path};
+}
+
+Source source_of_attribute(hid_t attribute, const std::string& object) {
+  return {.type = {H5Aget_type(attribute), H5Tclose, "read the type of", object},
+          .space = {H5Aget_space(attribute), H5Sclose, "read the shape of", object},
+          .object = object};
+}
+
+/// Returns HDF5's copies of texts to HDF5.
+class TextBuffer {
+ public:
+  TextBuffer(std::size_t count, hid_t type, hid_t space) : pointers_(count, nullptr), type_(type), space_(space) {}
+  TextBuffer(const TextBuffer&) = delete;
+  TextBuffer& operator=(const TextBuffer&) = delete;
+  ~TextBuffer() { H5Dvlen_reclaim(type_, space_, H5P_DEFAULT, pointers_.data()); }
+
+  char** data() { return pointers_.data(); }
+  std::vector<std::string> strings() const {
+    std::vector<std::string> list;
+    for (const char* text : pointers_) list.emplace_back(text == nullptr ? "" : text);
+    return list;
+  }
+
+ private:
+  std::vector<char*> pointers_;
+  hid_t type_;
+  hid_t space_;
+};
+
+/// `read(memory type, buffer)` is H5Dread or H5Aread with everything else bound.
+template <class Read>
+std::vector<std::string> read_texts(const Source& source, const Read& read) {
+  if (!source.variable_text()) throw Error(source.object + " is not text of variable length");
+  const Handle type = text_type();
+  // The file's own encoding is kept: HDF5 does not convert between encodings.
+  checked(H5Tset_cset(type.get(), H5Tget_cset(source.type.get())), "set the encoding of", source.object);
+  TextBuffer buffer(source.count(), type.get(), source.space.get());
+  checked(read(type.get(), buffer.data()), "read", source.object);
+  return buffer.strings();
+}
+
+template <class T, class Read>
+std::vector<T> read_all(const Source& source, const Read& read) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return read_texts(source, read);
+  } else {
+    const Handle type = element_type<T>();
+    std::vector<T> values(source.count());
+    checked(read(type.get(), values.data()), "read", source.object);
+    return values;
+  }
+}
+
+template <class Read>
+Value read_value(const Source& source, const Read& read) {
+  Value value;
+  value.shape = shape_of(source.space.get(), source.object);
+  const H5T_class_t kind = H5Tget_class(source.type.get());
+  if (kind == H5T_STRING) {
+    value.strings = read_texts(source, read);
+    return value;
+  }
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(source.object + " is neither numbers nor text");
+  value.type = kind == H5T_FLOAT                                ? Value::Type::floating
+               : H5Tget_sign(source.type.get()) == H5T_SGN_NONE ? Value::Type::unsigned_integer
+                                                                : Value::Type::signed_integer;
+  value.width = H5Tget_size(source.type.get());
+  if (value.width > kWidestNumber) {
+    throw Error(source.object + " has numbers of " + std::to_string(value.width) + " bytes");
+  }
+  const Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.object);
+  checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.object);
+  value.numbers.resize(size(value.shape) * value.width);
+  checked(read(type.get(), value.numbers.data()), "read", source.object);
+  return value;
+}
+
+auto dataset_reader(hid_t dataset) {
+  return [dataset](hid_t type, void* data) { return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data); };
+}
+
+auto attribute_reader(hid_t attribute) {
+  return [attribute](hid_t type, void* data) { return H5Aread(attribute, type, data); };
+}
+
+template <class T>
+void create_attribute(hid_t file, const std::string& path, const std::string& name, const Shape& shape,
+                      std::span<const T> values) {
+  const std::string object = attribute_name(path, name);
+  const Handle type = element_type<T>();
+  const Handle space = space_of(shape);
+  const Handle owner = open_object(file, path);
+  const Handle attribute(H5Acreate2(owner.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, "make", object);
+  checked(with_elements(values, [&](const void* data) { return H5Awrite(attribute.get(), type.get(), data); }), "write",
+          object);
+}
+
+herr_t add_link_name(hid_t, const char* name, const H5L_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+herr_t add_attribute_name(hid_t, const char* name, const H5A_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+// netCDF readers want to know in which order things came into being.
+constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+// Links and attributes stay in the object's header, which has a checksum, rather than move to a heap when there are
+// many: HDF5 1.10 frees what it never allocated when it meets a damaged heap.
+constexpr unsigned kMostInHeader = 1000;
+
+/// Same bytes for the same content: no times.
+Handle object_properties(hid_t kind) {
+  Handle properties = property_list(kind);
+  checked(H5Pset_obj_track_times(properties.get(), false), "drop the times of", "a new object");
+  checked(H5Pset_attr_creation_order(properties.get(), kCreationOrder), "order the attributes of", "a new object");
+  checked(H5Pset_attr_phase_change(properties.get(), kMostInHeader, 0), "place the attributes of", "a new object");
+  return properties;
+}
+
+Handle group_properties(hid_t kind) {
+  Handle properties = object_properties(kind);
+  checked(H5Pset_link_creation_order(properties.get(), kCreationOrder), "order the links of", "a group");
+  checked(H5Pset_link_phase_change(properties.get(), kMostInHeader, 0), "place the links of", "a group");
+  return properties;
+}
+
+}  // namespace
+
+std::size_t size(const Shape& shape) {
+  std::size_t count = 1;
+  for (const std::size_t length : shape) count *= length;
+  return count;
+}
+
+File File::in_memory() {
+  silence();
+  constexpr std::size_t kGrowth = 1 << 20;
+  const Handle access = property_list(H5P_FILE_ACCESS);
+  checked(H5Pset_fapl_core(access.get(), kGrowth, 0), "prepare", "a file in memory");
+  const Handle creation = group_properties(H5P_FILE_CREATE);
+  const hid_t id = H5Fcreate("in memory", H5F_ACC_TRUNC, creation.get(), access.get());
+  File file(checked(id, "make", "a file in memory"));
+  // From version 1.8 of the format on metadata carries checksums. Not asked for before the file exists:
+  // H5Fget_file_image spoils the checksum of the superblock, so the superblock must be of the older kind that has none.
+  checked(H5Fset_libver_bounds(id, H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the version of", "the file");
+  return file;
+}
+
+File File::open(const std::string& path) {
+  silence();
+  const Handle access = property_list(H5P_FILE_ACCESS);
+  // Result files are replaced, never changed in place: nothing to lock, and some file systems cannot.
+  checked(H5Pset_file_locking(access.get(), 0, 1), "switch off locking of", path);
+  return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "open", path));
+}
+
+File::File(File&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+
+File& File::operator=(File&& other) noexcept {
+  std::swap(id_, other.id_);
+  return *this;
+}
+
+File::~File() {
+  if (id_ != H5I_INVALID_HID) H5Fclose(id_);
+}
+
+std::vector<std::byte> File::image() const {
+  checked(H5Fflush(id_, H5F_SCOPE_GLOBAL), "flush", "the file");
+  const ssize_t length = checked(H5Fget_file_image(id_, nullptr, 0), "measure", "the file");
+  std::vector<std::byte> bytes(static_cast<std::size_t>(length));
+  checked(H5Fget_file_image(id_, bytes.data(), bytes.size()), "copy", "the file");
+  return bytes;
+}
+
+void File::make_group(const std::string& path) {
+  const Handle creation = group_properties(H5P_GROUP_CREATE);
+  const Handle group(H5Gcreate2(id_, path.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), H5Gclose, "make group",
+                     path);
+}
+
+template <Element T>
+void File::write(const std::string& path, const Shape& shape, std::span<const T> values) {
+  POESY_EXPECTS(values.size() == size(shape));
+  const Handle creation = object_properties(H5P_DATASET_CREATE);
+  // Inside the object's header, where checksums are, as far as there is room: what HDF5 stores of a text is where to
+  // find it.
+  constexpr std::size_t kHeaderRoom = 2000;
+  if (std::is_same_v<T, std::string> && values.size() <= kHeaderRoom) {
+    checked(H5Pset_layout(creation.get(), H5D_COMPACT), "choose the layout of", path);
+  }
+  const Handle type = element_type<T>();
+  const Handle space = space_of(shape);
+  const Handle dataset(H5Dcreate2(id_, path.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                       H5Dclose, "make dataset", path);
+  const auto write = [&](const void* data) {
+    return H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+  };
+  checked(with_elements(values, write), "write", path);
+}
+
+template <Element T>
+void File::set_attribute(const std::string& path, const std::string& name, const T& value) {
+  create_attribute<T>(id_, path, name, {}, std::span(&value, 1));
+}
+
+template <Element T>
+void File::set_attribute(const std::string& path, const std::string& name, std::span<const T> values) {
+  create_attribute<T>(id_, path, name, {values.size()}, values);
+}
+
+void File::make_scale(const std::string& path) {
+  const Handle dataset = open_dataset(id_, path);
+  const std::string name = path.substr(path.rfind('/') + 1);
+  checked(H5DSset_scale(dataset.get(), name.c_str()), "make a dimension scale of", path);
+}
+
+void File::attach_scale(const std::string& dataset, std::size_t axis, const std::string& scale) {
+  const Handle labelled = open_dataset(id_, dataset);
+  const Handle labels = open_dataset(id_, scale);
+  checked(H5DSattach_scale(labelled.get(), labels.get(), static_cast<unsigned>(axis)), "attach a dimension scale to",
+          dataset);
+}
+
+void File::link(const std::string& existing, const std::string& second) {
+  checked(H5Lcreate_hard(id_, existing.c_str(), id_, second.c_str(), H5P_DEFAULT, H5P_DEFAULT), "link", second);
+}
+
+bool File::exists(const std::string& path) const {
+  // HDF5 answers for the last part of a path only: ask for each part from the root on.
+  for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
+    const std::string part = path.substr(0, slash);
+    if (checked(H5Lexists(id_, part.c_str(), H5P_DEFAULT), "look for", part) == 0) return false;
+    if (slash == std::string::npos) return true;
+  }
+}
+
+bool File::is_group(const std::string& path) const { return H5Iget_type(open_object(id_, path).get()) == H5I_GROUP; }
+
+std::vector<std::string> File::children(const std::string& path) const {
+  const Handle group = open_object(id_, path);
+  std::vector<std::string> names;
+  checked(H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_link_name, &names), "list", path);
+  std::ranges::sort(names);
+  return names;
+}
+
+std::vector<std::string> File::attributes(const std::string& path) const {
+  const Handle object = open_object(id_, path);
+  std::vector<std::string> names;
+  checked(H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_attribute_name, &names),
+          "list the attributes of", path);
+  std::ranges::sort(names);
+  return names;
+}
+
+bool File::has_attribute(const std::string& path, const std::string& name) const {
+  return checked(H5Aexists_by_name(id_, path.c_str(), name.c_str(), H5P_DEFAULT), "look for",
+                 attribute_name(path, name)) > 0;
+}
+
+Shape File::shape(const std::string& path) const {
+  const Handle dataset = open_dataset(id_, path);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose, "read the shape of", path);
+  return shape_of(space.get(), path);
+}
+
+template <Element T>
+std::vector<T> File::read(const std::string& path) const {
+  const Handle dataset = open_dataset(id_, path);
+  return read_all<T>(source_of_dataset(dataset.get(), path), dataset_reader(dataset.get()));
+}
+
+template <Element T>
+std::vector<T> File::attribute(const std::string& path, const std::string& name) const {
+  const Handle attribute = open_attribute(id_, path, name);
+  return read_all<T>(source_of_attribute(attribute.get(), attribute_name(path, name)),
+                     attribute_reader(attribute.get()));
+}
+
+Value File::value(const std::string& path) const {
+  const Handle dataset = open_dataset(id_, path);
+  return read_value(source_of_dataset(dataset.get(), path), dataset_reader(dataset.get()));
+}
+
+Value File::attribute_value(const std::string& path, const std::string& name) const {
+  const Handle attribute = open_attribute(id_, path, name);
+  return read_value(source_of_attribute(attribute.get(), attribute_name(path, name)),
+                    attribute_reader(attribute.get()));
+}
+
+#define POESY_H5_ELEMENT(T)                                                                         \
+  template void File::write<T>(const std::string&, const Shape&, std::span<const T>);               \
+  template void File::set_attribute<T>(const std::string&, const std::string&, const T&);           \
+  template void File::set_attribute<T>(const std::string&, const std::string&, std::span<const T>); \
+  template std::vector<T> File::read<T>(const std::string&) const;                                  \
+  template std::vector<T> File::attribute<T>(const std::string&, const std::string&) const;
+POESY_H5_ELEMENT(double)
+POESY_H5_ELEMENT(std::int64_t)
+POESY_H5_ELEMENT(std::uint64_t)
+POESY_H5_ELEMENT(std::uint32_t)
+POESY_H5_ELEMENT(std::uint8_t)
+POESY_H5_ELEMENT(std::string)
+#undef POESY_H5_ELEMENT
+
+void close_library() { checked(H5close(), "close", "HDF5"); }
+
+std::string library_version() {
+  unsigned major = 0;
+  unsigned minor = 0;
+  unsigned release = 0;
+  checked(H5get_libversion(&major, &minor, &release), "ask for the version of", "HDF5");
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+}
+
+}  // namespace poesy::h5

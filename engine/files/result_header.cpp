@@ -1,0 +1,277 @@
+#include <algorithm>
+#include <numeric>
+
+#include "engine/files/content_hash.h"
+#include "engine/files/poesy_file.h"
+#include "engine/files/result_parts.h"
+#include "engine/study/study_file.h"
+#include "engine/files/version.h"
+#include "engine/kinds/sensitivity/points_radius.h"
+
+namespace poesy {
+namespace {
+
+const Fields<SelectedPoses> kPoseFields{
+    {"time", &SelectedPoses::time, kByPose, "s", "When the trajectory reaches the pose", "time"},
+    {"condition", &SelectedPoses::condition, kByPose, "1",
+     "Condition number of the passive joints' Jacobian; infinity at a singular pose", "condition"}};
+
+const Fields<RejectedPoses> kRejectedFields{
+    {"reason", &RejectedPoses::reason, {"rejection"}, "1", "Why poses were rejected"},
+    {"count", &RejectedPoses::count, {"rejection"}, "1", "Candidate poses rejected for this reason"}};
+
+const Fields<RunFacts> kFactFields{{"created", &RunFacts::created, {}, "1", "When the run ended (UTC, ISO 8601)"},
+                                   {"host", &RunFacts::host, {}, "1", "Name of the machine"},
+                                   {"cpu", &RunFacts::cpu, {}, "1", "Its processor"},
+                                   {"threads", &RunFacts::threads, {}, "1", "Threads, of all ranks together"},
+                                   {"ranks", &RunFacts::ranks, {}, "1", "MPI ranks"},
+                                   {"wall_seconds", &RunFacts::wall_seconds, {}, "s", "Time the solves took"},
+                                   {"checkpoint_seconds",
+                                    &RunFacts::checkpoint_seconds,
+                                    {},
+                                    "s",
+                                    "Of that time, spent on checkpoints",
+                                    "checkpoint_seconds"},
+                                   {"solves", &RunFacts::solves, {}, "1", "Solves of the mechanism"}};
+
+/// Rows of a list of things with names. what: "error", on the axis "factor", for instance.
+Fields<NamedUnit> name_fields(const std::string& axis, const std::string& what) {
+  const std::string name = "Name of the " + what;
+  const std::string unit = "SI unit of the " + what;
+  const std::string description = "What the " + what + " is, in words";
+  const Axes axes{axis};
+  return {{"name", &NamedUnit::name, axes, "1", name},
+          {"unit", &NamedUnit::unit, axes, "1", unit},
+          {"description", &NamedUnit::description, axes, "1", description, "description"}};
+}
+
+template <class Thing>
+NamedUnit named(const Thing& thing) {
+  return {thing.name, unit_of(thing), thing.description};
+}
+
+void add_named(ResultBuilder& result, const std::string& axis, const std::string& what,
+               const std::vector<NamedUnit>& things) {
+  const std::string group = "/" + axis + "s";
+  result.add_axis(axis, texts(things, &NamedUnit::name), {"1", "Name of the " + what});
+  result.file().make_group(group);
+  write_columns(result, group, name_fields(axis, what), things);
+}
+
+std::vector<NamedUnit> read_named(const h5::File& file, const std::string& axis) {
+  const std::string group = "/" + axis + "s";
+  std::vector<NamedUnit> things = read_columns(file, group, name_fields(axis, ""));
+  check_names(texts(things, &NamedUnit::name), group + "/name");
+  return things;
+}
+
+void add_responses(ResultBuilder& result, const ModelDescription& model) {
+  std::vector<NamedUnit> responses;
+  for (const Response& response : model.responses) responses.push_back(named(response));
+  add_named(result, "response", "response", responses);
+  const auto add_chosen = [&](const std::string& attribute, const std::vector<std::size_t>& chosen) {
+    const auto list = texts(chosen, [&](std::size_t r) { return responses[r].name; });
+    if (!list.empty()) result.file().set_attribute("/responses", attribute, std::span(list));
+  };
+  add_chosen("headline", model.headline);
+  add_chosen("signed_headline", model.signed_headline);
+}
+
+void read_responses(const h5::File& file, StoredResult& result) {
+  result.responses = read_named(file, "response");
+  const auto read_chosen = [&](const std::string& attribute, std::vector<std::size_t> otherwise) {
+    if (!file.has_attribute("/responses", attribute)) return otherwise;
+    std::vector<std::size_t> chosen;
+    for (const std::string& name : file.attribute<std::string>("/responses", attribute)) {
+      const auto found = std::ranges::find(result.responses, name, &NamedUnit::name);
+      if (found == result.responses.end()) throw h5::Error("/responses " + attribute + " names an unknown response");
+      chosen.push_back(static_cast<std::size_t>(found - result.responses.begin()));
+    }
+    return chosen;
+  };
+  std::vector<std::size_t> all(result.responses.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  result.headline = read_chosen("headline", all);
+  result.signed_headline = read_chosen("signed_headline", result.headline);
+}
+
+constexpr std::string_view kMetricMeaning =
+    "How mismatch of angle is weighed against mismatch of position. platform: by the root mean square displacement of "
+    "points of the platform; published: radians against metres at the origin of the base frame";
+
+void add_metric(ResultBuilder& result, const Study& study) {
+  if (study.model().metric.empty()) return;
+  result.file().make_group("/metric");
+  result.file().set_attribute("/metric", "name", study.model().metric);
+  result.file().set_attribute("/metric", "description", std::string(kMetricMeaning));
+  const std::vector<PlatformPoint> points = build_model(study.mechanism)->metric_points();
+  if (points.empty()) return;
+  const Axes axes{"metric_point", "axis"};
+  std::vector<double> values;
+  for (const PlatformPoint& point : points) values.insert(values.end(), point.begin(), point.end());
+  result.add_axis("metric_point", axis_numbers(points.size()), {"1", "Number of the point, from 0"});
+  result.add_axis("axis", std::vector<std::string>{"x", "y", "z"}, {"1", "Axis of the platform's frame"});
+  result.show_axes("/metric", axes);
+  result.add("/metric/points", axes, values,
+             {"m", "Points of the platform by whose displacement mismatch is judged, in its frame"});
+}
+
+void read_metric(const h5::File& file, StoredResult& result) {
+  if (!file.exists("/metric")) return;
+  result.metric = file.attribute<std::string>("/metric", "name").at(0);
+  if (!file.exists("/metric/points")) return;
+  const auto values = read_along<double>(file, "/metric/points", {"metric_point", "axis"});
+  if (axis_length(file, "axis") != 3) throw h5::Error("/axis does not have three names");
+  result.metric_points.resize(values.size() / 3);
+  for (std::size_t k = 0; k < values.size(); ++k) result.metric_points[k / 3][k % 3] = values[k];
+}
+
+void add_poses(ResultBuilder& result, const ModelDescription& model, const SelectedPoses& selected) {
+  result.add_axis("pose", axis_numbers(selected.poses.size()), {"1", "Number of the pose, from 0"});
+  result.file().make_group("/poses");
+  const auto names = texts(model.pose_coordinates, &PoseCoordinate::name);
+  result.file().set_attribute("/poses", "coordinates", std::span(names));
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    result.add("/poses/" + names[c], {"pose"}, selected.poses.column(c), {unit_of(coordinate), coordinate.description});
+  }
+  write_fields(result, "/poses", kPoseFields, selected);
+  if (selected.rejected.empty()) return;
+  result.add_axis("rejection", texts(selected.rejected, &RejectedPoses::reason), {"1", "Why poses were rejected"});
+  result.file().make_group("/poses/rejected");
+  result.show_axes("/poses/rejected", {"rejection"});
+  write_columns(result, "/poses/rejected", kRejectedFields, selected.rejected);
+}
+
+std::vector<NamedUnit> read_pose_coordinates(const h5::File& file) {
+  std::vector<NamedUnit> coordinates;
+  for (const std::string& name : file.attribute<std::string>("/poses", "coordinates")) {
+    coordinates.push_back({name, file.attribute<std::string>("/poses/" + name, "unit").at(0),
+                           file.attribute<std::string>("/poses/" + name, "description").at(0)});
+  }
+  if (coordinates.empty()) throw h5::Error("/poses has no coordinates");
+  return coordinates;
+}
+
+}  // namespace
+
+void check_names(const std::vector<std::string>& names, const std::string& path) {
+  for (const std::string& name : names) {
+    const bool fits = std::ranges::none_of(name, [](char c) { return c == '/' || c == ',' || (c >= 0 && c < ' '); });
+    if (name.empty() || !fits) throw h5::Error("'" + name + "' in " + path + " is no name");
+  }
+}
+
+void add_header(ResultBuilder& result, std::string_view filetype, Analysis::Kind kind, const Study& study,
+                const SelectedPoses& poses) {
+  h5::File& file = result.file();
+  const std::vector<std::int64_t> version{kMajorVersion, kMinorVersion};
+  file.set_attribute("/", "filetype", std::string(filetype));
+  file.set_attribute("/", "version", std::span(version));
+  file.set_attribute("/", "kind", std::string(name(kind)));
+  file.set_attribute("/", "title", study.title);
+  file.set_attribute("/", "model", study.model().name);
+  file.set_attribute("/", "poesy_version", poesy_version());
+  file.set_attribute("/", "git_commit", git_commit());
+  file.make_group("/study");
+  result.add_scalar("/study/text", resolved_text(study), {"1", "The study, every default filled in (TOML)"});
+  add_poses(result, study.model(), poses);
+}
+
+void add_names(ResultBuilder& result, const Study& study, std::span<const FactorIndex> factors) {
+  add_metric(result, study);
+  std::vector<NamedUnit> errors;
+  for (const FactorIndex factor : factors) errors.push_back(named(study.model().factors[factor.value]));
+  add_named(result, "factor", "error", errors);
+  add_responses(result, study.model());
+}
+
+void add_facts(ResultBuilder& result, const RunFacts& facts) {
+  h5::File& file = result.file();
+  file.make_group("/run");
+  file.set_attribute("/run", "description", std::string("Facts about this run; not part of the content hash"));
+  file.set_attribute("/run", "version_hdf5", h5::library_version());
+  for (const LibraryVersion& library : build_versions()) {
+    file.set_attribute("/run", "version_" + std::string(library.name), std::string(library.version));
+  }
+  write_fields(result, "/run", kFactFields, facts);
+  const double rate = facts.wall_seconds > 0.0 ? static_cast<double>(facts.solves) / facts.wall_seconds : 0.0;
+  result.add_scalar("/run/solves_per_second", rate, {"1/s", "Solves a second, all threads and ranks together"});
+}
+
+void read_header(const h5::File& file, StoredResult& result) {
+  result.kind = text_attribute(file, "kind");
+  result.title = text_attribute(file, "title");
+  result.model = text_attribute(file, "model");
+  result.poesy_version = text_attribute(file, "poesy_version");
+  result.git_commit = text_attribute(file, "git_commit");
+  result.content_sha256 = stored_hash(file);
+  result.changed = result.content_sha256 != content_sha256(file);
+  result.study_text = file.read<std::string>("/study/text").at(0);
+  result.pose_coordinates = read_pose_coordinates(file);
+  SelectedPoses poses = read_poses(file);
+  result.poses = std::move(poses.poses);
+  result.condition = std::move(poses.condition);
+  result.time = std::move(poses.time);
+  result.factors = read_named(file, "factor");
+  read_responses(file, result);
+  read_metric(file, result);
+  result.facts = read_facts(file);
+}
+
+SelectedPoses read_poses(const h5::File& file) {
+  const std::size_t count = axis_length(file, "pose");
+  const std::vector<NamedUnit> coordinates = read_pose_coordinates(file);
+  std::vector<double> values(count * coordinates.size());
+  for (std::size_t c = 0; c < coordinates.size(); ++c) {
+    const auto column = read_along<double>(file, "/poses/" + coordinates[c].name, {"pose"});
+    for (std::size_t m = 0; m < count; ++m) values[m * coordinates.size() + c] = column[m];
+  }
+  SelectedPoses selected;
+  selected.poses = PoseSet(coordinates.size(), std::move(values));
+  read_fields(file, "/poses", kPoseFields, selected);
+  if (file.exists("/poses/rejected")) selected.rejected = read_columns(file, "/poses/rejected", kRejectedFields);
+  return selected;
+}
+
+RunFacts read_facts(const h5::File& file) {
+  RunFacts facts;
+  read_fields(file, "/run", kFactFields, facts);
+  return facts;
+}
+
+std::string stored_hash(const h5::File& file) {
+  return file.has_attribute("/", "content_sha256") ? text_attribute(file, "content_sha256") : "";
+}
+
+CsvTable pose_table(const StoredResult& result) {
+  CsvTable table = lines_of_poses(result, "poses");
+  if (!result.time.empty()) table.columns.push_back(list_column("time [s]", result.time));
+  for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
+    const NamedUnit& coordinate = result.pose_coordinates[c];
+    table.columns.push_back({with_unit(coordinate.name, coordinate.unit),
+                             [&result, c](std::size_t m) { return result.poses[PoseIndex(m)][c]; }});
+  }
+  if (!result.condition.empty()) table.columns.push_back(list_column("condition", result.condition));
+  return table;
+}
+
+void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau) {
+  result.add_axis("radius_multiple", std::vector<double>(kPointsRadii.begin(), kPointsRadii.end()),
+                  {"1", "Distance of the metric's points from their middle, over that in /metric/points"});
+  result.add("/metric/radius_tau", {"radius_multiple", "response"}, tau,
+             {"1",
+              "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, "
+              "to first order, without the background's errors, at up to 32 of the poses"});
+}
+
+std::vector<double> read_radius_tau(const h5::File& file) {
+  if (!file.exists("/metric/radius_tau")) return {};
+  if (axis_length(file, "radius_multiple") != kPointsRadii.size())
+    throw h5::Error("/radius_multiple is of other radii");
+  return read_along<double>(file, "/metric/radius_tau", {"radius_multiple", "response"});
+}
+
+const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
+
+}  // namespace poesy

@@ -1,0 +1,147 @@
+#include "engine/files/shard_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/contract.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/files/content_hash.h"
+#include "engine/files/poesy_file.h"
+#include "engine/files/result_parts.h"
+#include "engine/files/version.h"
+
+namespace poesy {
+namespace {
+
+std::string state_path(std::size_t stage) { return fmt::format("/shard/state_{}", stage + 1); }
+
+StoredShard read_checked(const std::string& path, const h5::File& file) {
+  expect_filetype(path, file, kShardFile);
+  if (stored_hash(file) != content_sha256(file)) {
+    throw FileError(path, "was changed since it was written: its content does not have the hash it carries",
+                    "take another copy, or run this shard again");
+  }
+  StoredShard stored;
+  stored.path = path;
+  stored.poesy_version = text_attribute(file, "poesy_version");
+  stored.git_commit = text_attribute(file, "git_commit");
+  stored.study_text = file.read<std::string>("/study/text").at(0);
+  stored.poses = read_poses(file);
+  stored.shard.count = file.attribute<std::uint64_t>("/shard", "shards").at(0);
+  stored.shard.index = file.attribute<std::uint64_t>("/shard", "shard").at(0) - 1;
+  if (stored.shard.index >= stored.shard.count) throw h5::Error("/shard has a number beyond the last");
+  for (std::size_t k = 0; file.exists(state_path(k)); ++k) {
+    const std::vector<std::uint8_t> state = file.read<std::uint8_t>(state_path(k));
+    const auto bytes = std::as_bytes(std::span(state));
+    stored.stages.emplace_back(bytes.begin(), bytes.end());
+  }
+  stored.facts = read_facts(file);
+  return stored;
+}
+
+/// "shard 2 of 5"
+std::string name_of(const Shard& shard) { return fmt::format("shard {} of {}", shard.index + 1, shard.count); }
+
+[[noreturn]] void refuse(const StoredShard& shard, const std::string& problem, const std::string& remedy) {
+  throw InputError({.file = shard.path}, problem, remedy);
+}
+
+void check_version(const StoredShard& shard) {
+  if (shard.poesy_version == poesy_version() && shard.git_commit == git_commit()) return;
+  refuse(shard,
+         fmt::format("was written by poesy {} ({}), and this is poesy {} ({})", printable(shard.poesy_version),
+                     printable(shard.git_commit), poesy_version(), git_commit()),
+         "merge with the version that ran the shards");
+}
+
+bool same(const PoseSet& a, const PoseSet& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t m = 0; m < a.size(); ++m) {
+    if (!std::ranges::equal(a[PoseIndex(m)], b[PoseIndex(m)])) return false;
+  }
+  return true;
+}
+
+void check_same_study(const StoredShard& shard, const StoredShard& first) {
+  if (shard.study_text != first.study_text) {
+    const auto [there, here] = first_difference(shard.study_text, first.study_text);
+    refuse(shard, fmt::format("is of another study: it has {} where {} has {}", there, first.path, here),
+           "merge shards of one study");
+  }
+  if (!same(shard.poses.poses, first.poses.poses)) {
+    refuse(shard, "has other poses than " + first.path + ", though under the same name", "merge shards of one study");
+  }
+  if (shard.shard.count != first.shard.count) {
+    refuse(shard, fmt::format("is {}, and {} is {}", name_of(shard.shard), first.path, name_of(first.shard)),
+           "merge shards of the same division");
+  }
+  if (shard.stages.size() != first.stages.size()) {
+    throw FileError(shard.path, "is damaged: it has another number of runs than " + first.path, kDamagedRemedy);
+  }
+}
+
+/// Precondition: in the order of their numbers, none twice.
+void check_all_there(std::span<const StoredShard> shards) {
+  const std::size_t count = shards.front().shard.count;
+  if (shards.size() == count) return;
+  std::string missing;
+  std::size_t next = 0;
+  for (std::size_t index = 0; index < count; ++index) {
+    if (next < shards.size() && shards[next].shard.index == index) {
+      ++next;
+    } else {
+      missing += (missing.empty() ? "" : ", ") + std::to_string(index + 1);
+    }
+  }
+  throw InputError({}, fmt::format("of {} shards these are missing: {}", count, printable(missing, 200)),
+                   "run them with --shard and merge all of them");
+}
+
+}  // namespace
+
+void add_shard(ResultBuilder& result, const Shard& shard, std::span<const Bytes> stages) {
+  h5::File& file = result.file();
+  file.make_group("/shard");
+  file.set_attribute("/shard", "description",
+                     std::string("What one shard of the study found, for poesy merge of the same version"));
+  file.set_attribute("/shard", "shard", std::uint64_t{shard.index + 1});
+  file.set_attribute("/shard", "shards", std::uint64_t{shard.count});
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    std::vector<std::uint8_t> bytes(stages[k].size());
+    std::ranges::transform(stages[k], bytes.begin(), std::to_integer<std::uint8_t>);
+    const std::string path = state_path(k);
+    file.write(path, {bytes.size()}, std::span<const std::uint8_t>(bytes));
+    file.set_attribute(path, "unit", std::string("1"));
+    file.set_attribute(path, "description", std::string("Accumulators of the shard's cells, as bytes"));
+  }
+}
+
+StoredShard read_shard(const std::string& path) {
+  return with_poesy_file(path, [&](const h5::File& file) { return read_checked(path, file); });
+}
+
+std::vector<Bytes> merge_shards(std::vector<StoredShard>& shards) {
+  POESY_EXPECTS(!shards.empty());
+  for (const StoredShard& shard : shards) {
+    check_version(shard);
+    check_same_study(shard, shards.front());
+  }
+  std::ranges::stable_sort(shards, {}, [](const StoredShard& shard) { return shard.shard.index; });
+  const auto twice = std::ranges::adjacent_find(shards, {}, [](const StoredShard& shard) { return shard.shard.index; });
+  if (twice != shards.end()) {
+    refuse(*twice, fmt::format("and {} are both {}", std::next(twice)->path, name_of(twice->shard)), "give each once");
+  }
+  check_all_there(shards);
+  std::vector<Bytes> merged(shards.front().stages.size());
+  for (StoredShard& shard : shards) {
+    for (std::size_t k = 0; k < merged.size(); ++k) {
+      merged[k].insert(merged[k].end(), shard.stages[k].begin(), shard.stages[k].end());
+      shard.stages[k] = {};
+    }
+  }
+  return merged;
+}
+
+}  // namespace poesy

@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "engine/base/units.h"
+#include "engine/files/result_parts.h"
+#include "engine/kinds/coupling/coupling.h"
+
+namespace poesy {
+namespace {
+
+const Axes kCurveAxes{"response", "size", "subset", "pose"};
+const Axes kSummaryAxes{"response", "size", "subset"};
+
+const Group<CouplingResult> kCoupling{
+    "/coupling",
+    "Single and coupled error sources (San et al. 2023, Section 5.2)",
+    {},
+    {{"response", &CouplingResult::responses},
+     {"size", &CouplingResult::sizes},
+     {"subset", &CouplingResult::subsets},
+     {"pose", &CouplingResult::poses}},
+    {{"effect", &CouplingResult::effect, kCurveAxes, kResponseUnit, "All errors of the subset's sources at once"},
+     {"sum", &CouplingResult::sum, kCurveAxes, kResponseUnit, "Sum over the sources of the effect of each alone"},
+     {"interaction", &CouplingResult::interaction, kCurveAxes, kResponseUnit, "effect - sum"},
+     {"worst_case", &CouplingResult::worst_case, kCurveAxes, kResponseUnit,
+      "Sum over the sources' blocks of |effect of the block alone|; errors of a block move together"},
+     {"root_sum_square", &CouplingResult::root_sum_square, kCurveAxes, kResponseUnit,
+      "Root of the sum of the squares of these"},
+     {"cancellation", &CouplingResult::cancellation, kCurveAxes, "1",
+      "1 - |sum| / sum of |effect of a source|: 0 no source opposes another, 1 they cancel"},
+     {"count", &CouplingResult::count, kSummaryAxes, "1",
+      "Poses that count: those where all that the subset rests on is solved"},
+     {"effect_max", &CouplingResult::effect_max, kSummaryAxes, kResponseUnit,
+      "Largest |effect| over the poses that count"},
+     {"effect_max_pose", &CouplingResult::effect_max_pose, kSummaryAxes, "1",
+      "First pose of the largest |effect|; -1: there is none"},
+     {"interaction_max", &CouplingResult::interaction_max, kSummaryAxes, kResponseUnit,
+      "Largest |interaction| over the poses that count"},
+     {"worst_case_max", &CouplingResult::worst_case_max, kSummaryAxes, kResponseUnit,
+      "Largest worst case over the poses that count"},
+     {"root_sum_square_max", &CouplingResult::root_sum_square_max, kSummaryAxes, kResponseUnit,
+      "Largest root sum square over the poses that count"},
+     {"opposed_share", &CouplingResult::opposed_share, kSummaryAxes, "1",
+      "Share of the poses that count where |sum| is below the largest |effect of a source|"},
+     {"cancellation_max", &CouplingResult::cancellation_max, kSummaryAxes, "1",
+      "Largest cancellation over the poses that count"},
+     {"cancellation_max_pose", &CouplingResult::cancellation_max_pose, kSummaryAxes, "1",
+      "First pose of the largest cancellation; -1: there is none"}}};
+
+const Fields<StoredCoupling> kSizes{
+    {"size_linear", &StoredCoupling::linear, {"size"}, "m", "Size of errors that are lengths; NaN where there is none"},
+    {"size_angular",
+     &StoredCoupling::angular,
+     {"size"},
+     "rad",
+     "Size of errors that are angles; NaN where there is none"}};
+
+/// "0.1 mm", or "0.1 mm, 0.1 deg".
+std::vector<std::string> size_names(const CouplingStudy& study) {
+  std::vector<std::string> names;
+  for (std::size_t z = 0; z < study.sizes(); ++z) {
+    std::string& name = names.emplace_back();
+    if (!study.linear.empty()) name = readable_text({study.linear[z], Dimension::length});
+    if (study.angular.empty()) continue;
+    name += (name.empty() ? "" : ", ") + readable_text({study.angular[z], Dimension::angle});
+  }
+  return names;
+}
+
+std::vector<double> or_nan(std::vector<double> sizes, std::size_t count) {
+  if (sizes.empty()) sizes.assign(count, std::numeric_limits<double>::quiet_NaN());
+  return sizes;
+}
+
+/// 1 where a subset has a source, [K x sources].
+std::vector<std::uint8_t> members(std::size_t sources) {
+  std::vector<std::uint8_t> list;
+  for (const std::vector<std::size_t>& subset : source_subsets(sources)) {
+    for (std::size_t s = 0; s < sources; ++s) list.push_back(std::ranges::binary_search(subset, s) ? 1 : 0);
+  }
+  return list;
+}
+
+/// The source of each factor of the result, and the factor's block in it, by their positions.
+struct Membership {
+  std::vector<std::uint64_t> source, block;
+};
+
+Membership membership(const Study& study) {
+  const CouplingStudy& coupling = study.analysis.coupling;
+  std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
+  for (std::size_t s = 0; s < coupling.sources.size(); ++s) {
+    const auto blocks = error_blocks(coupling.sources[s], coupling.pattern, study.model());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      for (const FactorIndex factor : blocks[b]) places[factor] = {s, b};
+    }
+  }
+  Membership found;
+  for (const FactorIndex factor : study.analysis.factors) {
+    found.source.push_back(places.at(factor).first);
+    found.block.push_back(places.at(factor).second);
+  }
+  return found;
+}
+
+void add_axes(ResultBuilder& result, const CouplingStudy& coupling) {
+  result.add_axis("size", size_names(coupling), {"1", "Size of the errors"});
+  result.add_axis("source", texts(coupling.sources, &ErrorSource::name), {"1", "Name of the source of errors"});
+  result.add_axis("subset", subset_names(coupling.sources), {"1", "Sources that act at once, joined by +"});
+}
+
+/// The sizes, the subsets, and where each error belongs.
+void add_choices(ResultBuilder& result, const Study& study) {
+  const CouplingStudy& coupling = study.analysis.coupling;
+  StoredCoupling sizes;
+  sizes.linear = or_nan(coupling.linear, coupling.sizes());
+  sizes.angular = or_nan(coupling.angular, coupling.sizes());
+  write_fields(result, "/coupling", kSizes, sizes);
+  result.add("/coupling/subset_sources", {"subset", "source"}, members(coupling.sources.size()),
+             {"1", "1: the source is in the subset"});
+  const Membership of_factors = membership(study);
+  result.add("/coupling/factor_source", {"factor"}, of_factors.source,
+             {"1", "Source of the error, by its position from 0"});
+  result.add("/coupling/factor_block", {"factor"}, of_factors.block,
+             {"1", "Block of its source that the error belongs to, from 0; errors of a block move together"});
+  result.show_axes("/coupling", {"source", "factor"});
+}
+
+/// The sizes of the errors in each line. per_size: lines of a size, which follow each other.
+void append_size_columns(CsvTable& table, const StoredCoupling& stored, std::size_t per_size) {
+  table.columns.push_back(
+      {"size_linear [m]", [&, per_size](std::size_t line) { return stored.linear[line / per_size]; }});
+  table.columns.push_back(
+      {"size_angular [rad]", [&, per_size](std::size_t line) { return stored.angular[line / per_size]; }});
+}
+
+/// A table with a line for each size and subset, and for each of `repeated` poses.
+CsvTable subset_table(const StoredResult& result, const std::string& name, std::size_t repeated) {
+  const StoredCoupling& stored = result.coupling;
+  const std::size_t subsets = stored.found.subsets;
+  CsvTable table{
+      name,
+      {"subset", [&, repeated, subsets](std::size_t line) { return stored.subsets[line / repeated % subsets]; }},
+      stored.found.sizes * subsets * repeated};
+  append_size_columns(table, stored, subsets * repeated);
+  return table;
+}
+
+/// For each response a column of each row along these axes; without the sum, which follows from others.
+void append_response_columns(CsvTable& table, const StoredResult& result, const Axes& axes) {
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const NamedUnit& response = result.responses[r];
+    for (const FieldRow<CouplingResult>& field : kCoupling.fields) {
+      if (field.axes != axes || field.name == "sum") continue;
+      const std::string name = response.name + "_" + (field.name == "count" ? "poses" : field.name);
+      table.columns.push_back(field_column(with_unit(name, csv_unit(field.unit, result, &response)), field,
+                                           result.coupling.found, r * table.lines));
+    }
+  }
+}
+
+CsvTable curve_table(const StoredResult& result) {
+  const std::size_t poses = result.poses.size();
+  CsvTable table = subset_table(result, "coupling", poses);
+  table.columns.push_back({"pose", [poses](std::size_t line) { return static_cast<double>(line % poses); }});
+  if (!result.time.empty()) {
+    table.columns.push_back({"time [s]", [&, poses](std::size_t line) { return result.time[line % poses]; }});
+  }
+  append_response_columns(table, result, kCurveAxes);
+  return table;
+}
+
+}  // namespace
+
+void add_coupling(ResultBuilder& result, const Study& study, const CouplingResult& found) {
+  add_axes(result, study.analysis.coupling);
+  write_group(result, kCoupling, found);
+  add_choices(result, study);
+  add_solver(result, {"size", "pose"}, found.solves);
+}
+
+void read_coupling(const h5::File& file, StoredResult& result) {
+  StoredCoupling& stored = result.coupling;
+  stored.size_names = file.read<std::string>("/size");
+  stored.sources = file.read<std::string>("/source");
+  stored.subsets = file.read<std::string>("/subset");
+  read_fields(file, "/coupling", kSizes, stored);
+  read_group(file, kCoupling, stored.found);
+  stored.found.solves = read_solver(file, {"size", "pose"});
+}
+
+void append_coupling_tables(CsvTables& tables, const StoredResult& result) {
+  tables.push_back(curve_table(result));
+  CsvTable summary = subset_table(result, "coupling_summary", 1);
+  append_response_columns(summary, result, kSummaryAxes);
+  tables.push_back(std::move(summary));
+  const StoredCoupling& stored = result.coupling;
+  const std::size_t poses = result.poses.size();
+  CsvTable solves{"not_converged",
+                  {"pose", [poses](std::size_t line) { return std::to_string(line % poses); }},
+                  stored.found.solves.size()};
+  append_size_columns(solves, stored, poses);
+  append_solve_columns(solves, stored.found.solves);
+  tables.push_back(std::move(solves));
+}
+
+}  // namespace poesy

@@ -1,0 +1,297 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "engine/base/text.h"
+#include "engine/study/keys.h"
+#include "engine/study/study_text.h"
+#include "engine/kinds/coupling/rows.h"
+
+namespace poesy {
+namespace {
+
+using PatternChoice = ErrorPattern::Choice;
+
+constexpr std::size_t kFewestSources = 2;
+constexpr std::size_t kMostSources = 8;  // 255 subsets
+
+/// "all" or "independent".
+PatternChoice read_choice(const StudyValue& value) {
+  constexpr std::array<std::string_view, 2> kWords{"all", "independent"};
+  return value.word(kWords) == 0 ? PatternChoice::all : PatternChoice::independent;
+}
+
+void read_limbs(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
+  const ModelDescription& model = study.model();
+  ErrorPattern& pattern = study.analysis.coupling.pattern;
+  if (value.is_text()) {
+    pattern.limbs = read_choice(value);
+    return;
+  }
+  std::set<std::size_t> limbs;
+  for (const Factor& factor : model.factors) limbs.insert(factor.limb);
+  pattern.limbs = PatternChoice::some;
+  pattern.limb = static_cast<std::size_t>(value.whole_number(0));
+  if (limbs.contains(pattern.limb)) return;
+  std::string known;
+  for (const std::size_t limb : limbs) known += (known.empty() ? "" : ", ") + std::to_string(limb);
+  value.fail("is " + std::to_string(pattern.limb) + ", but model \"" + model.name + "\" has errors of limbs " + known,
+             "name one of them, or write \"all\" or \"independent\"");
+}
+
+void read_components(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
+  ErrorPattern& pattern = study.analysis.coupling.pattern;
+  if (value.is_text()) {
+    pattern.components = read_choice(value);
+    return;
+  }
+  constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+  pattern.components = PatternChoice::some;
+  for (const StudyValue& element : value.list()) {
+    const std::string axis(kAxes[element.word(kAxes)]);
+    if (std::ranges::find(pattern.axes, axis) != pattern.axes.end()) {
+      element.fail("names '" + axis + "' a second time", "remove one of them");
+    }
+    pattern.axes.push_back(axis);
+  }
+  if (pattern.axes.empty()) value.fail("is empty", "name components, e.g. [\"x\", \"z\"], or write \"all\"");
+}
+
+/// Throws for a factor that an earlier source has.
+void require_own_factors(const StudyValue& factors, const ErrorSource& source, std::span<const ErrorSource> others,
+                         const ModelDescription& model) {
+  for (const ErrorSource& other : others) {
+    for (const FactorIndex factor : source.factors) {
+      if (std::ranges::find(other.factors, factor) == other.factors.end()) continue;
+      factors.fail("has '" + model.factors[factor.value].name + "', which source '" + other.name + "' has as well",
+                   "a factor belongs to one source; list the factors of one of them by name");
+    }
+  }
+}
+
+ErrorSource read_source(const StudySection& section, std::span<const ErrorSource> others, const ErrorPattern& pattern,
+                        const ModelDescription& model) {
+  section.allow();
+  std::vector<std::string_view> taken;
+  for (const ErrorSource& other : others) taken.push_back(other.name);
+  ErrorSource source{read_name(section, taken, "source " + std::to_string(others.size() + 1)), {}};
+  if (source.name.find('+') != std::string::npos) {
+    section.find("name")->fail("is '" + printable(source.name) + "'", "write it without '+', which joins sources");
+  }
+  const StudyValue factors = section.require("factors");
+  source.factors = read_factors(factors, model);
+  require_own_factors(factors, source, others, model);
+  if (error_blocks(source, pattern, model).empty()) {
+    factors.fail("has no factor of the limbs and components that the study asks for",
+                 "change limbs or components, or leave this source out");
+  }
+  return source;
+}
+
+/// The literature's sources. Throws at the section where the model has none.
+std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
+                                       const ErrorPattern& pattern) {
+  constexpr std::string_view kNameThem =
+      "write 2 to 8 [[analysis.sources]], each with name and factors (a factor set or a list of names)";
+  if (model.sources.empty()) {
+    throw InputError(analysis.place(),
+                     "kind = \"coupling\" needs sources of errors, and model \"" + model.name + "\" suggests none",
+                     std::string(kNameThem));
+  }
+  std::vector<ErrorSource> sources;
+  for (const CouplingSource& usual : model.sources) {
+    sources.push_back({usual.name, model.find_set(usual.set)->factors});
+    const ErrorSource& source = sources.back();
+    if (!error_blocks(source, pattern, model).empty()) continue;
+    throw InputError(analysis.place(),
+                     "source '" + source.name + "' has no factor of the limbs and components that the study asks for",
+                     std::string(kNameThem));
+  }
+  return sources;
+}
+
+void read_sources(const StudyValue& value, Study& study, const Reading&) {
+  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
+  const std::vector<StudyValue> list = value.list();
+  if (list.size() < kFewestSources || list.size() > kMostSources) {
+    value.fail("has " + std::to_string(list.size()) + (list.size() == 1 ? " source" : " sources") +
+                   ", but there must be " + std::to_string(kFewestSources) + " to " + std::to_string(kMostSources),
+               "group factors into fewer or more sources");
+  }
+  CouplingStudy& coupling = study.analysis.coupling;
+  for (const StudyValue& one : list) {
+    coupling.sources.push_back(read_source(one.section(), coupling.sources, coupling.pattern, study.model()));
+  }
+}
+
+std::string sources_lines(const Study& study) {
+  std::string text;
+  for (const ErrorSource& source : study.analysis.coupling.sources) {
+    text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", in_quotes(source.name),
+                        factors_text(source.factors, study.model()));
+  }
+  return text;
+}
+
+/// Sizes of this dimension.
+KeyValue<Study> sizes_at(Dimension dimension, std::vector<double> CouplingStudy::*member) {
+  const auto read = [=](const StudyValue& value, Study& study) {
+    if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
+    std::vector<double>& sizes = study.analysis.coupling.*member;
+    for (const StudyValue& size : value.list()) sizes.push_back(size.positive_quantity(dimension));
+    if (sizes.empty()) value.fail("is empty", "write at least one size");
+  };
+  return {.type = "list of " + std::string(name(dimension)) + "s", .bounds = "greater than 0", .read = read};
+}
+
+template <Dimension kDimension>
+std::string sizes_line(const Study& study) {
+  const CouplingStudy& coupling = study.analysis.coupling;
+  std::vector<std::string> sizes;
+  for (const double size : kDimension == Dimension::length ? coupling.linear : coupling.angular) {
+    sizes.push_back(exact_value(size, kDimension));
+  }
+  return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
+}
+
+std::string choice_text(PatternChoice choice, const std::string& some) {
+  if (choice == PatternChoice::some) return some;
+  return choice == PatternChoice::all ? "\"all\"" : "\"independent\"";
+}
+
+std::string limbs_text(const Study& study) {
+  const ErrorPattern& pattern = study.analysis.coupling.pattern;
+  return choice_text(pattern.limbs, std::to_string(pattern.limb));
+}
+
+std::string components_text(const Study& study) {
+  const ErrorPattern& pattern = study.analysis.coupling.pattern;
+  std::vector<std::string> axes;
+  for (const std::string& axis : pattern.axes) axes.push_back(in_quotes(axis));
+  return choice_text(pattern.components, list_text(axes));
+}
+
+/// The first factor of this dimension that the study gives a size; null when there is none.
+const Factor* first_of(Dimension dimension, const CouplingStudy& study, const ModelDescription& model) {
+  for (const FactorIndex factor : coupling_factors(study, model)) {
+    if (model.factors[factor.value].dimension == dimension) return &model.factors[factor.value];
+  }
+  return nullptr;
+}
+
+void require_sizes(const StudySection& analysis, std::string_view key, Dimension dimension, const CouplingStudy& study,
+                   const ModelDescription& model) {
+  const Factor* factor = first_of(dimension, study, model);
+  if (analysis.find(key) || factor == nullptr) return;
+  const std::string unit(display_unit(dimension).name);
+  throw InputError(analysis.place(),
+                   "key '" + std::string(key) + "' is missing in [analysis], for the sources have errors such as '" +
+                       factor->name + "'",
+                   "write sizes, e.g. " + std::string(key) + " = [\"0.1 " + unit + "\"]");
+}
+
+/// Sizes of a dimension that no error of the sources has, whatever the pattern leaves of them, are a mistake.
+void refuse_idle_sizes(const StudySection& analysis, std::string_view key, Dimension dimension,
+                       const CouplingStudy& study, const ModelDescription& model) {
+  const auto value = analysis.find(key);
+  if (!value) return;
+  for (const ErrorSource& source : study.sources) {
+    for (const FactorIndex factor : source.factors) {
+      if (model.factors[factor.value].dimension == dimension) return;
+    }
+  }
+  value->fail("gives sizes, but no source has an error with that dimension (" + std::string(name(dimension)) + ")",
+              "remove it");
+}
+
+void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study) {
+  if (study.linear.size() == study.angular.size()) return;
+  const auto sizes = [](std::size_t count) { return std::to_string(count) + (count == 1 ? " size" : " sizes"); };
+  angular.fail("has " + sizes(study.angular.size()) + ", but linear has " + sizes(study.linear.size()),
+               "a run takes one of each, so write as many");
+}
+
+/// `value` is linear or angular.
+void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
+  const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
+    return sizes.empty() || sizes[a] == sizes[b];
+  };
+  const std::vector<StudyValue> list = value.list();
+  for (std::size_t z = 0; z < list.size(); ++z) {
+    for (std::size_t before = 0; before < z; ++before) {
+      if (!same(study.linear, before, z) || !same(study.angular, before, z)) continue;
+      list[z].fail("repeats a size", "each run needs a size of its own; remove one of them");
+    }
+  }
+}
+
+}  // namespace
+
+void complete_coupling(Study& whole, const Reading& reading) {
+  const StudySection analysis = reading.root.section("analysis");
+  const ModelDescription& model = whole.model();
+  CouplingStudy& study = whole.analysis.coupling;
+  const auto linear = analysis.find("linear");
+  const auto angular = analysis.find("angular");
+  if (linear && angular) require_equal_numbers(*angular, study);
+  if (linear || angular) require_different_runs(linear ? *linear : *angular, study);
+  if (reading.use == StudyUse::evaluate) return;
+  if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
+  require_sizes(analysis, "linear", Dimension::length, study, model);
+  require_sizes(analysis, "angular", Dimension::angle, study, model);
+  refuse_idle_sizes(analysis, "linear", Dimension::length, study, model);
+  refuse_idle_sizes(analysis, "angular", Dimension::angle, study, model);
+}
+
+std::vector<StudyRow> coupling_rows_of_keys() {
+  return {StudyRow{.name = "linear",
+                   .value = sizes_at(Dimension::length, &CouplingStudy::linear),
+                   .meaning =
+                       "Sizes of lengths: each is a run of its own, in which every error is at once as large as that. "
+                       "Required where a source has lengths; as many as of angular, if there are both.",
+                   .lines = sizes_line<Dimension::length>},
+          StudyRow{.name = "angular",
+                   .value = sizes_at(Dimension::angle, &CouplingStudy::angular),
+                   .meaning = "Sizes of angles, in the same way.",
+                   .lines = sizes_line<Dimension::angle>},
+          StudyRow{.name = "limbs",
+                   .value = {.type = "text or integer", .text = limbs_text},
+                   .meaning =
+                       "all: errors of every limb, together; a number: of that limb alone; independent: each limb on "
+                       "its own, in the worst case and the root sum square.",
+                   .reader = read_limbs},
+          StudyRow{.name = "components",
+                   .value = {.type = "text or list of texts", .text = components_text},
+                   .meaning =
+                       "all: every component of an error, together; a list such as [\"x\", \"z\"]: those and scalars; "
+                       "independent: each component of each error on its own, as for limbs.",
+                   .reader = read_components},
+          StudyRow{.name = "sources",
+                   .value = {.type = "list of tables"},
+                   .usual = "those of the literature, where the model has them",
+                   .meaning = "2 to 8 sources of errors: each alone, and every combination of them at once.",
+                   .reader = read_sources,
+                   .lines = sources_lines,
+                   .late = 2}};
+}
+
+StudyTable source_table() {
+  return {.paths = {"analysis.sources"},
+          .meaning = "For kind = \"coupling\".",
+          .keys = {{.name = "name",
+                    .type = "text",
+                    .usual = "source 1, source 2 and so on",
+                    .meaning = "Name of the source, without '+', commas and quotes."},
+                   {.name = "factors",
+                    .type = "text or list of texts",
+                    .required = true,
+                    .missing = "write a factor set or a list of factors",
+                    .meaning = "Its errors: a factor set, all, or a list of factors, of which no other source has "
+                               "one."}}};
+}
+
+}  // namespace poesy

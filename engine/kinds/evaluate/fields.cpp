@@ -1,0 +1,378 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "engine/files/result_parts.h"
+#include "engine/kinds/evaluate/row_outcomes.h"
+#include "engine/study/table_file.h"
+#include "engine/kinds/evaluate/cases.h"
+
+namespace poesy {
+namespace {
+
+/// Rows and columns of the datasets of solves: a table's solves are kept by pose, those of cases by case.
+const Axes kTableAxes{"pose", "sample"};
+const Axes kCaseAxes{"case", "pose"};
+constexpr const char* kLabels = "/evaluate/label";
+
+/// How poses and rows of errors belong together, as files say it.
+/// @{
+constexpr const char* kRowByRow = "row-by-row";
+constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
+/// @}
+
+/// What is stored of every solve in addition to responses and details. axes: rows and columns of the datasets of
+/// solves.
+Fields<EvaluationResult> solve_fields(const Axes& axes) {
+  return {{"iterations", &EvaluationResult::iterations, axes, "1", "Iterations of the solve"},
+          {"joint_displacements",
+           &EvaluationResult::joint_displacement,
+           {"pose", "joint"},
+           "rad or m, by joint",
+           "Joint displacements of the perfect mechanism"}};
+}
+
+const Axes kSumAxes{"response", "case"};
+const Fields<CaseResult> kSumFields{
+    {"mean", &CaseResult::mean, kSumAxes, kResponseUnit, "Mean over the poses that count; NaN where there is none"},
+    {"max", &CaseResult::max, kSumAxes, kResponseUnit, "Largest value over the poses that count"},
+    {"count", &CaseResult::count, kSumAxes, "1", "Poses that count: solved, or as not_converged has it"}};
+
+template <class T>
+void transpose(std::vector<T>& values, std::size_t rows, std::size_t columns, std::size_t width) {
+  std::vector<T> turned(values.size());
+  for (std::size_t at = 0; at < values.size(); ++at) {
+    const std::size_t cell = at / width;
+    const std::size_t block = cell / (rows * columns);
+    const std::size_t row = cell / columns % rows;
+    const std::size_t column = cell % columns;
+    turned[((block * columns + column) * rows + row) * width + at % width] = values[at];
+  }
+  values = std::move(turned);
+}
+
+/// [pose x sample] turned to [sample x pose], or back.
+EvaluationResult transposed(EvaluationResult found) {
+  transpose(found.response, found.poses, found.samples, 1);
+  transpose(found.status, found.poses, found.samples, 1);
+  transpose(found.iterations, found.poses, found.samples, 1);
+  if (found.details > 0) transpose(found.detail, found.poses, found.samples, found.details);
+  std::swap(found.poses, found.samples);
+  return found;
+}
+
+void add_details(ResultBuilder& result, const std::vector<Detail>& details, const EvaluationResult& found,
+                 const Axes& axes) {
+  if (found.details == 0) return;
+  const auto names = texts(details, &Detail::name);
+  result.file().set_attribute("/evaluate", "details", std::span(names));
+  std::map<std::vector<std::string>, std::string> axis_of;  // details with the same components share an axis
+  std::size_t first = 0;
+  for (const Detail& detail : details) {
+    const std::size_t width = detail.components.size();
+    const std::string next = "component" + (axis_of.empty() ? "" : "_" + std::to_string(axis_of.size() + 1));
+    const auto [axis, is_new] = axis_of.try_emplace(detail.components, next);
+    if (is_new) {
+      result.add_axis(axis->second, detail.components, {"1", "Component of " + detail.name + " and its like"});
+      result.show_axes("/evaluate", {axis->second});
+    }
+    std::vector<double> values;
+    for (std::size_t row = 0; row < found.status.size(); ++row) {
+      const auto begin = found.detail.begin() + static_cast<std::ptrdiff_t>(row * found.details + first);
+      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+    }
+    const std::string path = "/evaluate/" + detail.name;
+    result.add(path, {axes[0], axes[1], axis->second}, values, {detail.unit, detail.description});
+    result.file().set_attribute(path, "components", std::span(detail.components));
+    first += width;
+  }
+}
+
+std::vector<Detail> read_details(const h5::File& file) {
+  std::vector<Detail> details;
+  if (!file.has_attribute("/evaluate", "details")) return details;
+  for (const std::string& name : file.attribute<std::string>("/evaluate", "details")) {
+    const std::string path = "/evaluate/" + name;
+    details.push_back({.name = name,
+                       .components = file.attribute<std::string>(path, "components"),
+                       .unit = file.attribute<std::string>(path, "unit").at(0),
+                       .description = file.attribute<std::string>(path, "description").at(0)});
+  }
+  return details;
+}
+
+void read_detail_values(const h5::File& file, const std::vector<Detail>& details, EvaluationResult& found) {
+  for (const Detail& detail : details) found.details += detail.components.size();
+  found.detail.resize(found.poses * found.samples * found.details);
+  std::size_t first = 0;
+  for (const Detail& detail : details) {
+    const std::size_t width = detail.components.size();
+    const auto values = read_shaped<double>(file, "/evaluate/" + detail.name, {found.poses, found.samples, width});
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      found.detail[k / width * found.details + first + k % width] = values[k];
+    }
+    first += width;
+  }
+}
+
+std::vector<SolveStatus> read_status(const h5::File& file, const Axes& axes) {
+  std::vector<SolveStatus> list;
+  for (const std::uint8_t code : read_along<std::uint8_t>(file, "/evaluate/status", axes)) {
+    if (code >= kStatusNames.size()) throw h5::Error("/evaluate/status holds an unknown status");
+    list.push_back(static_cast<SolveStatus>(code));
+  }
+  return list;
+}
+
+EvaluationResult read_solves(const h5::File& file, const std::vector<NamedUnit>& responses,
+                             const std::vector<Detail>& details, const Axes& axes) {
+  EvaluationResult found;
+  found.poses = axis_length(file, axes[0]);
+  found.samples = axis_length(file, axes[1]);
+  found.responses = responses.size();
+  for (const NamedUnit& response : responses) {
+    const auto values = read_along<double>(file, "/evaluate/" + response.name, axes);
+    found.response.insert(found.response.end(), values.begin(), values.end());
+  }
+  found.status = read_status(file, axes);
+  read_detail_values(file, details, found);
+  read_fields(file, "/evaluate", solve_fields(axes), found);
+  return found;
+}
+
+void add_solves(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found, const Axes& axes) {
+  result.add_axis("joint", texts(model.joints, &JointDisplacement::name), {"1", "Name of the joint displacement"});
+  result.file().make_group("/evaluate");
+  result.show_axes("/evaluate", {axes[0], axes[1], "joint"});
+  const std::size_t cells = found.poses * found.samples;
+  for (std::size_t r = 0; r < model.responses.size(); ++r) {
+    const Response& response = model.responses[r];
+    result.add("/evaluate/" + response.name, axes, std::span(found.response).subspan(r * cells, cells),
+               {unit_of(response), response.description});
+  }
+  add_details(result, model.details, found, axes);
+  std::vector<std::uint8_t> status;
+  for (const SolveStatus ending : found.status) status.push_back(static_cast<std::uint8_t>(ending));
+  const auto status_names = texts(kStatusNames, std::identity());
+  result.add("/evaluate/status", axes, status, {"1", "How the solve ended: a position in status_names, from 0"});
+  result.file().set_attribute("/evaluate/status", "status_names", std::span(status_names));
+  write_fields(result, "/evaluate", solve_fields(axes), found);
+}
+
+/// rows: the axis of the rows of errors.
+void add_errors(ResultBuilder& result, const ErrorTable& errors, const std::string& rows, Pairing pairing) {
+  const bool row_by_row = pairing == Pairing::row_by_row;
+  result.file().make_group("/errors");
+  result.file().set_attribute("/errors", "pairing", std::string(row_by_row ? kRowByRow : kEveryPoseWithEveryRow));
+  result.show_axes("/errors", {rows, "factor"});
+  result.add("/errors/values", {rows, "factor"}, errors.values,
+             {kFactorUnit, "The errors that were given; all others are zero"});
+  if (errors.labels.names.empty()) return;
+  result.add(kLabels, {rows}, errors.labels.names, {"1", "What the table of errors calls its rows"});
+  result.file().set_attribute(kLabels, "column", errors.labels.column);
+}
+
+/// Every row of errors was tried, so that a verdict names one of them.
+void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
+  const bool fits = std::ranges::all_of(limits, [rows](const LimitVerdict& one) { return one.tried == rows; });
+  if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");
+}
+
+/// The names of the rows of errors, where they have some.
+RowLabels read_labels(const h5::File& file, const std::string& rows) {
+  RowLabels labels;
+  if (!file.exists(kLabels)) return labels;
+  labels.column = file.attribute<std::string>(kLabels, "column").at(0);
+  labels.names = read_along<std::string>(file, kLabels, {rows});
+  const bool wrong =
+      std::ranges::any_of(labels.names, [](const std::string& name) { return label_problem(name).has_value(); });
+  if (wrong || label_problem(labels.column)) throw h5::Error(std::string(kLabels) + " holds what is no label");
+  return labels;
+}
+
+/// "rad,rad,m" as a unit for each of `count` components; one unit may stand for all.
+std::vector<std::string> component_units(const std::string& text, std::size_t count) {
+  std::vector<std::string> list;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    list.push_back(text.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  if (list.size() != count) list.assign(count, list.size() == 1 ? list.front() : text);
+  return list;
+}
+
+/// The first cells of a line: the label of its row of errors, where rows have labels, and a number.
+std::string labelled(const StoredResult& result, std::size_t row, std::size_t number) {
+  const std::string label = result.labels.names.empty() ? "" : result.labels.names[row] + ",";
+  return label + std::to_string(number);
+}
+
+/// The heading of these cells.
+std::string labelled(const StoredResult& result, const std::string& number) {
+  return result.labels.names.empty() ? number : result.labels.column + "," + number;
+}
+
+/// What a solve gave. at(line): its position, counted pose by pose.
+template <class At>
+void append_solve_columns(CsvTable& table, const StoredResult& result, const At& at) {
+  const EvaluationResult& found = result.evaluation;
+  const auto append = [&](const std::string& heading, auto number) {
+    table.columns.push_back(
+        {heading, [at, number](std::size_t line) { return static_cast<double>(number(at(line))); }});
+  };
+  if (!result.time.empty()) append("time [s]", [&](std::size_t k) { return result.time[k / found.samples]; });
+  for (std::size_t r = 0; r < found.responses; ++r) {
+    const NamedUnit& response = result.responses[r];
+    append(with_unit(response.name, response.unit),
+           [&, r](std::size_t k) { return found.response[r * found.status.size() + k]; });
+  }
+  std::size_t d = 0;
+  for (const Detail& detail : result.details) {
+    const auto units = component_units(detail.unit, detail.components.size());
+    for (std::size_t k = 0; k < units.size(); ++k, ++d) {
+      append(with_unit(detail.name + "_" + detail.components[k], units[k]),
+             [&found, d](std::size_t solve) { return found.detail[solve * found.details + d]; });
+    }
+  }
+  append("status", [&](std::size_t k) { return found.status[k]; });
+  append("iterations", [&](std::size_t k) { return found.iterations[k]; });
+}
+
+/// Pose by pose.
+CsvTable solve_table(const StoredResult& result) {
+  const std::size_t samples = result.evaluation.samples;
+  CsvTable table{"evaluate",
+                 {labelled(result, "pose"),
+                  [&, samples](std::size_t at) { return labelled(result, row_of_solve(result, at), at / samples); }},
+                 result.evaluation.status.size()};
+  table.columns.push_back({"sample", [samples](std::size_t at) { return static_cast<double>(at % samples); }});
+  append_solve_columns(table, result, std::identity());
+  return table;
+}
+
+/// Case by case.
+CsvTable case_solve_table(const StoredResult& result) {
+  const std::size_t poses = result.evaluation.poses;
+  const std::size_t cases = result.cases.size();
+  CsvTable table{
+      "evaluate", {"case", [&, poses](std::size_t line) { return result.cases[line / poses]; }}, cases * poses};
+  table.columns.push_back({"pose", [poses](std::size_t line) { return static_cast<double>(line % poses); }});
+  append_solve_columns(table, result, [poses, cases](std::size_t line) { return line % poses * cases + line / poses; });
+  return table;
+}
+
+CsvTable joint_table(const StoredResult& result) {
+  const std::size_t joints = result.joints.size();
+  const std::vector<double>& values = result.evaluation.joint_displacement;
+  CsvTable table = lines_of_poses(result, "joint_displacements");
+  table.lines = values.size() / std::max<std::size_t>(joints, 1);
+  for (std::size_t j = 0; j < joints; ++j) {
+    table.columns.push_back(list_column(with_unit(result.joints[j], "rad or m"), values, j, joints));
+  }
+  return table;
+}
+
+CsvTable error_table(const StoredResult& result) {
+  const std::size_t factors = result.factors.size();
+  CsvTable table{"errors", {}, result.errors.size() / std::max<std::size_t>(factors, 1)};
+  if (result.cases.empty()) {
+    const bool row_by_row = result.pairing == Pairing::row_by_row;
+    table.first = {labelled(result, row_by_row ? "pose" : "sample"),
+                   [&](std::size_t row) { return labelled(result, row, row); }};
+  } else {
+    table.first = {"case", [&](std::size_t c) { return result.cases[c]; }};
+  }
+  for (std::size_t p = 0; p < factors; ++p) {
+    const NamedUnit& factor = result.factors[p];
+    table.columns.push_back(list_column(with_unit(factor.name, factor.unit), result.errors, p, factors));
+  }
+  return table;
+}
+
+/// A line for each row of errors that has a label.
+CsvTable part_table(const StoredResult& result) {
+  CsvTable table{"parts",
+                 {result.labels.column, [&](std::size_t row) { return result.labels.names[row]; }},
+                 result.labels.names.size()};
+  const auto append = [&](const std::string& heading, const std::vector<RowOutcome>& outcomes, auto member) {
+    table.columns.push_back(
+        {heading, [outcomes, member](std::size_t row) { return static_cast<double>(outcomes[row].*member); }});
+  };
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const NamedUnit& response = result.responses[r];
+    const std::vector<RowOutcome> outcomes = row_outcomes(result, r);
+    if (r == 0) append("poses", outcomes, &RowOutcome::solved);
+    append(with_unit(response.name + "_mean", response.unit), outcomes, &RowOutcome::mean);
+    append(with_unit(response.name + "_extreme", response.unit), outcomes, &RowOutcome::extreme);
+    append(response.name + "_extreme_pose", outcomes, &RowOutcome::pose);
+  }
+  return table;
+}
+
+CsvTable case_sum_table(const StoredResult& result) {
+  const CaseResult& found = result.case_result;
+  const std::size_t cases = result.cases.size();
+  CsvTable table{"cases", {"case", [&](std::size_t c) { return result.cases[c]; }}, cases};
+  table.columns.push_back(list_column("poses", found.count));
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const NamedUnit& response = result.responses[r];
+    for (const FieldRow<CaseResult>& field : kSumFields) {
+      if (field.name == "count") continue;
+      const std::string heading = with_unit(response.name + "_" + field.name, csv_unit(field.unit, result, &response));
+      table.columns.push_back(field_column(heading, field, found, r * cases));
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found,
+                    const ErrorTable& errors, Pairing pairing) {
+  result.add_axis("sample", axis_numbers(found.samples), {"1", "Number of the sample at each pose, from 0"});
+  add_solves(result, model, found, kTableAxes);
+  add_errors(result, errors, pairing == Pairing::row_by_row ? "pose" : "sample", pairing);
+  add_limits(result, model, found.verdicts);
+}
+
+void add_cases(ResultBuilder& result, const Study& study, const ErrorTable& errors, const CaseResult& found) {
+  result.add_axis("case", texts(study.analysis.cases, &ErrorCase::name), {"1", "Name of the case"});
+  add_solves(result, study.model(), transposed(found.evaluation), kCaseAxes);
+  add_errors(result, errors, "case", Pairing::every_pose_with_every_row);
+  add_limits(result, study.model(), found.evaluation.verdicts);
+  result.show_axes("/evaluate", {"response"});
+  write_fields(result, "/evaluate", kSumFields, found);
+}
+
+void read_evaluation(const h5::File& file, StoredResult& result) {
+  result.details = read_details(file);
+  result.joints = file.read<std::string>("/joint");
+  const bool has_cases = file.exists("/case");
+  if (has_cases) {
+    result.cases = file.read<std::string>("/case");
+    read_fields(file, "/evaluate", kSumFields, result.case_result);
+    result.evaluation = transposed(read_solves(file, result.responses, result.details, kCaseAxes));
+  } else {
+    result.evaluation = read_solves(file, result.responses, result.details, kTableAxes);
+  }
+  const bool row_by_row = !has_cases && file.attribute<std::string>("/errors", "pairing").at(0) == kRowByRow;
+  result.pairing = row_by_row ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
+  const std::string rows = row_by_row ? "pose" : has_cases ? "case" : "sample";
+  result.evaluation.verdicts = read_limits(file, result);
+  if (result.evaluation.verdicts) check_rows(result.evaluation.verdicts->limits, axis_length(file, rows));
+  result.errors = read_along<double>(file, "/errors/values", {rows, "factor"});
+  result.labels = read_labels(file, rows);
+}
+
+void append_evaluation_tables(CsvTables& tables, const StoredResult& result) {
+  append_limit_table(tables, result, result.evaluation.verdicts);
+  const bool has_cases = !result.cases.empty();
+  tables.push_back(has_cases ? case_solve_table(result) : solve_table(result));
+  tables.push_back(joint_table(result));
+  tables.push_back(error_table(result));
+  if (has_cases) tables.push_back(case_sum_table(result));
+  if (!has_cases && !result.labels.names.empty()) tables.push_back(part_table(result));
+}
+
+}  // namespace poesy

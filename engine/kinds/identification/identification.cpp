@@ -1,0 +1,215 @@
+#include "engine/kinds/identification/identification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+/// An error takes part in a deformation of which at most this share remains when the error is set to zero.
+constexpr double kReduced = 0.1;
+
+/// Errors of one frame that are tried together, as positions among the factors.
+using FrameErrors = std::vector<std::size_t>;
+
+/// The deformations that one set of errors gives at all poses; NaN where not solved.
+using Deformations = std::vector<double>;
+
+class Identification {
+ public:
+  Identification(const Analysis& analysis, const ModelDescription& model, const SolveTable& solve)
+      : analysis_(&analysis), model_(&model), solve_(&solve) {
+    POESY_EXPECTS(model.deformation.has_value());
+    found_.factors = analysis.factors.size();
+    found_.groups = analysis.groups.size();
+    found_.rounding = model.deformation->rounding;
+    const std::size_t cells = found_.groups * found_.factors;
+    found_.coupled_below.resize(cells);
+    found_.coupled_reduced.resize(cells);
+    found_.single.resize(found_.factors);
+    found_.coupled.resize(found_.factors);
+  }
+
+  std::optional<IdentificationResult> operator()() {
+    if (!single_stage() || !coupled_stage()) return std::nullopt;
+    for (std::size_t cell = 0; cell < found_.single_by_group.size(); ++cell) {
+      found_.single[cell % found_.factors] |= found_.single_by_group[cell];
+      found_.coupled[cell % found_.factors] |= found_.coupled_by_group[cell];
+    }
+    return std::move(found_);
+  }
+
+ private:
+  /// The set of errors in which these members have the size of the group and all others are zero.
+  struct Trial {
+    std::size_t group;
+    FrameErrors members;
+  };
+
+  double size(std::size_t group, std::size_t p) const {
+    const bool is_length = model_->factors[analysis_->factors[p].value].dimension == Dimension::length;
+    return is_length ? analysis_->groups[group].linear : analysis_->groups[group].angular;
+  }
+
+  /// Solves all trials at all poses at once, and gives the deformations of each. Empty when stopped.
+  std::optional<std::vector<Deformations>> solve(const std::vector<Trial>& trials) {
+    ErrorTable table{analysis_->factors, {}, trials.size()};
+    table.values.resize(trials.size() * found_.factors);
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      for (const std::size_t p : trials[t].members) table.values[t * found_.factors + p] = size(trials[t].group, p);
+    }
+    const auto solved_table = (*solve_)(table);
+    if (!solved_table) return std::nullopt;
+    found_.poses = solved_table->poses;
+    found_.required_poses = std::max<std::uint64_t>(
+        1, static_cast<std::uint64_t>(std::llround(analysis_->pose_share * static_cast<double>(found_.poses))));
+    found_.solves.merge(solved_table->total());
+    const std::size_t all = solved_table->poses * trials.size();
+    const auto response = std::span(solved_table->response).subspan(model_->deformation->response * all, all);
+    std::vector<Deformations> deformations(trials.size(), Deformations(found_.poses));
+    for (std::size_t m = 0; m < found_.poses; ++m) {
+      for (std::size_t t = 0; t < trials.size(); ++t) {
+        const std::size_t at = m * trials.size() + t;
+        deformations[t][m] = solved(solved_table->status[at]) ? response[at] : std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+    return deformations;
+  }
+
+  std::uint64_t below(const Deformations& deformations) const {
+    return static_cast<std::uint64_t>(std::ranges::count_if(
+        deformations, [&](double value) { return value <= found_.rounding; }));  // NaN is not below
+  }
+
+  bool deforms(std::uint64_t below_rounding) const { return below_rounding < found_.required_poses; }
+
+  bool single_stage() {
+    std::vector<Trial> trials;
+    for (std::size_t g = 0; g < found_.groups; ++g) {
+      for (std::size_t p = 0; p < found_.factors; ++p) trials.push_back({g, {p}});
+    }
+    const auto deformations = solve(trials);
+    if (!deformations) return false;
+    for (const Deformations& values : *deformations) {
+      double largest = std::numeric_limits<double>::quiet_NaN();
+      std::uint64_t missing = 0;
+      for (const double value : values) {
+        largest = std::fmax(largest, value);  // passes over NaN
+        missing += std::isnan(value) ? 1 : 0;
+      }
+      found_.single_below.push_back(below(values));
+      found_.single_max.push_back(largest);
+      found_.not_solved.push_back(missing);
+      found_.single_by_group.push_back(deforms(found_.single_below.back()) ? 1 : 0);
+    }
+    found_.coupled_by_group = found_.single_by_group;
+    return true;
+  }
+
+  /// The errors of each frame that do not deform alone in this group; two at least.
+  std::vector<FrameErrors> frames(std::size_t group) const {
+    std::map<std::pair<std::size_t, std::size_t>, FrameErrors> by_frame;
+    for (std::size_t p = 0; p < found_.factors; ++p) {
+      const Factor& factor = model_->factors[analysis_->factors[p].value];
+      if (found_.single_by_group[group * found_.factors + p] == 0) by_frame[{factor.limb, factor.frame}].push_back(p);
+    }
+    std::vector<FrameErrors> list;
+    for (auto& [frame, unit] : by_frame) {
+      if (unit.size() > 1) list.push_back(std::move(unit));
+    }
+    return list;
+  }
+
+  bool coupled_stage() {
+    std::vector<Trial> together;
+    for (std::size_t g = 0; g < found_.groups; ++g) {
+      for (FrameErrors& errors : frames(g)) together.push_back({g, std::move(errors)});
+    }
+    const auto deformations = solve(together);
+    if (!deformations) return false;
+    for (std::size_t t = 0; t < together.size(); ++t) {
+      const std::uint64_t count = below((*deformations)[t]);
+      for (const std::size_t p : together[t].members) {
+        found_.coupled_below[together[t].group * found_.factors + p] = count;
+      }
+      if (deforms(count) && !split(together[t], (*deformations)[t])) return false;
+    }
+    return true;
+  }
+
+  /// Which members of a unit that deforms take part in it, and which pairs of its members deform.
+  bool split(const Trial& whole, const Deformations& with_all) {
+    std::vector<Trial> trials;
+    for (const std::size_t p : whole.members) {
+      Trial without = whole;
+      std::erase(without.members, p);
+      trials.push_back(std::move(without));
+    }
+    const auto deformations = solve(trials);
+    if (!deformations) return false;
+    FrameErrors taking_part;
+    for (std::size_t n = 0; n < whole.members.size(); ++n) {
+      const std::uint64_t count = reduced(with_all, (*deformations)[n]);
+      found_.coupled_reduced[whole.group * found_.factors + whole.members[n]] = count;
+      if (count >= found_.required_poses) taking_part.push_back(whole.members[n]);
+    }
+    return find_couplings(whole, taking_part);
+  }
+
+  static std::uint64_t reduced(const Deformations& with_all, const Deformations& without) {
+    std::uint64_t count = 0;
+    for (std::size_t m = 0; m < with_all.size(); ++m) count += without[m] <= kReduced * with_all[m] ? 1 : 0;
+    return count;
+  }
+
+  bool find_couplings(const Trial& whole, const FrameErrors& taking_part) {
+    std::vector<Trial> pairs;
+    for (std::size_t a = 0; a < whole.members.size(); ++a) {
+      for (std::size_t b = a + 1; b < whole.members.size(); ++b) {
+        pairs.push_back({whole.group, {whole.members[a], whole.members[b]}});
+      }
+    }
+    const auto deformations = solve(pairs);
+    if (!deformations) return false;
+    const std::size_t known = found_.couplings.size();
+    for (std::size_t t = 0; t < pairs.size(); ++t) {
+      const std::uint64_t count = below((*deformations)[t]);
+      if (!deforms(count)) continue;
+      const FrameErrors& pair = pairs[t].members;
+      found_.couplings.push_back({whole.group, pair[0], pair[1], found_.poses - count});
+      name_members(whole.group, pair[0], pair[1]);
+    }
+    if (found_.couplings.size() > known) return true;
+    // It takes more than two of them.
+    for (const std::size_t p : taking_part) found_.coupled_by_group[whole.group * found_.factors + p] = 1;
+    return true;
+  }
+
+  void name_members(std::size_t group, std::size_t a, std::size_t b) {
+    const auto is_angle = [&](std::size_t p) {
+      return model_->factors[analysis_->factors[p].value].dimension == Dimension::angle;
+    };
+    const bool alike = is_angle(a) == is_angle(b);
+    if (alike || is_angle(a)) found_.coupled_by_group[group * found_.factors + a] = 1;
+    if (alike || is_angle(b)) found_.coupled_by_group[group * found_.factors + b] = 1;
+  }
+
+  const Analysis* analysis_;
+  const ModelDescription* model_;
+  const SolveTable* solve_;
+  IdentificationResult found_;
+};
+
+}  // namespace
+
+std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
+                                             const SolveTable& solve) {
+  return Identification(analysis, model, solve)();
+}
+
+}  // namespace poesy

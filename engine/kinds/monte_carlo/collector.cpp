@@ -1,0 +1,339 @@
+#include "engine/kinds/monte_carlo/collector.h"
+
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
+#include "engine/run/verdict.h"
+#include "engine/stats/histogram.h"
+#include "engine/stats/mean_interval.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::uint64_t kKind = 2;  ///< no other state begins with this number
+
+constexpr std::size_t kHistogramBins = 128;
+
+/// NaN where nothing counts.
+double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }
+
+/// Calls visit(numbers) with all that a finished pose of a result knows from a response's sketch.
+template <class Result, class Visit>
+void visit_sketched(Result& result, std::size_t response, std::size_t pose, const Visit& visit) {
+  const std::size_t cell = response * result.poses + pose;
+  const std::size_t levels = result.levels.size();
+  visit(std::span(result.min).subspan(cell, 1));
+  visit(std::span(result.max).subspan(cell, 1));
+  visit(std::span(result.quantiles).subspan(cell * levels, levels));
+  visit(std::span(result.quantiles_ci_low).subspan(cell * levels, levels));
+  visit(std::span(result.quantiles_ci_high).subspan(cell * levels, levels));
+  if (!result.share_magnitude.empty()) visit(std::span(result.share_magnitude).subspan(cell, 1));
+}
+
+/// Throws unless these are the solves of whole units, of so many samples at most.
+void check_whole(const SolveCounts& solves, std::size_t most_samples) {
+  const std::uint64_t total = solves.total();
+  if (total == 0 || total % Plan::kUnitSamples != 0 || total > most_samples) {
+    throw BytesError("has a pose that is no number of whole units");
+  }
+}
+
+}  // namespace
+
+void ResponseSamples::write(ByteWriter& to) const {
+  moments.write(to);
+  sketch.write(to);
+}
+
+ResponseSamples ResponseSamples::read(ByteReader& from) {
+  ResponseSamples samples;
+  samples.moments = Moments::read(from);
+  samples.sketch = QuantileSketch::read(from);
+  return samples;
+}
+
+void PoseSamples::add(const PoseUnit& unit) {
+  responses.resize(unit.responses.size());
+  for (std::size_t r = 0; r < responses.size(); ++r) {
+    responses[r].moments.merge(unit.responses[r].moments);
+    responses[r].sketch.add(unit.responses[r].values);
+  }
+  solves.merge(unit.solves);
+  failed.merge(unit.failed);
+}
+
+void PoseSamples::write(ByteWriter& to) const {
+  for (const ResponseSamples& response : responses) response.write(to);
+  solves.write(to);
+  failed.write(to);
+}
+
+PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
+  PoseSamples samples;
+  for (std::size_t r = 0; r < responses; ++r) samples.responses.push_back(ResponseSamples::read(from));
+  samples.solves = SolveCounts::read(from);
+  samples.failed = FailedSamples::read(from, samples.solves.not_converged(), 0, samples.solves.total());
+  return samples;
+}
+
+MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis,
+                                         bool keep_checkpoint)
+    : plan_(&plan),
+      responses_(responses),
+      analysis_(analysis),
+      keep_checkpoint_(keep_checkpoint),
+      sketches_(responses),
+      moments_(plan.poses().size() * responses),
+      failed_(plan.poses().size()),
+      kept_(plan.poses().size()) {
+  result_.responses = responses;
+  result_.poses = plan.poses().size();
+  result_.conf_level = analysis.conf_level;
+  result_.quantile_relative_error = QuantileSketch::kRelativeError;
+  result_.levels = analysis.quantiles;
+  const std::size_t cells = responses * result_.poses;
+  for (std::vector<double>* values : {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std,
+                                      &result_.min, &result_.max, &result_.rms}) {
+    values->resize(cells);
+  }
+  if (analysis.judge == Judge::share) result_.share_magnitude.resize(cells);
+  result_.count.resize(cells);
+  for (std::vector<double>* values : {&result_.quantiles, &result_.quantiles_ci_low, &result_.quantiles_ci_high}) {
+    values->resize(cells * result_.levels.size());
+  }
+  result_.solves.resize(result_.poses);
+}
+
+void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
+  if (at_pose_.solves.total() == 0) {
+    open_ = pose;
+    if (const Bytes& begun = kept_[pose.value].bytes; !begun.empty()) {
+      ByteReader from(begun);
+      at_pose_ = PoseSamples::read(from, responses_);
+    }
+  }
+  POESY_EXPECTS(pose == open_ && !is_finished(pose.value));
+  const bool whole = unit.solves.total() == Plan::kUnitSamples;
+  if (keep_checkpoint_ && !whole) keep();
+  at_pose_.add(unit);
+  if (at_pose_.solves.total() < plan_->samples()) return;
+  if (keep_checkpoint_ && whole) keep();
+  finish_pose();
+}
+
+void MonteCarloCollector::keep() {
+  if (at_pose_.solves.total() == 0) return;
+  ByteWriter to;
+  at_pose_.write(to);
+  Kept kept{at_pose_.solves, to.take()};
+  kept.bytes.shrink_to_fit();
+  set_kept(open_.value, std::move(kept));
+}
+
+void MonteCarloCollector::set_kept(std::size_t pose, Kept kept) {
+  kept_bytes_ -= kept_[pose].bytes.size();
+  kept_[pose] = {};
+  if (kept.bytes.size() > kMostKeptBytes - kept_bytes_) return;
+  kept_bytes_ += kept.bytes.size();
+  kept_[pose] = std::move(kept);
+}
+
+void MonteCarloCollector::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
+  const std::size_t cell = response * result_.poses + pose;
+  const Interval interval = mean_interval(moments, result_.conf_level);
+  result_.mean[cell] = mean_of(moments);
+  result_.mean_ci_low[cell] = interval.low;
+  result_.mean_ci_high[cell] = interval.high;
+  result_.std[cell] = moments.standard_deviation();
+  result_.rms[cell] = root_mean_square(moments.mean(), moments.standard_deviation(), moments.count());
+  result_.count[cell] = moments.count();
+  moments_[pose * responses_ + response] = moments;
+}
+
+const std::vector<RankInterval>& MonteCarloCollector::ranks_of(std::uint64_t samples) {
+  if (ranks_.empty() || ranked_samples_ != samples) {
+    ranks_.clear();
+    for (const double level : result_.levels) {
+      ranks_.push_back(quantile_ranks(samples, level, result_.conf_level));
+    }
+    ranked_samples_ = samples;
+  }
+  return ranks_;
+}
+
+void MonteCarloCollector::set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch) {
+  const std::size_t cell = response * result_.poses + pose;
+  const std::vector<Bucket> buckets = sketch.buckets();
+  const std::vector<RankInterval>& ranks = ranks_of(sketch.count());
+  result_.min[cell] = sketch.min();
+  result_.max[cell] = sketch.max();
+  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
+    const std::size_t at = cell * result_.levels.size() + q;
+    const Interval interval = quantile_interval(buckets, ranks[q]);
+    result_.quantiles[at] = sketch.quantile(result_.levels[q]);
+    result_.quantiles_ci_low[at] = interval.low;
+    result_.quantiles_ci_high[at] = interval.high;
+  }
+  if (analysis_.judge != Judge::share) return;
+  const std::uint64_t rank = quantile_rank(analysis_.share, at_pose_.solves.total());
+  result_.share_magnitude[cell] =
+      rank <= sketch.count() ? sketch.magnitudes().order_statistic(rank) : std::numeric_limits<double>::infinity();
+}
+
+void MonteCarloCollector::finish_pose() {
+  for (std::size_t r = 0; r < responses_; ++r) {
+    const auto& [moments, sketch] = at_pose_.responses[r];
+    set_moments(r, open_.value, moments);
+    set_quantiles(r, open_.value, sketch);
+    sketches_[r].merge(sketch);
+  }
+  result_.solves[open_.value] = at_pose_.solves;
+  failed_[open_.value] = std::move(at_pose_.failed);
+  at_pose_ = {};
+}
+
+std::size_t MonteCarloCollector::units_done(PoseIndex pose) const {
+  if (is_finished(pose.value)) return plan_->units_per_cell();
+  const SolveCounts& solves = is_open(pose.value) ? at_pose_.solves : kept_[pose.value].solves;
+  return static_cast<std::size_t>(solves.total() / Plan::kUnitSamples);
+}
+
+SolveCounts MonteCarloCollector::total() const {
+  SolveCounts sum = at_pose_.solves;
+  for (std::size_t m = 0; m < kept_.size(); ++m) {
+    if (is_finished(m)) {
+      sum.merge(result_.solves[m]);
+    } else if (!is_open(m)) {
+      sum.merge(kept_[m].solves);
+    }
+  }
+  return sum;
+}
+
+void MonteCarloCollector::set_overall(std::size_t response, const Moments& moments) {
+  const QuantileSketch& sketch = sketches_[response];
+  result_.overall_mean.push_back(mean_of(moments));
+  result_.overall_std.push_back(moments.standard_deviation());
+  result_.overall_rms.push_back(root_mean_square(moments.mean(), moments.standard_deviation(), moments.count()));
+  result_.overall_min.push_back(sketch.min());
+  result_.overall_max.push_back(sketch.max());
+  result_.overall_count.push_back(moments.count());
+  const std::vector<Bucket> buckets = sketch.buckets();
+  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
+    const Interval interval = quantile_interval(buckets, ranks_of(sketch.count())[q]);
+    result_.overall_quantiles.push_back(sketch.quantile(result_.levels[q]));
+    result_.overall_quantiles_ci_low.push_back(interval.low);
+    result_.overall_quantiles_ci_high.push_back(interval.high);
+  }
+  Histogram bins = buckets.empty() ? Histogram{std::vector<double>(kHistogramBins + 1, kNaN), {}}
+                                   : histogram(buckets, kHistogramBins);
+  bins.counts.resize(kHistogramBins);
+  result_.histogram_edges.insert(result_.histogram_edges.end(), bins.edges.begin(), bins.edges.end());
+  result_.histogram_counts.insert(result_.histogram_counts.end(), bins.counts.begin(), bins.counts.end());
+}
+
+MonteCarloResult MonteCarloCollector::result() && {
+  for (std::size_t r = 0; r < responses_; ++r) {
+    Moments overall;
+    for (std::size_t m = 0; m < result_.poses; ++m) {
+      POESY_EXPECTS(is_finished(m));
+      overall.merge(moments_[m * responses_ + r]);
+    }
+    set_overall(r, overall);
+  }
+  for (std::size_t m = 0; m < result_.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], result_.failures);
+  if (!analysis_.limits.empty()) result_.verdicts = judge_draws(analysis_, result_, sketches_);
+  return std::move(result_);
+}
+
+void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const {
+  for (std::size_t r = 0; r < responses_; ++r) {
+    moments_[pose * responses_ + r].write(to);
+    visit_sketched(result_, r, pose, [&](std::span<const double> numbers) { to.reals(numbers); });
+  }
+  result_.solves[pose].write(to);
+  failed_[pose].write(to);
+}
+
+void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std::size_t samples) {
+  if (is_finished(pose) || is_open(pose)) throw BytesError("has a pose twice");
+  for (std::size_t r = 0; r < responses_; ++r) {
+    set_moments(r, pose, Moments::read(from));
+    visit_sketched(result_, r, pose, [&](std::span<double> numbers) { from.reals(numbers); });
+  }
+  result_.solves[pose] = SolveCounts::read(from);
+  if (result_.solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
+  failed_[pose] = FailedSamples::read(from, result_.solves[pose].not_converged(), 0, result_.solves[pose].total());
+}
+
+Bytes MonteCarloCollector::state() const {
+  ByteWriter to;
+  to.reserve(kept_bytes_ + kept_bytes_ / 4);  // what is kept, and some more
+  for (const std::uint64_t number :
+       std::array<std::uint64_t, 5>{kKind, responses_, result_.poses, result_.levels.size(), plan_->samples()}) {
+    to.number(number);
+  }
+  for (std::size_t m = 0; m < result_.poses; ++m) {
+    to.number(is_finished(m) ? 1 : 0);
+    if (is_finished(m)) write_finished(to, m);
+    to.block(kept_[m].bytes);
+  }
+  for (const QuantileSketch& sketch : sketches_) sketch.write(to);
+  to.number(at_pose_.solves.total() > 0 ? 1 : 0);
+  if (at_pose_.solves.total() == 0) return to.take();
+  to.number(open_.value);
+  at_pose_.write(to);
+  return to.take();
+}
+
+void MonteCarloCollector::restore(std::span<const std::byte> state) {
+  ByteReader from(state);
+  while (from.left() > 0) restore_one(from);
+}
+
+void MonteCarloCollector::restore_one(ByteReader& from) {
+  for (const std::uint64_t expected :
+       std::array<std::uint64_t, 4>{kKind, responses_, result_.poses, result_.levels.size()}) {
+    if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
+  }
+  const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
+  if (samples == 0) throw BytesError("has no samples");
+  const bool shorter = samples < plan_->samples();
+  for (std::size_t m = 0; m < result_.poses; ++m) {
+    const bool finished = from.number_up_to(1) == 1;
+    if (finished) read_finished(from, m, samples);
+    read_kept(from, m, finished ? samples : samples - 1);
+    if (shorter) result_.solves[m] = {};
+  }
+  for (QuantileSketch& sketch : sketches_) {
+    const QuantileSketch read = QuantileSketch::read(from);
+    if (!shorter) sketch.merge(read);
+  }
+  if (from.number_up_to(1) == 1) read_open(from, samples);
+}
+
+void MonteCarloCollector::read_open(ByteReader& from, std::size_t samples) {
+  if (at_pose_.solves.total() > 0) throw BytesError("has two unfinished poses");
+  open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(result_.poses - 1)));
+  if (is_finished(open_.value)) throw BytesError("has a pose twice");
+  at_pose_ = PoseSamples::read(from, responses_);
+  check_whole(at_pose_.solves, samples - 1);
+  if (samples == plan_->samples()) return;
+  keep();
+  at_pose_ = {};
+}
+
+void MonteCarloCollector::read_kept(ByteReader& from, std::size_t pose, std::size_t most_samples) {
+  const std::span<const std::byte> bytes = from.block();
+  if (bytes.empty()) return;
+  ByteReader unit(bytes);
+  const SolveCounts solves = PoseSamples::read(unit, responses_).solves;
+  unit.expect_end();
+  check_whole(solves, most_samples);
+  set_kept(pose, {solves, Bytes(bytes.begin(), bytes.end())});
+}
+
+}  // namespace poesy

@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <optional>
+#include <span>
+
+#include "engine/base/units.h"
+#include "engine/report/display.h"
+#include "engine/kinds/report_kind.h"
+
+namespace poesy {
+namespace {
+
+/// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. Without the first and
+/// the last bin, which reach out to the extremes.
+struct Outline {
+  std::vector<double> x;        ///< [2 B] each bin's lower and upper end, in the unit shown
+  std::vector<double> density;  ///< [2 B] share of the samples per unit of x
+  std::vector<double> below;    ///< [2 B] share of the samples below x
+};
+
+Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
+  const std::size_t bins = found.histogram_counts.size() / found.responses;
+  const std::span counts = std::span(found.histogram_counts).subspan(r * bins, bins);
+  const std::span edges = std::span(found.histogram_edges).subspan(r * (bins + 1), bins + 1);
+  const double all = static_cast<double>(found.overall_count[r]);
+  Outline drawn;
+  double sum = static_cast<double>(counts.front()) / all;
+  for (std::size_t b = 1; b + 1 < bins; ++b) {
+    // Bins that are left over are at the largest value.
+    if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
+    const double share = static_cast<double>(counts[b]) / all;
+    const double density = share / ((edges[b + 1] - edges[b]) / unit);
+    drawn.x.insert(drawn.x.end(), {edges[b] / unit, edges[b + 1] / unit});
+    drawn.density.insert(drawn.density.end(), {density, density});
+    drawn.below.insert(drawn.below.end(), {sum, sum + share});
+    sum += share;
+  }
+  return drawn;
+}
+
+/// The limit of a response where it is drawn: on both sides of zero if the response has values there.
+std::vector<Mark> limit_marks(const StoredResult& result, std::size_t r, double unit) {
+  const LimitVerdict* verdict = verdict_on(result, r);
+  if (verdict == nullptr) return {};
+  std::vector<Mark> marks{{"limit", verdict->limit / unit}};
+  if (result.monte_carlo.overall_min[r] < 0.0) marks.push_back({"limit", -verdict->limit / unit});
+  return marks;
+}
+
+std::string distribution_caption(const StoredResult& result, std::size_t r) {
+  const NamedUnit& response = result.responses[r];
+  std::string text = fmt::format(
+      "{}: its distribution over the samples of all poses, and below it the share of the samples below a value. The "
+      "outermost 0.05 % on either side are not drawn.",
+      response.name);
+  if (const LimitVerdict* verdict = verdict_on(result, r)) {
+    text += fmt::format(" {} of the draws are within the limit.",
+                        percent_text(static_cast<double>(verdict->within) / static_cast<double>(verdict->tried)));
+  }
+  return text;
+}
+
+Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
+  const NamedUnit& response = result.responses[r];
+  const std::string unit = unit_text(response);
+  const Outline drawn = outline(result.monte_carlo, r, display(response).si);
+  const auto add = [&](std::string_view what, const std::vector<double>& values, double scale) {
+    return pool.add(fmt::format("{}/{}", what, r), values, scale);
+  };
+  const ArrayName zero = add("histogram_zero", std::vector<double>(drawn.x.size(), 0.0), 1.0);
+  const ArrayName density = add("histogram", drawn.density, 0.01);
+  return {.x = {response.name, unit, add("histogram_x", drawn.x, 1.0)},
+          .panels = {{"share of the samples per unit",
+                      unit.empty() ? "%" : "%/" + unit,
+                      {{"samples of all poses", density, zero, density}}},
+                     {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
+          .marks = limit_marks(result, r, display(response).si)};
+}
+
+void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const MonteCarloResult& found = result.monte_carlo;
+  Section& section = page.add_section("how-large", "How large are the deviations");
+  section.paragraph(fmt::format("All {} vary at once.", counted(result.factors.size(), "error", "errors")));
+  section.table(tables, "overall");
+  for (const std::size_t r : headline_order(result)) {
+    if (found.histogram_counts.empty() || found.overall_count[r] == 0) continue;
+    add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, page.figures.pool),
+               distribution_caption(result, r));
+  }
+  section.table(tables, "poses");
+}
+
+/// One quantile of a response at all poses, [M].
+std::vector<double> quantile_at_poses(const MonteCarloResult& found, std::size_t r, std::size_t q) {
+  std::vector<double> values(found.poses);
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    values[m] = found.quantiles[(r * found.poses + m) * found.levels.size() + q];
+  }
+  return values;
+}
+
+std::string quantile_label(double level) { return percent_text(level) + " quantile"; }
+
+SolveTally tally(const StoredResult& result) {
+  return {"", {"all errors"}, result.poses.size(), result.monte_carlo.solves};
+}
+
+/// The mean of each pose in a band from the lowest to the highest quantile, and what colours the workspace.
+void add_where(const StoredResult& result, Page& page) {
+  const MonteCarloResult& found = result.monte_carlo;
+  const std::vector<double>& levels = found.levels;
+  const PoseFigures figures(result, page);
+  Lines bands{.x = figures.axis(), .panels = {}};
+  std::vector<Field> fields;
+  for (const std::size_t r : figures.responses()) {
+    const NamedUnit& response = result.responses[r];
+    const std::string unit = unit_text(response);
+    const auto add = [&](std::string_view what, std::span<const double> at_poses) {
+      return figures.add(fmt::format("{}/{}", what, r), at_poses, response);
+    };
+    const auto quantile = [&](std::size_t q) {
+      return add(fmt::format("quantile/{}", q), quantile_at_poses(found, r, q));
+    };
+    const ArrayName mean = add("mean", std::span(found.mean).subspan(r * found.poses, found.poses));
+    const ArrayName highest = quantile(levels.size() - 1);
+    bands.panels.push_back({response.name, unit, {{"mean", mean, quantile(0), highest}}});
+    fields.push_back({response.name + ", mean", unit, mean});
+    fields.push_back({response.name + ", " + quantile_label(levels.back()), unit, highest});
+    fields.push_back({response.name + ", standard deviation", unit,
+                      add("std", std::span(found.std).subspan(r * found.poses, found.poses))});
+  }
+  fields.push_back(figures.not_converged(tally(result).shares_by_pose()));
+  figures.add_condition(fields);
+  Section& section = page.add_section("where", "Where in the workspace");
+  section.paragraph(
+      fmt::format("Pose by pose: the mean of the samples, and between which quantiles ({} and {}) they lie.",
+                  quantile_label(levels.front()), quantile_label(levels.back())));
+  figures.add_note(section);
+  add_figure(page, section, "poses", std::move(bands),
+             "The mean at each pose, and how far the lowest and the highest quantile are from it.");
+  figures.add_workspace(section, std::move(fields));
+}
+
+void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  Section& section = add_how_sure(page, "How sure are the means", result.monte_carlo.conf_level);
+  if (result.monte_carlo.convergence) {
+    ArrayPool& pool = page.figures.pool;
+    const EstimateCourse course = with_ends(result.monte_carlo.convergence->course);
+    Lines lines = over_samples(course, pool);
+    for (const std::size_t r : headline_order(result)) {
+      const NamedUnit& response = result.responses[r];
+      const std::string array = fmt::format("samples/{}", r);
+      lines.panels.push_back({response.name,
+                              unit_text(response),
+                              {series_of(course, r, display(response).si, "all errors together", array, pool)}});
+    }
+    section.paragraph("The mean over the samples of all poses after so many samples, with its interval.");
+    add_figure(page, section, "convergence", std::move(lines),
+               "The overall mean over the number of samples, with its interval.");
+  } else {
+    section.paragraph(
+        "With a fixed number of samples a Monte Carlo study does not keep how its means settled. One with adaptive "
+        "samples does: samples = { min = .., max = .., relative_error = .. } under [analysis].");
+  }
+  section.table(tables, "convergence");
+}
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (result.monte_carlo.poses == 0 || result.monte_carlo.levels.empty()) return;
+  add_limits(tables, page);
+  add_how_large(result, tables, page);
+  add_where(result, page);
+  add_how_sure(result, tables, page);
+}
+
+Settling settling(const StoredResult& result) {
+  const std::optional<ConvergenceResult>& adaptive = result.monte_carlo.convergence;
+  return {"overall means", {"all errors"}, result.headline, adaptive ? &*adaptive : nullptr};
+}
+
+StudyWords words(const StoredResult&) { return {.draws = true}; }
+
+void warn(const StoredResult& result, std::vector<std::string>& list) {
+  if (std::string text = not_settled_text(result); !text.empty()) list.push_back(std::move(text));
+}
+
+ShownCells cells(const StoredResult& result) { return shown_cells(result, kSummaryRows); }
+
+/// The numbers of a Monte Carlo result over the samples of all poses, by name; in the order of the levels.
+std::vector<std::pair<std::string, std::vector<double>>> overall(const StoredResult& result) {
+  const MonteCarloResult& found = result.monte_carlo;
+  std::vector<std::pair<std::string, std::vector<double>>> list{
+      {"mean", found.overall_mean}, {"standard deviation", found.overall_std}, {"smallest", found.overall_min}};
+  for (std::size_t q = 0; q < found.levels.size(); ++q) {
+    std::vector<double> values;
+    for (std::size_t r = 0; r < found.responses; ++r) {
+      values.push_back(found.overall_quantiles[r * found.levels.size() + q]);
+    }
+    list.emplace_back(shortest(100.0 * found.levels[q]) + " % quantile", std::move(values));
+  }
+  list.emplace_back("largest", found.overall_max);
+  return list;
+}
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const auto numbers = overall(result);
+  std::vector<std::string> names;
+  for (const auto& number : numbers) names.push_back(number.first);
+  Comparable all = comparable_by_response(result, "number", std::move(names));
+  add_quantity(all, result, "over the samples of all poses", "overall",
+               [&](std::size_t r, std::size_t n) { return numbers[n].second[r]; });
+  return all;
+}
+
+}  // namespace
+
+constinit const ReportKind kMonteCarloReport{.name = "monte-carlo",
+                                             .tally = tally,
+                                             .tables = monte_carlo_tables,
+                                             .settling = settling,
+                                             .words = words,
+                                             .warn = warn,
+                                             .shown_cells = cells,
+                                             .page = add_page,
+                                             .comparable = comparable};
+
+}  // namespace poesy

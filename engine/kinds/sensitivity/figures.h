@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/kinds/report_kind.h"
+
+/// What the page of a sensitivity result and that of two share.
+namespace poesy {
+
+/// Indices [R x P] in the units shown and the order of response_order: as effects, index x sigma, or as they are.
+std::vector<double> in_shown_units(const StoredResult& result, const std::vector<double>& indices, bool as_effect);
+
+/// Their units, "mm" or "mm/deg": for each response one, or one of each error.
+std::vector<std::vector<std::string>> units_of_indices(const StoredResult& result, bool as_effect);
+
+/// Local indices x sigma of one response, [P x M], SI.
+std::vector<double> local_effects(const StoredResult& result, std::size_t response);
+
+/// A pose coordinate, or its magnitude, by which poses may be put in order.
+struct PoseOrder {
+  std::size_t coordinate;  ///< position among the pose coordinates
+  bool magnitude;          ///< |coordinate|
+  double correlation;      ///< rank correlation of what it explains with it, from -1 to 1
+  /// "gamma" or "|gamma|".
+  std::string name(const StoredResult& result) const;
+};
+
+/// Above this rank correlation, of either sign, a number is said to grow or fall with a coordinate.
+inline constexpr double kClearCorrelation = 0.8;
+
+/// Of values [P x M] with M poses, the root sum square of each pose's, [M].
+std::vector<double> root_sum_squares(std::span<const double> values, std::size_t poses);
+
+/// The coordinate, or magnitude of one that has both signs, whose rank correlation with `values` [M] of the poses is
+/// the largest in magnitude; of equal ones the first coordinate, and the coordinate before its magnitude. None where no
+/// correlation is known.
+std::optional<PoseOrder> explaining_order(const StoredResult& result, std::span<const double> values);
+
+/// How the columns of a heat map of these values [P x M] are ordered at first: the name of the order that explains
+/// their root sum squares; empty, as they come, where there is none, and on a trajectory, whose poses have an order
+/// already.
+std::string first_order(const StoredResult& result, std::span<const double> values);
+
+/// The indices, and all errors together; by the published estimator where one of both has no other.
+Comparable comparable_sensitivity(const StoredResult& result, const StoredResult& other);
+
+/// The sections of two results: their rankings, what differs, and where in the workspace.
+void compare_sensitivity(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page& page);
+
+}  // namespace poesy

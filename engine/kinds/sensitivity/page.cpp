@@ -1,0 +1,466 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/report/display.h"
+#include "engine/kinds/sensitivity/figures.h"
+#include "engine/kinds/sensitivity/index_change.h"
+#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/stats/rounding.h"
+#include "engine/stats/tolerance.h"
+
+namespace poesy {
+namespace {
+
+/// An interval that reaches further than this share of its index is called wide.
+constexpr double kWideInterval = 0.10;
+
+/// Positions of values, the largest first.
+std::vector<std::size_t> largest_first(const std::vector<double>& values) {
+  std::vector<std::size_t> order = positions(values.size());
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t p) { return values[p]; });
+  return order;
+}
+
+/// The errors that make most of the mean square, and those that together make next to none; empty where not all of
+/// their effects are known, or none has one.
+std::string few_matter_text(const StoredResult& result) {
+  constexpr double kMost = 0.8;
+  constexpr double kHardly = 0.01;
+  if (!has_tolerances(result)) return {};
+  const std::size_t response = response_named(result, default_ranking(result));
+  const MeanSquare found = mean_square(response_study(result.sensitivity, result.factor_sigma, response));
+  const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
+  if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return {};
+  const std::vector<std::size_t> order = largest_first(shares);
+  std::vector<std::string> names;
+  double sum = 0.0;
+  while (sum < kMost && names.size() < order.size()) {
+    const std::size_t p = order[names.size()];
+    names.push_back(result.factors[p].name);
+    sum += shares[p];
+  }
+  std::size_t hardly = 0;
+  for (double tail = 0.0; hardly < order.size(); ++hardly) {
+    tail += shares[order[order.size() - 1 - hardly]];
+    if (tail >= kHardly) break;
+  }
+  std::string text = fmt::format(
+      "{} of {} {} {:.0f} % of what the study's sizes add to the mean square of {} over samples and poses: {}.",
+      names.size(), counted(order.size(), "error", "errors"), names.size() == 1 ? "makes" : "make", 100.0 * sum,
+      result.responses[response].name, some_names(names));
+  if (hardly > 0)
+    text += fmt::format(" {} hardly {} (below 1 % together).", hardly, hardly == 1 ? "matters" : "matter");
+  return text;
+}
+
+constexpr std::string_view kCorrected =
+    "The published estimator counts the noise of sampling as spread between poses; the value shown is without that "
+    "noise, and 'published' in the table is with it.";
+constexpr std::string_view kPublished =
+    "The value shown is the published estimator, which counts the noise of sampling as spread between poses, because "
+    "an older poesy wrote this result.";
+
+BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& pool) {
+  const GlobalIndices shown = shown_indices(result);
+  const std::string name = as_effect ? "global_effect" : "global_index";
+  const auto add = [&](const std::string& suffix, const std::vector<double>& indices) {
+    return pool.add(name + suffix, in_shown_units(result, indices, as_effect));
+  };
+  return {as_effect ? "effect at the size the study sets (index x sigma)" : "global index",
+          units_of_indices(result, as_effect), add("", shown.value), add("_low", shown.low), add("_high", shown.high)};
+}
+
+void add_which_errors_matter(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  Section& section = page.add_section("which-errors-matter", "Which errors matter");
+  section.paragraph(fmt::format(
+      "The global index of an error is the scatter of a response for each unit of scatter of the error, its mean over "
+      "the {} plus its spread between them. Times the size that the study gives the error it is the effect, which "
+      "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals. {}",
+      counted(result.poses.size(), "pose", "poses"), 100.0 * result.sensitivity.conf_level,
+      has_corrected_indices(result) ? kCorrected : kPublished));
+  if (const std::string text = few_matter_text(result); !text.empty()) section.paragraph(text);
+  Bars bars{{{"response", names_of(result.responses, response_order(result))}},
+            {bar_quantity(result, true, page.figures.pool), bar_quantity(result, false, page.figures.pool)},
+            names_of(result.factors)};
+  add_figure(page, section, "ranking", std::move(bars),
+             "The errors " + order_by_effect(mixed_units(result.factors)) + ".");
+  section.table(tables, "ranked");
+}
+
+/// Rows of values [P x M] in this order.
+std::vector<double> in_order(const std::vector<double>& values, std::span<const std::size_t> rows) {
+  const std::size_t columns = rows.empty() ? 0 : values.size() / rows.size();
+  std::vector<double> list;
+  list.reserve(values.size());
+  for (const std::size_t row : rows) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * columns);
+    list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(columns));
+  }
+  return list;
+}
+
+/// Effects at each pose and samples not converged, as layers of rows x poses, in this order of the errors.
+std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::size_t> rows,
+                              const PoseFigures& figures) {
+  std::vector<HeatLayer> list;
+  for (const std::size_t r : figures.responses()) {
+    const NamedUnit& response = result.responses[r];
+    list.push_back({"effect on " + response.name, unit_text(response),
+                    figures.add(fmt::format("effect/{}", r), in_order(local_effects(result, r), rows), response)});
+  }
+  list.push_back({"not converged", "%", figures.add("not_converged", in_order(tally_of(result).shares(), rows), 0.01)});
+  return list;
+}
+
+/// Curves of the local effects over the time of a trajectory, those of the most important errors first.
+Lines along_trajectory(const StoredResult& result, const PoseFigures& figures) {
+  Lines lines{.x = figures.axis(), .panels = {}};
+  const std::size_t poses = result.poses.size();
+  for (const std::size_t r : figures.responses()) {
+    const NamedUnit& response = result.responses[r];
+    Panel panel{response.name, unit_text(response), {}};
+    const std::vector<double> effects = local_effects(result, r);
+    for (const std::size_t p : ranked_errors(result, response.name).rows) {
+      const std::span<const double> curve = std::span(effects).subspan(p * poses, poses);
+      panel.series.push_back({result.factors[p].name, figures.add(fmt::format("curve/{}/{}", r, p), curve, response)});
+    }
+    lines.panels.push_back(std::move(panel));
+  }
+  return lines;
+}
+
+/// With which coordinate the effects of all errors grow or fall; empty where none is clear.
+std::string trend_text(const StoredResult& result) {
+  const std::size_t r = response_named(result, default_ranking(result));
+  const auto order = explaining_order(result, root_sum_squares(local_effects(result, r), result.poses.size()));
+  if (!order || !(std::abs(order->correlation) >= kClearCorrelation)) return {};
+  return fmt::format(
+      "The effect of all errors on {}, the root sum square of theirs, {} with {}: their rank correlation over the "
+      "poses "
+      "is {:.2f}.",
+      result.responses[r].name, order->correlation > 0.0 ? "grows" : "falls", order->name(result), order->correlation);
+}
+
+/// Where the most important error has its largest effect; empty where poses hardly differ.
+std::string worst_place_text(const StoredResult& result) {
+  constexpr double kHardlyDiffers = 1.05;
+  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
+  if (ranked.rows.empty()) return {};
+  const std::size_t error = ranked.rows.front();
+  const std::vector<double> all = local_effects(result, ranked.response);
+  const auto effects = std::span(all).subspan(error * result.poses.size(), result.poses.size());
+  std::size_t worst = 0;
+  double sum = 0.0;
+  for (std::size_t m = 0; m < effects.size(); ++m) {
+    sum += effects[m];
+    if (effects[m] > effects[worst]) worst = m;
+  }
+  const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
+  if (!(ratio >= kHardlyDiffers)) return {};  // neither where an effect is not known
+  return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
+                     result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),
+                     ratio);
+}
+
+void add_where(const StoredResult& result, Page& page) {
+  const PoseFigures figures(result, page);
+  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
+  const std::vector<std::string> errors = names_of(result.factors, ranked.rows);
+  Section& section = page.add_section("where", "Where in the workspace");
+  section.paragraph(
+      "The effect of each error at each pose: its local index there times the size that the study gives it. The last "
+      "layer is the share of samples that did not converge.");
+  for (const std::string& text : {trend_text(result), worst_place_text(result)}) {
+    if (!text.empty()) section.paragraph(text);
+  }
+  figures.add_note(section);
+  if (!result.time.empty()) {
+    add_figure(page, section, "trajectory", along_trajectory(result, figures),
+               "The effect of each error along the trajectory.");
+  }
+  const std::vector<HeatLayer> shown = layers(result, ranked.rows, figures);
+  add_figure(
+      page, section, "heat",
+      figures.heat_map(shown, errors, first_order(result, local_effects(result, ranked.response))),
+      "A row for each error, the most important first, a column for each pose. Choose above in which order poses "
+      "stand.");
+  std::vector<Field> fields;
+  for (const HeatLayer& layer : shown) fields.push_back({layer.label, layer.unit, layer.value, errors});
+  figures.add_condition(fields);
+  figures.add_workspace(section, std::move(fields));
+}
+
+/// With fewer samples; none where an older version wrote the result.
+std::optional<EstimateCourse> course_of(const StoredResult& result) {
+  if (result.sensitivity.convergence) return with_ends(result.sensitivity.convergence->course);
+  return result.sensitivity.history;
+}
+
+/// Effects on each response in the order of importance.
+Lines effects_over_samples(const StoredResult& result, const EstimateCourse& course, ArrayPool& pool) {
+  Lines lines = over_samples(course, pool);
+  for (const std::size_t r : headline_order(result)) {
+    const NamedUnit& response = result.responses[r];
+    Panel panel{response.name, unit_text(response), {}};
+    for (const std::size_t p : ranked_errors(result, response.name).rows) {
+      if (!has_effect(result, r, p)) continue;
+      panel.series.push_back(series_of(course, r * result.factors.size() + p,
+                                       1.0 / (result.factor_sigma[p] / display(response).si), result.factors[p].name,
+                                       fmt::format("samples/{}/{}", r, p), pool));
+    }
+    lines.panels.push_back(std::move(panel));
+  }
+  return lines;
+}
+
+void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  Section& section = add_how_sure(page, "How sure are the indices", result.sensitivity.conf_level);
+  if (const std::optional<EstimateCourse> course = course_of(result)) {
+    section.paragraph(
+        "What a study with fewer samples would have found: curves that have become flat, with narrow bands, would not "
+        "change with more. Effects are index x sigma; errors without effect are left out.");
+    add_figure(page, section, "convergence", effects_over_samples(result, *course, page.figures.pool),
+               "The effect of each error by the published estimator over the number of samples, with its interval.");
+    section.paragraph(
+        "The curves are of the published estimator. Where poses differ by little more than chance it is at the upper "
+        "end of its interval, because chance adds to the spread between poses; more samples close the gap.");
+  } else {
+    section.paragraph(
+        "An older poesy wrote this result, which did not keep how its indices settled with the number of samples. Run "
+        "the study again, and its report shows it.");
+  }
+  section.table(tables, "convergence");
+}
+
+/// Tolerances in the unit shown of each error.
+std::vector<double> shown_tolerances(const StoredResult& result, const std::vector<double>& tolerances) {
+  std::vector<double> list(tolerances.size());
+  for (std::size_t p = 0; p < list.size(); ++p) list[p] = tolerances[p] / display(result.factors[p]).si;
+  return list;
+}
+
+Bars tolerance_bars(const StoredResult& result, const Tolerances& found, ArrayPool& pool) {
+  std::vector<std::string> units;
+  for (const NamedUnit& factor : result.factors) units.push_back(unit_text(factor));
+  BarQuantity shares{"share of the mean square that the study's sizes cause",
+                     {{"%"}},
+                     pool.add("mean_square_share", found.mean_square_share, 0.01)};
+  BarQuantity sizes{
+      "tolerance of equal effect", {units}, pool.add("equal_effect", shown_tolerances(result, found.equal_effect))};
+  return {{}, {std::move(shares), std::move(sizes)}, names_of(result.factors)};
+}
+
+void add_tolerances(const StoredResult& result, Page& page) {
+  if (!has_tolerances(result)) return;
+  Section& section = page.add_section("tolerances", "How tight must each be");
+  const std::size_t response = response_named(result, default_ranking(result));
+  const std::string& name = result.responses[response].name;
+  const std::optional<ReferenceError>& reference = result.tolerance_reference[response];
+  if (!reference) {
+    section.paragraph(fmt::format("No error has an effect on {}, so nothing can be said about tolerances.", name));
+    return;
+  }
+  ResponseTolerances found = stored_tolerances(result, response);
+  found.caveat = wrong_sizes_text(result, found);
+  section.paragraph(fmt::format(
+      "Tolerances, as standard deviations of normal errors, with which every error has the same effect on {}: the "
+      "tighter one, the more its error matters. They are counted from a reference, and all may be multiplied by one "
+      "number. 'poesy tolerances' with --limit gives those that keep {} below a limit, and studies that confirm them.",
+      name, name));
+  add_figure(page, section, "tolerances", tolerance_bars(result, found.all, page.figures.pool),
+             fmt::format(
+                 "What each error adds to the mean square of {} over samples and poses, and its tolerance of equal "
+                 "effect; {}.",
+                 name,
+                 mixed_units(result.factors) ? "the largest share first, for tolerances in mm and in deg do not compare"
+                                             : "the largest first"));
+  section.table(tolerance_table(result, found));
+}
+
+Bars bars_of_shares(const StoredResult& result, std::vector<BarQuantity> quantities) {
+  return {{}, std::move(quantities), names_of(result.factors)};
+}
+
+BarQuantity share(std::string label, const std::string& array, const std::vector<double>& values, ArrayPool& pool) {
+  return {std::move(label), {{"%"}}, pool.add(array, values, 0.01)};
+}
+
+/// The largest magnitude over the responses of a measure [R x P] of each error; NaN where none is known.
+std::vector<double> largest(const std::vector<double>& measure, std::size_t factors) {
+  std::vector<double> list(factors, std::nan(""));
+  for (std::size_t at = 0; at < measure.size(); ++at) {
+    list[at % factors] = std::fmax(list[at % factors], std::abs(measure[at]));
+  }
+  return list;
+}
+
+void add_separation(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (!result.sensitivity.separation) return;
+  const SeparationResult& found = *result.sensitivity.separation;
+  Section& section = page.add_section("calibration", "What calibration can remove");
+  section.paragraph(fmt::format(
+      "To first order, a part of each error's effect enters through the actuated directions, where a correction of the "
+      "actuators can take it away. The removable share is what the best correction at each pose removes; what is left "
+      "has to be prevented by tolerances. The effect is measured by {}. Of all errors together, {} is removable.",
+      result.separation_measure, percent_text(found.removable_together)));
+  ArrayPool& pool = page.figures.pool;
+  add_figure(
+      page, section, "separation",
+      bars_of_shares(result, {share("removable by calibration", "removable", found.removable, pool),
+                              share("enters through the actuated directions", "drive_share", found.drive_share, pool)}),
+      "How much of each error's effect calibration can remove.");
+  section.table(tables, "separation");
+}
+
+void add_fidelity(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (!result.sensitivity.fidelity) return;
+  const FidelityResult& found = *result.sensitivity.fidelity;
+  Section& section = page.add_section("linearity", "Is first order enough");
+  section.paragraph(
+      fmt::format("The study was solved at fidelity \"{}\" and, on the same draws, at \"{}\". An error is linear where "
+                  "they differ by no more than {:.3g} % of its largest effect, at the size the study sets.",
+                  result.fidelities[0], result.fidelities[1], 100.0 * found.linearity));
+  ArrayPool& pool = page.figures.pool;
+  const std::size_t factors = result.factors.size();
+  add_figure(
+      page, section, "fidelity",
+      bars_of_shares(result, {share("nonlinearity: change of mean and scatter", "nonlinearity",
+                                    largest(found.nonlinearity, factors), pool),
+                              share("discrepancy of the indices", "discrepancy",
+                                    largest(found.relative_discrepancy, factors), pool)}),
+      "How far the fidelities are apart, the largest of all responses, in percent of the error's largest effect.");
+  section.table(tables, "fidelity");
+}
+
+void warn_of_unknown_indices(const StoredResult& result, std::vector<std::string>& list) {
+  const SensitivityResult& found = result.sensitivity;
+  std::vector<std::string> unknown;
+  for (std::size_t p = 0; p < found.factors; ++p) {
+    bool known = true;
+    for (std::size_t r = 0; r < found.responses; ++r) known = known && !std::isnan(found.global[r * found.factors + p]);
+    if (!known) unknown.push_back(result.factors[p].name);
+  }
+  const auto cells = std::ranges::count_if(std::span(found.count).first(found.factors * found.poses),
+                                           [](double count) { return count < 2.0; });
+  if (cells == 0 && unknown.empty()) return;
+  std::string text =
+      fmt::format("{} (an error at a pose) fewer than two samples that count, so no index is known there.",
+                  cells == 1 ? "1 cell has" : fmt::format("{} cells have", cells));
+  if (!unknown.empty()) text += " Without a global index therefore: " + some_names(unknown) + ".";
+  list.push_back(text);
+}
+
+void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& list) {
+  std::vector<std::string> small;
+  const GlobalIndices shown = shown_indices(result);
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    const auto is_small = [&](std::size_t r) {
+      return is_too_small_to_tell(shown.value[r * result.factors.size() + p], index_rounding(result, r, p));
+    };
+    if (std::ranges::any_of(result.headline, is_small)) small.push_back(result.factors[p].name);
+  }
+  if (small.empty()) return;
+  list.push_back(
+      fmt::format("{} so small in this study that an effect cannot be told from the rounding of the solves: "
+                  "{}. Study larger errors.",
+                  counted(small.size(), "error is", "errors are"), some_names(small)));
+}
+
+void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
+  if (!has_index_changes(result)) return;
+  const std::size_t response = response_named(result, default_ranking(result));
+  if (changing_errors(result, response).empty()) return;
+  list.push_back(fmt::format("Some indices say something about the size of the errors in this study and no other: {}.",
+                             index_change_text(result, response)));
+}
+
+void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>& list) {
+  const SensitivityResult& found = result.sensitivity;
+  const GlobalIndices shown = shown_indices(result);
+  std::size_t wide = 0;
+  std::size_t all = 0;
+  std::optional<std::pair<double, std::size_t>> widest;
+  for (const std::size_t r : result.headline) {
+    for (std::size_t at = r * found.factors; at < (r + 1) * found.factors; ++at) {
+      if (!has_effect(result, r, at % found.factors)) continue;
+      ++all;
+      const double reach = std::max(shown.high[at] - shown.value[at], shown.value[at] - shown.low[at]);
+      const double relative = reach / shown.value[at];
+      if (!(relative > kWideInterval)) continue;
+      ++wide;
+      if (!widest || relative > widest->first) widest = {relative, at};
+    }
+  }
+  if (!widest) return;
+  list.push_back(
+      fmt::format("{} of {} indices have a {:.3g} % interval that reaches more than 10 % away from the index; the "
+                  "widest is that of {} on {}, {}. More samples make them narrower.",
+                  wide, all, 100.0 * found.conf_level, result.factors[widest->second % found.factors].name,
+                  result.responses[widest->second / found.factors].name, percent_text(widest->first)));
+}
+
+SolveTally tally(const StoredResult& result) {
+  const SensitivityResult& found = result.sensitivity;
+  SolveTally made{"error", names_of(result.factors), result.poses.size(), found.solves};
+  if (!found.fidelity) return made;
+  const std::vector<std::uint64_t>& failed = found.fidelity->not_converged;
+  const std::vector<std::uint8_t>& linear = found.fidelity->linear;
+  made.second = {.not_converged = std::accumulate(failed.begin(), failed.end(), std::uint64_t{0}),
+                 .total = made.total().total(),
+                 .not_linear = static_cast<std::size_t>(std::ranges::count(linear, std::uint8_t{0})),
+                 .errors = linear.size()};
+  return made;
+}
+
+Settling settling(const StoredResult& result) {
+  const std::optional<ConvergenceResult>& adaptive = result.sensitivity.convergence;
+  return {"global indices", names_of(result.factors), positions(result.responses.size()),
+          adaptive ? &*adaptive : nullptr};
+}
+
+void warn(const StoredResult& result, std::vector<std::string>& list) {
+  warn_of_unknown_indices(result, list);
+  warn_of_small_errors(result, list);
+  warn_of_sizes(result, list);
+  if (std::string text = not_settled_text(result); !text.empty()) list.push_back(std::move(text));
+  warn_of_wide_intervals(result, list);
+}
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  add_which_errors_matter(result, tables, page);
+  add_where(result, page);
+  add_how_sure(result, tables, page);
+  add_tolerances(result, page);
+  add_separation(result, tables, page);
+  add_fidelity(result, tables, page);
+}
+
+/// On a trajectory curves show the same numbers as the map.
+ShownCells cells(const StoredResult& result) {
+  return shown_cells(result, result.factors.size() * (result.time.empty() ? 1 : 2));
+}
+
+StudyWords words(const StoredResult&) { return {.draws = true}; }
+
+}  // namespace
+
+constinit const ReportKind kSensitivityReport{.name = "sensitivity",
+                                              .tally = tally,
+                                              .tables = sensitivity_tables,
+                                              .settling = settling,
+                                              .words = words,
+                                              .warn = warn,
+                                              .shown_cells = cells,
+                                              .page = add_page,
+                                              .comparable = comparable_sensitivity,
+                                              .compare = compare_sensitivity};
+
+}  // namespace poesy

@@ -1,0 +1,119 @@
+#include "engine/kinds/sensitivity/points_radius.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "engine/base/contract.h"
+#include "engine/base/error.h"
+#include "engine/base/nan.h"
+#include "engine/run/some_poses.h"
+#include "engine/stats/rank_correlation.h"
+#include "engine/stats/rounding.h"
+#include "engine/stats/sensitivity_index.h"
+
+namespace poesy {
+namespace {
+
+/// The points at this multiple of their distance from their middle.
+std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double multiple) {
+  PlatformPoint middle{};
+  for (const PlatformPoint& point : points) {
+    for (std::size_t k = 0; k < middle.size(); ++k) middle[k] += point[k] / static_cast<double>(points.size());
+  }
+  for (PlatformPoint& point : points) {
+    for (std::size_t k = 0; k < middle.size(); ++k) point[k] = middle[k] + multiple * (point[k] - middle[k]);
+  }
+  return points;
+}
+
+/// The study's mechanism to first order; nothing where it has no first order.
+std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
+  const std::vector<std::string>& fidelities = mechanism.entry->description.fidelities;
+  const auto found = std::ranges::find(fidelities, "first-order");
+  if (found == fidelities.end()) return std::nullopt;
+  mechanism.fidelity = static_cast<std::size_t>(found - fidelities.begin());
+  mechanism.compared.reset();
+  return mechanism;
+}
+
+/// The mechanism with these points; null where it refuses them.
+std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<PlatformPoint> points) {
+  mechanism.points = std::move(points);
+  try {
+    return build_model(mechanism);
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+/// Effects of all errors on all responses, [R x P], by the published estimator.
+class Effects {
+ public:
+  Effects(const Plan& plan, const Model& model)
+      : plan_(plan), model_(model), none_(model.description().factors.size(), 0.0) {
+    const std::size_t responses = model.description().responses.size();
+    local_.resize(responses * plan.slots());
+    const auto evaluator = model.evaluator(plan.solver());
+    const std::size_t poses = some_poses(plan.poses().size());
+    for (std::size_t n = 0; n < poses; ++n) add(plan.poses()[some_pose(n, plan.poses().size())], *evaluator);
+  }
+
+  std::vector<double> all() const {
+    std::vector<double> effects;
+    for (std::size_t n = 0; n < local_.size(); ++n) {
+      const double sigma = sigma_of(n % plan_.slots());
+      const double rounding = index_rounding(model_.rounding(n / plan_.slots()), sigma);
+      effects.push_back(sigma * told_from_rounding(published_index(local_[n]), rounding));
+    }
+    return effects;
+  }
+
+ private:
+  double sigma_of(std::size_t slot) const { return plan_.distributions()[slot].standard_deviation(); }
+
+  /// A pose without a first order is left out.
+  void add(std::span<const double> pose, Evaluator& evaluator) {
+    std::vector<double> responses(local_.size() / plan_.slots());
+    for (std::size_t slot = 0; slot < plan_.slots(); ++slot) {
+      const std::array error{sigma_of(slot)};
+      std::array status{SolveStatus::converged};
+      std::array iterations{std::uint32_t{0}};
+      evaluator.evaluate({pose, none_, plan_.factors().subspan(slot, 1), error, 1},
+                         {responses, status, iterations, {}});
+      if (status[0] != SolveStatus::converged) continue;
+      for (std::size_t r = 0; r < responses.size(); ++r) {
+        local_[r * plan_.slots() + slot].push_back({responses[r] / error[0], 0.0});
+      }
+    }
+  }
+
+  const Plan& plan_;
+  const Model& model_;
+  std::vector<double> none_;                    ///< [F] no other errors
+  std::vector<std::vector<LocalIndex>> local_;  ///< [R x P] at the poses
+};
+
+}  // namespace
+
+std::vector<double> radius_rank_correlations(const Study& study, const Plan& plan) {
+  POESY_EXPECTS(plan.slots() == plan.factors().size());
+  const std::optional<MechanismChoice> mechanism = to_first_order(study.mechanism);
+  if (!mechanism || !mechanism->entry->build_with_points) return {};
+  const std::unique_ptr<Model> own = build_model(*mechanism);
+  const std::vector<double> effects = Effects(plan, *own).all();
+  std::vector<double> correlations;
+  for (const double multiple : kPointsRadii) {
+    const std::unique_ptr<Model> other = model_with(*mechanism, at_radius(own->metric_points(), multiple));
+    const std::vector<double> others = other ? Effects(plan, *other).all() : std::vector(effects.size(), kNaN);
+    for (std::size_t r = 0; r < own->description().responses.size(); ++r) {
+      const std::size_t from = r * plan.slots();
+      correlations.push_back(
+          kendall_tau(std::span(effects).subspan(from, plan.slots()), std::span(others).subspan(from, plan.slots())));
+    }
+  }
+  return correlations;
+}
+
+}  // namespace poesy

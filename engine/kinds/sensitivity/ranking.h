@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/files/result_file.h"
+#include "engine/report/display.h"
+
+namespace poesy {
+
+/// In which order tables show the errors of a sensitivity result; the largest first.
+enum class RowOrder {
+  effect,        ///< index x sigma: what the error does at the size that the study gives it
+  index,         ///< in the units shown
+  name,          ///< a to z
+  study,         ///< as the study has them
+  not_converged  ///< share of the samples
+};
+
+/// What users call them, in the order of RowOrder.
+inline constexpr std::array<std::string_view, 5> kRowOrders{"effect", "index", "name", "order", "not-converged"};
+
+/// The errors of a sensitivity result, put in order by one response. Equal ones stay in the order of the study, and
+/// what is not known comes last.
+struct RankedErrors {
+  std::size_t response;            ///< position among the result's
+  std::vector<std::size_t> rows;   ///< positions of the errors in the order asked for
+  std::vector<std::size_t> ranks;  ///< [P] of each error by its effect, from 1
+};
+
+/// Precondition: the result has the response.
+RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order = RowOrder::effect);
+
+/// Global indices with their intervals, [R x P], by one estimator (run/result.h). Refers to the result.
+struct GlobalIndices {
+  const std::vector<double>& value;  ///< SI
+  const std::vector<double>& low;    ///< lower end of the interval
+  const std::vector<double>& high;   ///< upper end
+};
+
+/// Whether the result has corrected indices; those of older versions have none.
+bool has_corrected_indices(const StoredResult& result);
+
+/// The published ones, which every result has.
+GlobalIndices published_indices(const StoredResult& result);
+
+/// The corrected ones where the result has them, else the published ones.
+GlobalIndices shown_indices(const StoredResult& result);
+
+/// Below which a (global or local) index of the response and the error is rounding.
+double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
+
+/// An index, global or local, or an end of its interval, in SI, as far as it can be told from rounding: 0 where the
+/// error has no effect, NaN where it is too small to tell.
+double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor);
+
+/// Whether the index shown is more than rounding.
+bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor);
+
+/// index x sigma(error), SI: indices alone do not compare, for some are per m and some per rad.
+double effect(const StoredResult& result, std::size_t response, std::size_t factor);
+
+/// A column of global indices per unit of the error, or of ends of their intervals. values: [R x P], SI. Refers to the
+/// result and the values.
+FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
+                          std::string name, std::string heading, int dispensable = 0);
+
+/// Share of an error's samples that were not solved.
+double share_not_converged(const SensitivityResult& result, std::size_t factor);
+
+}  // namespace poesy

@@ -1,0 +1,286 @@
+#include "engine/run/ranks/run_over_ranks.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "engine/run/ranks/rank_pool.h"
+
+namespace poesy {
+namespace {
+
+/// Numbers that a rank has ahead, for each of its threads: at first, and at most where it solves them quicker than
+/// messages come and go.
+constexpr std::size_t kAhead = 4;
+constexpr std::size_t kMostAhead = 128;
+constexpr std::chrono::milliseconds kQuick{3};
+/// Numbers handed out beyond the last one that was merged, at most. More ranks than it can serve are more than one
+/// writer can serve.
+constexpr std::size_t kMostSlots = 65536;
+/// Of outputs that wait for their turn.
+constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
+/// Outputs are sent together, so many bytes or once in so long a time.
+constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
+constexpr std::chrono::microseconds kSendEvery{500};
+
+/// Rank 0.
+class Leader {
+ public:
+  Leader(std::size_t count, const RunOptions& options, const RankWork& work)
+      : team_(options.team),
+        options_(&options),
+        work_(&work),
+        count_(count),
+        window_(rank_slots(options)),
+        ranks_(team_->ranks().size()),
+        done_(window_),
+        bytes_(window_),
+        pool_(
+            options, work.make_work, [this](std::size_t n) { return n % window_; },
+            [this](std::size_t n, std::size_t /*slot*/) { deliver(n); }) {
+    ranks_[0].threads = threads_ = resolved_threads(options.threads);
+  }
+
+  bool run() {
+    LookPause pause;
+    while (next_to_merge_ < count_) {
+      if (receive()) pause.reset();
+      take_own();
+      merge();
+      for (std::size_t rank = 0; rank < ranks_.size(); ++rank) hand_out(rank);
+      if (stopped(*options_) || team_->left() || pool_.failed()) break;
+      pool_.wait(pause.next());
+    }
+    pool_.finish();
+    take_own();
+    merge();
+    return next_to_merge_ == count_;
+  }
+
+ private:
+  struct Rank {
+    std::size_t threads = 0;  ///< 0 until it is ready
+    std::size_t given = 0;    ///< numbers that it has
+    std::size_t ahead = kAhead;
+    std::chrono::steady_clock::time_point given_at;  ///< the last ones
+  };
+
+  /// On a thread of the pool.
+  void deliver(std::size_t n) {
+    const std::lock_guard lock(mutex_);
+    delivered_.push_back(n);
+  }
+
+  void take_own() {
+    std::vector<std::size_t> delivered;
+    {
+      const std::lock_guard lock(mutex_);
+      delivered.swap(delivered_);
+    }
+    for (const std::size_t n : delivered) done_[n % window_] = 1;
+    returned(ranks_[0], delivered.size());
+  }
+
+  bool receive() {
+    bool any = false;
+    try {
+      while (const auto message = team_->try_receive()) {
+        any = true;
+        ByteReader from = message->reader();
+        if (message->about == RankMessage::ready) welcome(message->from, from);
+        if (message->about == RankMessage::outputs) take_outputs(message->from, from);
+      }
+    } catch (const BytesError& error) {
+      throw std::runtime_error(std::string("what another rank sent ") + error.what());
+    }
+    return any;
+  }
+
+  void welcome(std::size_t rank, ByteReader& from) {
+    if (from.number() != team_->stage()) return;  // it was late for an earlier one
+    ranks_[rank].threads = static_cast<std::size_t>(from.number());
+    threads_ += ranks_[rank].threads;
+  }
+
+  void take_outputs(std::size_t rank, ByteReader& from) {
+    std::size_t taken = 0;
+    for (; from.left() > 0; ++taken) {
+      const auto n = static_cast<std::size_t>(from.number());
+      const std::span<const std::byte> output = from.block();
+      if (n < next_to_merge_ || n >= next_to_give_ || done_[n % window_] != 0) throw BytesError("was not asked for");
+      ByteReader bytes(output);
+      work_->unpack(n, n % window_, bytes);
+      bytes.expect_end();
+      done_[n % window_] = 1;
+      bytes_[n % window_] = output.size();
+      waiting_bytes_ += output.size();
+    }
+    returned(ranks_[rank], taken);
+  }
+
+  void returned(Rank& rank, std::size_t numbers) {
+    rank.given -= numbers;
+    const bool is_quick = std::chrono::steady_clock::now() < rank.given_at + kQuick;
+    if (numbers > 0 && rank.given == 0 && is_quick) rank.ahead = std::min(kMostAhead, 2 * rank.ahead);
+  }
+
+  void merge() {
+    while (next_to_merge_ < count_ && done_[next_to_merge_ % window_] != 0) {
+      const std::size_t slot = next_to_merge_ % window_;
+      work_->finish(next_to_merge_, slot);
+      done_[slot] = 0;
+      waiting_bytes_ -= std::exchange(bytes_[slot], 0);
+      ++next_to_merge_;
+    }
+  }
+
+  /// Towards the end a rank gets ever smaller parts, so that all end at about the same time.
+  void hand_out(std::size_t to) {
+    Rank& rank = ranks_[to];
+    const std::size_t left = count_ - next_to_give_;
+    if (left == 0 || rank.threads == 0) return;
+    const std::size_t share = std::max<std::size_t>(1, left * rank.threads / (2 * threads_));
+    const std::size_t wanted = std::min(rank.ahead * rank.threads, share);
+    if (2 * rank.given > wanted || rank.given >= wanted || waiting_bytes_ > kMostWaitingBytes) return;
+    const std::size_t room = next_to_merge_ + window_ - next_to_give_;
+    const std::size_t numbers = std::min(wanted - rank.given, room);
+    if (numbers == 0) return;
+    give(to, numbers);
+    rank.given += numbers;
+    rank.given_at = std::chrono::steady_clock::now();
+    next_to_give_ += numbers;
+  }
+
+  void give(std::size_t to, std::size_t numbers) {
+    if (to == 0) return pool_.give(next_to_give_, numbers);
+    ByteWriter range = Team::message(RankMessage::range);
+    range.number(next_to_give_);
+    range.number(numbers);
+    team_->send(to, range);
+  }
+
+  Team* team_;
+  const RunOptions* options_;
+  const RankWork* work_;
+  std::size_t count_;
+  std::size_t window_;
+  std::vector<Rank> ranks_;
+  std::size_t threads_ = 0;  ///< of those that are ready
+  std::size_t next_to_give_ = 0;
+  std::size_t next_to_merge_ = 0;
+  std::vector<std::uint8_t> done_;  ///< [slots] 1: there is an output
+  std::vector<std::size_t> bytes_;  ///< [slots] that it had, if it was sent
+  std::size_t waiting_bytes_ = 0;
+  std::mutex mutex_;
+  std::vector<std::size_t> delivered_;  ///< by the pool
+  RankPool pool_;                       ///< last, for it uses the others
+};
+
+/// Every other rank.
+class Follower {
+ public:
+  Follower(const RunOptions& options, const RankWork& work)
+      : team_(options.team),
+        options_(&options),
+        work_(&work),
+        outputs_(Team::message(RankMessage::outputs)),
+        pool_(
+            options, work.make_work,
+            [this, slots = rank_slots(options)](std::size_t /*n*/) { return taken_++ % slots; },
+            [this](std::size_t n, std::size_t slot) { deliver(n, slot); }) {
+    ByteWriter ready = Team::message(RankMessage::ready);
+    ready.number(team_->stage());
+    ready.number(resolved_threads(options.threads));
+    team_->send(0, ready);
+  }
+
+  bool run() {
+    bool told = false;
+    for (LookPause pause;; pool_.wait(pause.next())) {
+      if (receive()) pause.reset();
+      if (complete_) break;
+      if (pool_.failed()) break;
+      if (stopped(*options_) && !told) {
+        team_->leave(LeaveReason::stopped, "was asked to stop");
+        told = true;
+      }
+      send_outputs();
+    }
+    pool_.finish();
+    return *complete_;
+  }
+
+ private:
+  /// On a thread of the pool.
+  void deliver(std::size_t n, std::size_t slot) {
+    ByteWriter output;
+    work_->pack(n, slot, output);
+    const Bytes bytes = output.take();
+    const std::lock_guard lock(mutex_);
+    outputs_.number(n);
+    outputs_.block(bytes);
+    waiting_bytes_ += bytes.size();
+    ++waiting_;
+    ++delivered_;
+  }
+
+  bool receive() {
+    bool any = false;
+    while (!complete_) {
+      const auto message = team_->try_receive();
+      if (!message) break;
+      any = true;
+      ByteReader from = message->reader();
+      if (message->about == RankMessage::end) complete_ = team_->take_end(from);
+      if (message->about != RankMessage::range) continue;
+      const auto first = static_cast<std::size_t>(from.number());
+      const auto numbers = static_cast<std::size_t>(from.number());
+      pool_.give(first, numbers);
+      given_ += numbers;
+    }
+    return any;
+  }
+
+  void send_outputs() {
+    ByteWriter outputs;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto now = std::chrono::steady_clock::now();
+      // What is left may be all that rank 0 waits for.
+      const bool few_left = 2 * (given_ - delivered_) <= resolved_threads(options_->threads);
+      if (waiting_ == 0 || (waiting_bytes_ < kSendBytes && now < last_sent_ + kSendEvery && !few_left)) return;
+      outputs = std::exchange(outputs_, Team::message(RankMessage::outputs));
+      waiting_ = 0;
+      waiting_bytes_ = 0;
+      last_sent_ = now;
+    }
+    team_->send(0, outputs);
+  }
+
+  Team* team_;
+  const RunOptions* options_;
+  const RankWork* work_;
+  std::size_t taken_ = 0;         ///< numbers that the pool took
+  std::optional<bool> complete_;  ///< what the end said
+  std::size_t given_ = 0;         ///< numbers from rank 0
+  std::mutex mutex_;
+  ByteWriter outputs_;
+  std::size_t waiting_ = 0;  ///< outputs in it
+  std::size_t waiting_bytes_ = 0;
+  std::size_t delivered_ = 0;
+  std::chrono::steady_clock::time_point last_sent_;
+  RankPool pool_;  ///< last, for it uses the others
+};
+
+}  // namespace
+
+std::size_t rank_slots(const RunOptions& options) {
+  if (!options.team->leads()) return pool_slots(options);
+  return std::min(kMostSlots, 2 * kMostAhead * resolved_threads(options.threads) * options.team->ranks().size());
+}
+
+bool run_over_ranks(std::size_t count, const RunOptions& options, const RankWork& work) {
+  return options.team->leads() ? Leader(count, options, work).run() : Follower(options, work).run();
+}
+
+}  // namespace poesy

@@ -1,0 +1,113 @@
+#include "engine/base/text.h"
+#include "engine/study/keys.h"
+#include "engine/study/study_text.h"
+
+namespace poesy {
+namespace {
+
+void read_model(const StudyValue& value, Study& study, const Reading& reading) {
+  const std::string written = value.text();
+  std::vector<std::string_view> known;
+  for (const CatalogEntry& entry : reading.catalog) known.push_back(entry.description.name);
+  study.mechanism.entry = find(reading.catalog, written);
+  if (study.mechanism.entry == nullptr) {
+    value.fail("is '" + printable(written) + "', which is unknown", suggestion(lower_case(written), known));
+  }
+  for (const GeometryParameter& parameter : study.model().geometry) {
+    study.mechanism.geometry.push_back(parameter.published);
+  }
+}
+
+void read_geometry(const StudyValue& value, Study& study, const Reading&) {
+  const std::vector<GeometryParameter>& parameters = study.model().geometry;
+  const StudySection section = value.section();
+  section.allow(names(parameters), "parameter");
+  study.mechanism.place = value.place();
+  for (std::size_t g = 0; g < parameters.size(); ++g) {
+    const auto own = section.find(parameters[g].name);
+    if (own) study.mechanism.geometry[g] = own->quantity(parameters[g].dimension);
+  }
+}
+
+/// Sets `fidelity`, and `compared` for "both", which a model with two fidelities offers.
+void read_fidelity(const StudyValue& value, Study& study, const Reading& reading) {
+  const ModelDescription& model = study.model();
+  if (model.fidelities.empty()) {
+    reading.root.section("mechanism").refuse("fidelity", "model \"" + model.name + "\", which offers no choice of it");
+  }
+  std::vector<std::string_view> words(model.fidelities.begin(), model.fidelities.end());
+  if (words.size() == 2) words.push_back(kBothFidelities);
+  const std::size_t word = value.word(words);
+  if (word < model.fidelities.size()) {
+    study.mechanism.fidelity = word;
+  } else {
+    study.mechanism.compared = 1;
+  }
+}
+
+std::string geometry_lines(const Study& study) {
+  const std::vector<GeometryParameter>& parameters = study.model().geometry;
+  std::string text = parameters.empty() ? "" : "\n[mechanism.geometry]\n";
+  for (std::size_t g = 0; g < parameters.size(); ++g) {
+    text += parameters[g].name + " = " + exact_value(study.mechanism.geometry[g], parameters[g].dimension) + "\n";
+  }
+  return text;
+}
+
+std::string fidelity_line(const Study& study) {
+  const std::vector<std::string>& fidelities = study.model().fidelities;
+  if (fidelities.empty()) return {};
+  const MechanismChoice& choice = study.mechanism;
+  return "fidelity = " + in_quotes(choice.compared ? kBothFidelities : std::string_view(fidelities[choice.fidelity])) +
+         "\n";
+}
+
+}  // namespace
+
+const StudyRows& mechanism_keys() {
+  static const StudyRows keys{
+      .paths = {"mechanism"},
+      .meaning = "The mechanism and its geometry.",
+      .rows = {
+          StudyRow{.name = "model",
+                   .value = {.type = "text", .text = [](const Study& study) { return in_quotes(study.model().name); }},
+                   .missing = "write model = \"NAME\"; 'poesy models' lists the names",
+                   .meaning = "Name of the mechanism; 'poesy models' lists them.",
+                   .reader = read_model},
+          StudyRow{.name = "geometry",
+                   .value = {.type = "table"},
+                   .usual = "as published",
+                   .meaning = "Parameters of the geometry that differ from the published ones; where they do, look at "
+                              "the workspace too.",
+                   .reader = read_geometry,
+                   .lines = geometry_lines,
+                   .late = 1},
+          StudyRow{.name = "fidelity",
+                   .value = {.type = "text"},
+                   .usual = "the first of them",
+                   .meaning =
+                       "One of the model's ways to solve a sample, for models that offer a choice; of two, "
+                       "\"both\" solves each on the same draws in a sensitivity study and tells which errors are "
+                       "linear.",
+                   .reader = read_fidelity,
+                   .lines = fidelity_line}}};
+  return keys;
+}
+
+StudyTables mechanism_tables() {
+  const StudyTable geometry{.paths = {"mechanism.geometry"},
+                            .meaning = "'poesy models MODEL' lists the parameters.",
+                            .keys = {{.name = "PARAMETER",
+                                      .type = "quantity",
+                                      .usual = "its published value",
+                                      .meaning = "A parameter of the geometry."}}};
+  return {described(mechanism_keys()), geometry};
+}
+
+void read_mechanism(Study& study, const Reading& reading) {
+  const StudySection section = reading.root.require("mechanism").section();
+  study.mechanism.place = section.place();
+  read_keys(mechanism_keys(), section, study, reading);
+}
+
+}  // namespace poesy

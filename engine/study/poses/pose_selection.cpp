@@ -1,0 +1,101 @@
+#include "engine/study/poses/pose_selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/random/low_discrepancy.h"
+#include "engine/study/poses/boundary.h"
+#include "engine/study/poses/given_poses.h"
+#include "engine/study/poses/workspace.h"
+
+namespace poesy {
+namespace {
+
+/// No more candidates than this are tried for a number of poses.
+std::size_t most_candidates(std::size_t count) { return std::max<std::size_t>(100'000, 100 * count); }
+
+SelectedPoses interior_poses(const PoseSelection& selection, const Model& model) {
+  const Workspace workspace(selection, model);
+  PoseCollector collector(workspace);
+  SobolSequence sequence(workspace.coordinates());
+  std::vector<double> scaled(workspace.coordinates());
+  std::vector<double> pose(workspace.coordinates());
+  const std::size_t most = most_candidates(selection.count);
+  for (std::size_t candidate = 0; collector.kept() < selection.count; ++candidate) {
+    if (candidate == most) collector.fail(selection.count, selection.place);
+    sequence.next(scaled);
+    workspace.unscale(scaled, pose);
+    collector.offer(pose);
+  }
+  return std::move(collector).result();
+}
+
+/// All feasible points of a grid, the last coordinate fastest.
+PoseCollector grid_points(const Workspace& workspace, std::span<const std::size_t> counts) {
+  PoseCollector collector(workspace);
+  std::vector<std::size_t> step(counts.size(), 0);
+  std::vector<double> scaled(counts.size());
+  std::vector<double> pose(counts.size());
+  for (bool more = true; more;) {
+    for (std::size_t c = 0; c < counts.size(); ++c) {
+      scaled[c] = counts[c] == 1 ? 0.5 : static_cast<double>(step[c]) / static_cast<double>(counts[c] - 1);
+    }
+    workspace.unscale(scaled, pose);
+    collector.offer(pose);
+    more = false;
+    for (std::size_t c = counts.size(); c-- > 0 && !more;) {
+      more = ++step[c] < counts[c];
+      if (!more) step[c] = 0;
+    }
+  }
+  return collector;
+}
+
+/// Points of a grid with equal numbers for all coordinates, or more than `most`.
+std::size_t grid_size(std::size_t number, std::size_t coordinates, std::size_t most) {
+  std::size_t size = 1;
+  for (std::size_t c = 0; c < coordinates && size <= most; ++c) size *= number;
+  return size;
+}
+
+SelectedPoses grid_poses(const PoseSelection& selection, const Model& model) {
+  const Workspace workspace(selection, model);
+  if (!selection.grid_counts.empty()) {
+    PoseCollector points = grid_points(workspace, selection.grid_counts);
+    if (points.kept() == 0) points.fail(selection.count, selection.place);
+    return std::move(points).result();
+  }
+  const std::size_t most = most_candidates(selection.count);
+  std::size_t number = 1;
+  while (grid_size(number, workspace.coordinates(), most) < selection.count) ++number;
+  for (;; ++number) {
+    PoseCollector points = grid_points(workspace, std::vector<std::size_t>(workspace.coordinates(), number));
+    if (points.kept() >= selection.count) {
+      points.thin_to(selection.count);
+      return std::move(points).result();
+    }
+    if (grid_size(number + 1, workspace.coordinates(), most) > most) points.fail(selection.count, selection.place);
+  }
+}
+
+}  // namespace
+
+SelectedPoses select_poses(const PoseSelection& selection, const Model& model) {
+  using Select = PoseSelection::Select;
+  switch (selection.select) {
+    case Select::interior:
+      return interior_poses(selection, model);
+    case Select::boundary:
+      return boundary_poses(selection, model);
+    case Select::grid:
+      return grid_poses(selection, model);
+    case Select::trajectory:
+      return trajectory_poses(selection, model);
+    case Select::file:
+      break;
+  }
+  return file_poses(selection, model);
+}
+
+}  // namespace poesy

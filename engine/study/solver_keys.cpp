@@ -1,0 +1,213 @@
+#include <array>
+#include <limits>
+
+#include "engine/base/text.h"
+#include "engine/study/keys.h"
+#include "engine/study/study_text.h"
+
+namespace poesy {
+namespace {
+
+using Method = SolverOptions::Method;
+
+constexpr std::string_view kFormat = "poesy-study";
+constexpr std::int64_t kVersion = 1;
+
+void read_format(const StudyValue& value, Study&, const Reading&) {
+  if (value.text() == kFormat) return;
+  value.fail("is '" + printable(value.text()) + "'", "a study has format = \"poesy-study\"");
+}
+
+void read_version(const StudyValue& value, Study&, const Reading&) {
+  const std::int64_t number = value.whole_number(1);
+  if (number <= kVersion) return;
+  value.fail("is " + std::to_string(number) + ", but this poesy knows version 1 only", "use a newer poesy");
+}
+
+/// Throws where nothing is weighed by a metric.
+void require_metric(std::string_view key, const Study& study, const Reading& reading) {
+  if (!study.model().metric.empty()) return;
+  reading.root.section("solver").refuse(
+      key, "model \"" + study.model().name + "\", whose responses weigh no angles against lengths");
+}
+
+/// Takes the entry of the mechanism by its platform's metric where the study asks for it.
+void read_metric(const StudyValue& value, Study& study, const Reading& reading) {
+  require_metric("metric", study, reading);
+  std::vector<std::string_view> known;
+  for (const StudyWord& word : row_of(solver_keys(), "metric").value.words) known.push_back(word.name);
+  if (known[value.word(known)] == "platform") study.mechanism.entry = study.mechanism.entry->by_platform.get();
+}
+
+/// A point of the platform: three lengths.
+PlatformPoint read_point(const StudyValue& value) {
+  const std::vector<StudyValue> coordinates = value.list();
+  if (coordinates.size() != 3) {
+    value.fail("has " + std::to_string(coordinates.size()) + " values", "a point has three, [\"60 mm\", 0, 0]");
+  }
+  PlatformPoint point{};
+  for (std::size_t c = 0; c < point.size(); ++c) {
+    point[c] = coordinates[c].is_zero() ? 0.0 : coordinates[c].quantity(Dimension::length);
+  }
+  return point;
+}
+
+void read_points(const StudyValue& value, Study& study, const Reading& reading) {
+  require_metric("points", study, reading);
+  if (study.model().metric != "platform") {
+    value.fail("is for metric = \"platform\"", "write metric = \"platform\" too, or remove it");
+  }
+  MechanismChoice& choice = study.mechanism;
+  choice.points_place = value.place();
+  for (const StudyValue& point : value.list()) choice.points.push_back(read_point(point));
+  if (choice.points.size() < 3) {
+    value.fail("has " + std::to_string(choice.points.size()) + " points", "name three or more that are not on a line");
+  }
+}
+
+std::string metric_line(const Study& study) {
+  return study.model().metric.empty() ? "" : "metric = " + in_quotes(study.model().metric) + "\n";
+}
+
+std::string points_line(const Study& study) {
+  const std::vector<PlatformPoint>& points = study.mechanism.points;
+  return points.empty() ? "" : "points = " + points_text(points, exact_value) + "\n";
+}
+
+/// "fail" is short for "exclude" and a limit of 0.
+void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
+  constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::exclude};
+  constexpr std::size_t kFail = 2;
+  std::vector<std::string_view> known;
+  for (const StudyWord& each : row_of(solver_keys(), "not_converged").value.words) known.push_back(each.name);
+  const std::size_t word = value.word(known);
+  study.not_converged = kPolicies[word];
+  if (word != kFail) return;
+  reading.root.section("solver").refuse("max_not_converged", "not_converged = \"fail\", which allows none");
+  study.max_not_converged = 0.0;
+}
+
+std::vector<StudyRow> metric_rows() {
+  return {
+      StudyRow{.name = "metric",
+               .value = {.type = "text",
+                         .words = {{"platform",
+                                    "by how far points of the platform are moved: a length, whatever the unit and the "
+                                    "frame"},
+                                   {"published", "as in the paper: radians against metres, at the base's origin"}}},
+               .usual = "`\"published\"`",
+               .meaning = "How mismatch of angle is weighed against mismatch of position where limbs work against each "
+                          "other; only for models that have such a mismatch.",
+               .reader = read_metric,
+               .lines = metric_line},
+      StudyRow{.name = "points",
+               .value = {.type = "list of lists of lengths"},
+               .usual = "where the limbs hold the platform",
+               .meaning = "Points [x, y, z] in the platform's frame for metric = \"platform\", three or more that are "
+                          "not on a line.",
+               .reader = read_points,
+               .lines = points_line}};
+}
+
+std::vector<StudyRow> iteration_rows() {
+  return {
+      StudyRow{
+          .name = "method",
+          .value = word_at<Method>({{Method::newton, "the model's own, fast and far-reaching"},
+                                    {Method::gauss_newton, "as published: slower, and more samples do not converge"}},
+                                   &Study::solver, &SolverOptions::method),
+          .meaning = "The iteration."},
+      StudyRow{.name = "tolerance",
+               .value = number_at(above_zero("1e-15"), &Study::solver, &SolverOptions::tolerance),
+               .besides = "; with metric = \"platform\" `1e-14`",
+               .meaning =
+                   "Converged: the residual's largest change (rad, m) in one iteration is below this; with metric "
+                   "= \"platform\" its length is below this share of the mechanism's reach."},
+      StudyRow{.name = "max_iterations",
+               .value = whole_at(1, std::numeric_limits<int>::max(), &Study::solver, &SolverOptions::max_iterations),
+               .meaning = "Iterations after which a sample counts as not converged."}};
+}
+
+std::vector<StudyRow> failure_rows() {
+  const NumberBounds share{0.0, 1.0, true, "from 0 to 1", "it is a share of all samples, from 0 to 1, e.g. 0.001"};
+  return {StudyRow{.name = "not_converged",
+                   .value = {.type = "text",
+                             .words = {{name(NotConverged::exclude), "they are left out of all statistics"},
+                                       {name(NotConverged::include), "the last iterate counts"},
+                                       {"fail", "exclude, with max_not_converged = 0"}},
+                             .text = [](const Study& study) { return in_quotes(name(study.not_converged)); }},
+                   .meaning = "What becomes of samples that did not converge.",
+                   .reader = read_not_converged},
+          StudyRow{.name = "max_not_converged",
+                   .value = number_at(share, &Study::max_not_converged),
+                   .meaning = "Share of all samples; if more fail, the run ends with exit code 5, its result kept."}};
+}
+
+/// A row for a table of the file, which is read by itself.
+StudyRow table_row(std::string_view name, std::string missing, std::string usual, std::string_view meaning) {
+  return {.name = name,
+          .value = {.type = "table"},
+          .missing = std::move(missing),
+          .usual = std::move(usual),
+          .meaning = meaning};
+}
+
+}  // namespace
+
+const StudyRows& file_keys() {
+  static const StudyRows keys{
+      .paths = {""},
+      .meaning = "Before the first section, and the sections.",
+      .rows = {StudyRow{.name = "format",
+                        .value = {.type = "text", .text = [](const Study&) { return in_quotes(kFormat); }},
+                        .missing = "begin a study with {}",
+                        .example = in_quotes(kFormat),
+                        .meaning = "Always \"poesy-study\".",
+                        .reader = read_format},
+               StudyRow{.name = "version",
+                        .value = {.type = "integer",
+                                  .bounds = "at least 1",
+                                  .text = [](const Study&) { return std::to_string(kVersion); }},
+                        .missing = "write {}",
+                        .example = std::to_string(kVersion),
+                        .meaning = "The version of the format, 1.",
+                        .reader = read_version},
+               StudyRow{.name = "title", .value = text_at(&Study::title), .meaning = "Free text; the result keeps it."},
+               table_row("mechanism", "add the section [mechanism] with the key model", "", "Which mechanism."),
+               table_row("poses", "add the section [poses] with the key count", "", "At which poses of the platform."),
+               table_row("errors", "", "as shown there", "How errors scatter."),
+               table_row("analysis", "", "a sensitivity study", "What is asked, of which errors."),
+               table_row("solver", "", "as shown there", "How samples are solved."),
+               table_row("run", "", "as shown there", "Where draws begin.")}};
+  return keys;
+}
+
+const StudyRows& solver_keys() {
+  static const StudyRows keys = [] {
+    StudyRows table{.paths = {"solver"},
+                    .meaning = "How samples are solved, and what becomes of those that are not.",
+                    .rows = metric_rows()};
+    for (const auto& more : {iteration_rows(), failure_rows()})
+      table.rows.insert(table.rows.end(), more.begin(), more.end());
+    return table;
+  }();
+  return keys;
+}
+
+const StudyRows& run_keys() {
+  static const StudyRows keys{
+      .paths = {"run"},
+      .meaning = "Nothing here depends on the machine.",
+      .rows = {StudyRow{.name = "seed",
+                        .value = whole_at(0, std::numeric_limits<std::int64_t>::max(), &Study::seed),
+                        .meaning = "The same seed gives the same bits on any number of threads."}}};
+  return keys;
+}
+
+void read_solver(Study& study, const Reading& reading) {
+  const StudySection section = reading.root.section("solver");
+  read_keys(solver_keys(), section, study, reading);
+  if (!section.find("tolerance")) study.solver.tolerance = study.model().tolerance;
+}
+
+}  // namespace poesy

@@ -1,0 +1,374 @@
+#include "engine/study/table_file.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/base/units.h"
+#include "engine/files/csv_lines.h"
+#include "engine/study/error_words.h"
+#include "engine/study/table_file.h"
+
+namespace poesy {
+namespace {
+
+bool contains(std::span<const std::string_view> list, std::string_view name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// A column of numbers that a table may have.
+struct KnownColumn {
+  std::string_view name;   ///< as the header has it
+  Dimension dimension;     ///< of its numbers
+  std::string_view meant;  ///< the name that it means: its own, unless it is another word for it
+};
+
+/// What the header of a table may name.
+struct KnownColumns {
+  std::vector<KnownColumn> numbers;           ///< what is read
+  std::vector<std::string_view> facts = {};   ///< other columns that `poesy export` writes: passed over
+  std::vector<std::string_view> labels = {};  ///< of which one may name the rows
+  std::string_view what;                      ///< a column of numbers, for messages: "pose coordinate"
+};
+
+/// A column of a table that is being read.
+struct TableColumn {
+  /// What its cells are.
+  enum class Role { number, fact, label };
+  Role role;                                ///< of its cells
+  std::string_view name;                    ///< KnownColumn::meant, or one of KnownColumns::labels; refers to these
+  std::string_view title;                   ///< as the header has it, with its unit; refers to the lines
+  Dimension dimension = Dimension::number;  ///< of its numbers
+  double si = 1.0;                          ///< by which its numbers are multiplied
+
+  /// "z [mm]": how the header may say the unit in which people read such numbers.
+  std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
+};
+
+/// "z [mm]" taken apart: "z" and "mm". Without brackets there is no unit.
+struct Title {
+  explicit Title(std::string_view text) : name(text) {
+    const std::size_t bracket = text.find('[');
+    if (bracket == std::string_view::npos || !text.ends_with(']')) return;
+    unit = text.substr(bracket + 1, text.size() - bracket - 2);
+    name = text.substr(0, text.find_last_not_of(" \t", bracket - 1) + 1);
+    if (bracket == 0) name = {};
+  }
+
+  std::string_view name;
+  std::optional<std::string_view> unit;
+};
+
+/// The size in SI of a column's unit.
+double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
+  if (!title.unit || *title.unit == si_unit(dimension)) return 1.0;
+  const std::string remedy = "write one of: " + unit_names(dimension) + ", or leave it out for SI";
+  const std::string column = "column '" + printable(cell.text) + "'";
+  const Unit* unit = find_unit(*title.unit);
+  if (unit == nullptr) throw InputError(cell.place, column + " has an unknown unit", remedy);
+  if (unit->dimension == dimension) return unit->si;
+  throw InputError(cell.place,
+                   column + " has a unit of " + std::string(name(unit->dimension)) + ", but this column is a " +
+                       std::string(name(dimension)),
+                   remedy);
+}
+
+[[noreturn]] void refuse_unknown(const CsvCell& cell, const Title& title, const KnownColumns& known) {
+  if (cell.text.find('"') != std::string_view::npos) {
+    throw InputError(cell.place, "column " + printable(cell.text) + " is in quotes, which poesy does not read",
+                     "save the table without quotes");
+  }
+  if (cell.text.find('\t') != std::string_view::npos) {
+    throw InputError(cell.place, "columns are separated by tabs, but poesy reads commas",
+                     "save the table with commas between columns");
+  }
+  throw InputError(cell.place,
+                   "column '" + printable(title.name) + "' is no " + std::string(known.what) + " of the model",
+                   suggestion(title.name, names(known.numbers)));
+}
+
+TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
+  using enum TableColumn::Role;
+  const Title title(cell.text);
+  const auto found = std::ranges::find(known.numbers, title.name, &KnownColumn::name);
+  if (found != known.numbers.end()) {
+    return {number, found->meant, cell.text, found->dimension, size_of(cell, title, found->dimension)};
+  }
+  if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
+  if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};
+  refuse_unknown(cell, title, known);
+}
+
+/// Reads the first line. A name may be followed by the unit of its numbers in brackets, "z [mm]"; without one they are
+/// SI. Throws InputError with its place for a column that is unknown, is there a second time, or has a unit that is
+/// unknown or measures something else, and for two columns that name the rows.
+std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known) {
+  std::vector<TableColumn> columns;
+  for (const CsvCell& cell : lines.next()) {
+    const TableColumn column = column_of(cell, known);
+    if (std::ranges::find(columns, column.name, &TableColumn::name) != columns.end()) {
+      throw InputError(cell.place, "column '" + std::string(column.name) + "' stands here a second time", "remove it");
+    }
+    if (column.role == TableColumn::Role::label &&
+        std::ranges::find(columns, column.role, &TableColumn::role) != columns.end()) {
+      throw InputError(cell.place, "column '" + std::string(column.name) + "' names the rows, which another one does",
+                       "remove one of the two");
+    }
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+/// Whether a table of poses has a column of times.
+enum class Timed { no, yes };
+
+constexpr std::string_view kTime = "t";
+constexpr std::string_view kExportedTime = "time";
+
+std::vector<std::string_view> header(const std::vector<PoseCoordinate>& coordinates, Timed timed) {
+  std::vector<std::string_view> columns;
+  columns.reserve(coordinates.size() + 1);
+  if (timed == Timed::yes) columns.push_back(kTime);
+  for (const PoseCoordinate& coordinate : coordinates) columns.push_back(coordinate.name);
+  return columns;
+}
+
+/// The columns that a table of poses may have: one list for the pose's own coordinates, then one for each chart.
+std::vector<std::vector<std::string_view>> possible_headers(const ModelDescription& model, Timed timed) {
+  std::vector<std::vector<std::string_view>> headers{header(model.pose_coordinates, timed)};
+  for (const PoseChart& chart : model.charts) headers.push_back(header(chart.coordinates, timed));
+  return headers;
+}
+
+std::string one_of(const std::vector<std::vector<std::string_view>>& headers) {
+  std::string text;
+  for (const auto& header : headers) {
+    text += text.empty() ? "" : " | ";
+    for (const std::string_view name : header) text += (name == header.front() ? "" : ",") + std::string(name);
+  }
+  return text;
+}
+
+/// The position of the header whose names these columns are, in any order.
+std::size_t header_of(std::span<const std::string_view> columns,
+                      const std::vector<std::vector<std::string_view>>& headers, const std::string& path) {
+  const auto missing = [&](const std::vector<std::string_view>& header) {
+    return std::find_if(header.begin(), header.end(), [&](auto name) { return !contains(columns, name); });
+  };
+  const std::vector<std::string_view>* unfinished = nullptr;
+  for (std::size_t k = 0; k < headers.size(); ++k) {
+    const auto fits = [&](std::string_view column) { return contains(headers[k], column); };
+    if (!std::all_of(columns.begin(), columns.end(), fits)) continue;
+    if (missing(headers[k]) == headers[k].end()) return k;
+    if (unfinished == nullptr) unfinished = &headers[k];
+  }
+  const std::string possible = headers.size() == 1 ? "" : "; possible are " + one_of(headers);
+  if (unfinished == nullptr) {
+    throw InputError({path, 1, 1}, "the columns mix coordinates that do not belong together",
+                     "name the columns of one kind only: " + one_of(headers));
+  }
+  throw InputError({path, 1, 1}, "column '" + std::string(*missing(*unfinished)) + "' is missing",
+                   "name every pose coordinate of the model in the first line" + possible);
+}
+
+/// The cells below a header.
+struct Rows {
+  std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
+  std::vector<std::string> labels;  ///< of each row; empty without a column of labels
+  std::map<std::string_view, std::size_t, std::less<>> line_of;  ///< each label's; refers to the lines
+};
+
+double number(const CsvCell& cell, const TableColumn& column) {
+  if (const auto value = parse_number(cell.text)) return *value * column.si;
+  throw InputError(
+      cell.place,
+      "'" + printable(cell.text) + "' in column '" + printable(column.title) + "' " + number_problem(cell.text),
+      "write a plain number, in SI units unless the first line names another: '" + column.with_unit() + "'");
+}
+
+/// Appends a row's label.
+void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
+  const std::string what = std::string(column.name) + " '" + printable(cell.text) + "'";
+  if (const auto problem = label_problem(cell.text)) {
+    throw InputError(cell.place, what + " " + *problem, std::string(kLabelRule));
+  }
+  const auto [first, is_new] = rows.line_of.try_emplace(cell.text, cell.place.line);
+  if (!is_new) {
+    throw InputError(cell.place, what + " stands here a second time, after line " + std::to_string(first->second),
+                     "give each row a name of its own");
+  }
+  rows.labels.emplace_back(cell.text);
+}
+
+/// Throws for a number (SI) that does not belong into its column, the n-th of the columns of numbers.
+using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
+
+/// Appends one line.
+void read_row(CsvLines& lines, std::span<const TableColumn> columns, const CheckCell& check, Rows& rows) {
+  const Place line = lines.next_place();
+  const std::vector<CsvCell> cells = lines.next();
+  if (cells.size() != columns.size()) {
+    throw InputError(
+        cells.size() > columns.size() ? cells[columns.size()].place : line,
+        "this line should have " + std::to_string(columns.size()) + " cells, but has " + std::to_string(cells.size()),
+        "write one number a column, with commas between them and decimal points (0.5, not 0,5)");
+  }
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (columns[k].role == TableColumn::Role::label) read_label(cells[k], columns[k], rows);
+    if (columns[k].role != TableColumn::Role::number) continue;
+    rows.values.push_back(number(cells[k], columns[k]));
+    if (check) check(cells[k].place, n, columns[k], rows.values.back());
+    ++n;
+  }
+}
+
+/// All lines below the header.
+Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const CheckCell& check) {
+  if (lines.done()) {
+    throw InputError(lines.next_place(), "there is no data below the column names",
+                     "write at least one line of numbers");
+  }
+  Rows rows;
+  while (!lines.done()) read_row(lines, columns, check, rows);
+  return rows;
+}
+
+/// The names of the columns of numbers.
+std::vector<std::string_view> names_of_numbers(std::span<const TableColumn> columns) {
+  std::vector<std::string_view> list;
+  for (const TableColumn& column : columns) {
+    if (column.role == TableColumn::Role::number) list.push_back(column.name);
+  }
+  return list;
+}
+
+/// The columns of a table of poses or a trajectory. `poesy export` calls the time "time", and adds the numbers of the
+/// poses and their condition numbers.
+KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
+  KnownColumns known{.numbers = {}, .facts = {"pose", "condition"}, .what = "pose coordinate"};
+  const auto add = [&](std::string_view name, Dimension dimension, std::string_view meant) {
+    if (std::ranges::find(known.numbers, name, &KnownColumn::name) != known.numbers.end()) return;
+    known.numbers.push_back({name, dimension, meant});
+  };
+  if (timed == Timed::yes) add(kTime, Dimension::time, kTime);
+  for (const PoseCoordinate& own : model.pose_coordinates) add(own.name, own.dimension, own.name);
+  for (const PoseChart& chart : model.charts) {
+    for (const PoseCoordinate& other : chart.coordinates) add(other.name, other.dimension, other.name);
+  }
+  if (timed == Timed::yes) {
+    known.what = "time or pose coordinate";
+    add(kExportedTime, Dimension::time, kTime);
+  } else {
+    known.facts.insert(known.facts.end(), {kTime, kExportedTime});
+  }
+  return known;
+}
+
+/// Takes the times, the column before all others, apart from the coordinates. Throws unless they ascend.
+std::vector<double> take_times(std::vector<double>& values, std::size_t width, const std::string& path) {
+  std::vector<double> time;
+  std::vector<double> rest;
+  for (std::size_t row = 0; row * width < values.size(); ++row) {
+    const double t = values[row * width];
+    if (row > 0 && !(t > time.back())) {
+      const std::string line = std::to_string(row + 1);
+      throw InputError({path, row + 2, 1},
+                       t == time.back()
+                           ? "t = " + shortest(t) + " s stands here a second time, after line " + line
+                           : "t = " + shortest(t) + " s follows t = " + shortest(time.back()) + " s of line " + line,
+                       "sort the rows by t, each time once");
+    }
+    time.push_back(t);
+    rest.insert(rest.end(), values.begin() + std::ptrdiff_t(row * width + 1),
+                values.begin() + std::ptrdiff_t((row + 1) * width));
+  }
+  values = std::move(rest);
+  return time;
+}
+
+TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDescription& model, Timed timed) {
+  const KnownColumns known = pose_columns(model, timed);
+  const std::vector<TableColumn> all = read_header(lines, known);
+  const std::vector<std::string_view> columns = names_of_numbers(all);
+  const auto headers = possible_headers(model, timed);
+  const std::size_t kind = header_of(columns, headers, path);
+  const std::vector<std::string_view>& wanted = headers[kind];
+  const std::vector<double> written = read_rows(lines, all, {}).values;
+  std::vector<double> values(written.size());
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto target = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), columns[k]) - wanted.begin());
+    for (std::size_t row = 0; row < values.size(); row += columns.size()) values[row + target] = written[row + k];
+  }
+  TimedPoints points;
+  if (timed == Timed::yes) points.time = take_times(values, wanted.size(), path);
+  if (kind > 0) points.table.chart = kind - 1;
+  points.table.points = PoseSet(coordinates(model, points.table.chart).size(), std::move(values));
+  return points;
+}
+
+}  // namespace
+
+PoseTable read_poses(const std::string& path, const ModelDescription& model) {
+  CsvLines lines(path, "table of poses");
+  return read_points(lines, path, model, Timed::no).table;
+}
+
+TimedPoints read_trajectory(const std::string& path, const ModelDescription& model) {
+  CsvLines lines(path, "trajectory");
+  TimedPoints points = read_points(lines, path, model, Timed::yes);
+  if (points.time.size() < 2) {
+    throw InputError(lines.next_place(), "the trajectory has only one row", "write at least two rows, or use a pose");
+  }
+  return points;
+}
+
+ErrorTable read_errors(const std::string& path, const Model& model) {
+  const ModelDescription& description = model.description();
+  CsvLines lines(path, "table of errors");
+  KnownColumns known{.numbers = {}, .facts = {"sample", "pose", "case"}, .labels = {"part", "name"}, .what = "factor"};
+  for (const Factor& factor : description.factors)
+    known.numbers.push_back({factor.name, factor.dimension, factor.name});
+  const std::vector<TableColumn> columns = read_header(lines, known);
+  ErrorTable table;
+  for (const std::string_view name : names_of_numbers(columns)) table.factors.push_back(*description.find_factor(name));
+  if (table.factors.empty()) {
+    throw InputError({path, 1, 1}, "the table has no column of errors", "name at least one factor of the model");
+  }
+  const auto check = [&](const Place& place, std::size_t n, const TableColumn& column, double value) {
+    if (const auto problem = beyond_bound(model, table.factors[n], value, "an error")) {
+      throw InputError(place, "this cell " + *problem,
+                       "write a smaller one, in SI units (m, rad) unless the first line names another: '" +
+                           column.with_unit() + "'");
+    }
+  };
+  Rows rows = read_rows(lines, columns, check);
+  const auto label = std::ranges::find(columns, TableColumn::Role::label, &TableColumn::role);
+  if (label != columns.end()) table.labels = {std::string(label->name), std::move(rows.labels)};
+  table.values = std::move(rows.values);
+  table.rows = table.values.size() / table.factors.size();
+  return table;
+}
+
+std::optional<std::string> label_problem(std::string_view label) {
+  constexpr std::size_t kMostBytes = 60;
+  if (label.empty()) return "is empty";
+  if (label.size() > kMostBytes) return "is longer than " + std::to_string(kMostBytes) + " bytes";
+  if (printable(label, kMostBytes) != label) return "has characters that cannot be printed";
+  if (const std::size_t at = label.find_first_of(",;\"'`"); at != std::string_view::npos) {
+    return "has a " + std::string(label[at] == ',' ? "comma" : label[at] == ';' ? "semicolon" : "quote");
+  }
+  if (std::string_view("=+-@").find(label.front()) != std::string_view::npos) {
+    return "begins with '" + std::string(1, label.front()) + "'";
+  }
+  return std::nullopt;
+}
+
+}  // namespace poesy

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/model/model.h"
+#include "engine/run/runner.h"
+#include "engine/study/poses/trajectory.h"
+
+namespace poesy {
+
+/// Reads poses from CSV: the first line names all of the model's pose coordinates, or all coordinates of one of its
+/// charts, in any order; then one pose a line. A name may have the unit of its numbers in brackets ("z [mm]"), else
+/// they are SI. What else `poesy export` writes into poses.csv is passed over: columns "pose", "time" (or "t") and
+/// "condition". Throws InputError with line and column for a missing, unknown or repeated column, a unit that does not
+/// fit, columns that mix coordinates, a cell that is not a finite number, a line with too few or many cells, or no
+/// data; FileError when the file cannot be read. The points come back in the model's order of coordinates, SI. Does not
+/// ask whether the model has and reaches such poses.
+PoseTable read_poses(const std::string& path, const ModelDescription& model);
+
+/// Reads a trajectory from CSV: as read_poses, with a column "t" or "time" (s, or the unit that it names). Also throws
+/// InputError for times that do not ascend strictly, and for a single row.
+TimedPoints read_trajectory(const std::string& path, const ModelDescription& model);
+
+/// Reads errors from CSV: the first line names factors of the model, any subset in any order, with units as in
+/// read_poses; then one sample a line. A column "part" or "name" labels the rows (label_problem(), all different);
+/// columns "sample", "pose" and "case", which `poesy export` writes into errors.csv, are passed over. Errors as
+/// read_poses; an unknown factor is an InputError too, and so is an error that makes no sense (Model::error_bound).
+ErrorTable read_errors(const std::string& path, const Model& model);
+
+/// What a name that a user gives to a row may not be, as a clause ("begins with '='"), or none when it may stand in
+/// tables, CSV, spreadsheets and pages as it is: 1 to 60 bytes of printable UTF-8 on one line, without commas,
+/// semicolons and quotes, and not beginning with = + - or @, which spreadsheets take for a formula.
+std::optional<std::string> label_problem(std::string_view label);
+
+/// The rule of label_problem() in words, for remedies.
+inline constexpr std::string_view kLabelRule =
+    "write at most 60 printable characters, without commas, semicolons and quotes, that do not begin with = + - or @";
+
+}  // namespace poesy

@@ -1,0 +1,303 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/files/result_file.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "tests/support/fake_model.h"
+
+namespace poesy::test {
+
+/// Results of the fake mechanism with made-up numbers that name their own place, so that a script in another language
+/// knows what to expect: element (r, p, m) of array k is 1000 k + 100 r + 10 p + m / 8, and the last of all is NaN.
+/// Two more details share one list of components, so that axes are shared too.
+class Example {
+ public:
+  static constexpr std::size_t kPoses = 4;
+  static constexpr std::size_t kSamples = 3;
+
+  Example() {
+    CatalogEntry& entry = catalog_.front();
+    for (const char* name : {"twist_21", "twist_32"}) {
+      entry.description.details.push_back(
+          {name, {"omega_x", "omega_y", "v_z"}, "rad,rad,m", "a twist between two limbs"});
+    }
+    study.title = "Beispiel für Dateien";  // not ASCII
+    study.mechanism.entry = &entry;
+    study.mechanism.geometry = {FakeModel::kArm};
+    study.poses.count = kPoses;
+    study.poses.workspace = {{-0.3, -0.18}, {-0.5, 0.5}, {-0.6, 0.6}};
+    study.errors.by_factor.assign(3, Distribution::normal(0.001));
+    study.errors.by_factor[1] = Distribution::uniform(0.5);
+    study.analysis.factors = {FactorIndex(1), FactorIndex(0)};
+    study.analysis.samples = 100;
+    std::vector<double> coordinates;
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      const double step = static_cast<double>(m);
+      coordinates.insert(coordinates.end(), {-0.25 + step / 64.0, step / 8.0, -step / 4.0});
+    }
+    poses.poses = PoseSet(3, coordinates);
+    poses.condition = {4.0, 4.5, 5.0, std::numeric_limits<double>::infinity()};
+    poses.rejected = {{"q_1 above 250 mm", 12}, {"out of reach: z must be negative", 3}};
+    facts = {.created = "2024-05-06T07:08:09Z",
+             .host = "somewhere",
+             .cpu = "a processor",
+             .threads = 2,
+             .ranks = 1,
+             .wall_seconds = 0.5,
+             .checkpoint_seconds = 0.25,
+             .solves = 800};
+  }
+  Example(const Example&) = delete;
+  Example& operator=(const Example&) = delete;
+
+  SensitivityResult sensitivity() const {
+    SensitivityResult result;
+    result.responses = 2;
+    result.factors = 2;
+    result.poses = kPoses;
+    result.conf_level = 0.95;
+    std::size_t array = 0;
+    for (auto* values : {&result.local, &result.local_ci_low, &result.local_ci_high, &result.mean, &result.std}) {
+      *values = numbered(array++, kPoses);
+      values->back() = std::numeric_limits<double>::quiet_NaN();
+    }
+    for (auto* values : {&result.global, &result.global_ci_low, &result.global_ci_high}) {
+      *values = numbered(array++, 1);
+      values->back() = std::numeric_limits<double>::quiet_NaN();
+    }
+    std::size_t after_history = array + 3;
+    for (auto* values : {&result.global_corrected, &result.global_corrected_ci_low, &result.global_corrected_ci_high}) {
+      *values = numbered(after_history++, 1);
+      values->back() = std::numeric_limits<double>::quiet_NaN();
+    }
+    result.rounding = {1e-15, 2e-15};
+    result.index_change = {-0.25, 0.125, 0.0, std::numeric_limits<double>::quiet_NaN()};
+    result.count.assign(result.local.size(), 97.0);
+    for (std::size_t k = 0; k < 2 * kPoses; ++k) result.background.push_back(static_cast<double>(k) / 16.0);
+    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
+      result.solves.push_back(
+          {.by_status = {90 - cell, 7, 2, 1, cell}, .iterations = 700 + cell, .most_iterations = 50});
+    }
+    if (!study.analysis.adaptive) {
+      result.history = {{50, 100}, numbered(array, 2), numbered(array + 1, 2), numbered(array + 2, 2)};
+      result.history->ci_high.back() = std::numeric_limits<double>::quiet_NaN();
+    }
+    result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::iteration_cap}},
+                       {1, PoseIndex(3), {SampleIndex(99), SolveStatus::non_finite}}};
+    return result;
+  }
+
+  /// Two quantiles; sets the study's kind and levels to match. Numbers count on through the arrays.
+  MonteCarloResult monte_carlo() {
+    study.analysis.kind = Analysis::Kind::monte_carlo;
+    study.analysis.quantiles = {0.05, 0.995};
+    MonteCarloResult result;
+    result.responses = 2;
+    result.poses = kPoses;
+    result.conf_level = 0.9;
+    result.quantile_relative_error = 1.0 / 512.0;
+    result.levels = study.analysis.quantiles;
+    double next = 0.0;
+    const auto fill = [&](std::vector<double>& values, std::size_t length) {
+      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
+      values.back() = std::numeric_limits<double>::quiet_NaN();
+    };
+    for (auto* values :
+         {&result.mean, &result.mean_ci_low, &result.mean_ci_high, &result.std, &result.min, &result.max}) {
+      fill(*values, 2 * kPoses);
+    }
+    fill(result.quantiles, 2 * kPoses * 2);
+    for (auto* values : {&result.overall_mean, &result.overall_std, &result.overall_min, &result.overall_max}) {
+      fill(*values, 2);
+    }
+    fill(result.overall_quantiles, 4);
+    fill(result.rms, 2 * kPoses);
+    fill(result.overall_rms, 2);
+    for (auto* values : {&result.quantiles_ci_low, &result.quantiles_ci_high}) fill(*values, 2 * kPoses * 2);
+    for (auto* values : {&result.overall_quantiles_ci_low, &result.overall_quantiles_ci_high}) fill(*values, 4);
+    result.histogram_edges = {0.0, 1.0, 2.0, 4.0, 4.0, 1.0, 2.0, 3.0, 4.0, 5.0};
+    result.histogram_counts = {100, 200, 82, 0, 300, 0, 60, 6};
+    study.analysis.judge = Judge::share;
+    study.analysis.share = 0.9973;
+    study.analysis.limits = {{0, 0.5}, {1, 0.25}};
+    fill(result.share_magnitude, 2 * kPoses);
+    result.verdicts = verdicts();
+    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) result.count.push_back(97 - cell);
+    result.overall_count = {382, 366};
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      result.solves.push_back({.by_status = {90 - m, 7, 2, 1, m}, .iterations = 700 + m, .most_iterations = 50});
+    }
+    result.failures = {{0, PoseIndex(2), {SampleIndex(0), SolveStatus::singular}}};
+    return result;
+  }
+
+  /// Of both responses: the first is kept, the second is not, at the last pose.
+  static LimitVerdicts verdicts() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {.judge = Judge::share,
+            .share = 0.9973,
+            .limits = {{.response = 0,
+                        .limit = 0.5,
+                        .value = 0.375,
+                        .passed = true,
+                        .tried = 400,
+                        .within = 382,
+                        .pose = 2,
+                        .row = {}},
+                       {.response = 1,
+                        .limit = 0.25,
+                        .value = kInfinity,
+                        .passed = false,
+                        .tried = 400,
+                        .within = 96,
+                        .pose = kPoses - 1,
+                        .row = {}}}};
+  }
+
+  using CouplingMember = std::vector<double> CouplingResult::*;
+  static constexpr CouplingMember kCurves[] = {&CouplingResult::effect,          &CouplingResult::sum,
+                                               &CouplingResult::interaction,     &CouplingResult::worst_case,
+                                               &CouplingResult::root_sum_square, &CouplingResult::cancellation};
+  static constexpr CouplingMember kSummaries[] = {&CouplingResult::effect_max,     &CouplingResult::interaction_max,
+                                                  &CouplingResult::worst_case_max, &CouplingResult::root_sum_square_max,
+                                                  &CouplingResult::opposed_share,  &CouplingResult::cancellation_max};
+
+  /// Two sizes, two sources; sets the study to match. Numbers count on through the arrays.
+  CouplingResult coupling() {
+    Analysis& analysis = study.analysis;
+    analysis.kind = Analysis::Kind::coupling;
+    analysis.factors = {FactorIndex(0), FactorIndex(2)};
+    analysis.coupling = {{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
+    CouplingResult result;
+    result.responses = 2;
+    result.sizes = 2;
+    result.subsets = 3;
+    result.poses = kPoses;
+    double next = 0.0;
+    const auto fill = [&](std::vector<double>& values, std::size_t length) {
+      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
+      values.back() = std::numeric_limits<double>::quiet_NaN();
+    };
+    for (const CouplingMember member : kCurves) fill(result.*member, 12 * kPoses);
+    for (const CouplingMember member : kSummaries) fill(result.*member, 12);
+    for (std::size_t cell = 0; cell < 12; ++cell) {
+      result.count.push_back(kPoses - cell % 2);
+      result.effect_max_pose.push_back(static_cast<std::int64_t>(cell) - 1);
+      result.cancellation_max_pose.push_back(static_cast<std::int64_t>(cell % 3));
+    }
+    for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
+      result.solves.push_back({.by_status = {3, 0, cell, 1, 0}, .iterations = 8 + cell, .most_iterations = 5});
+    }
+    return result;
+  }
+
+  /// Two errors in two groups; sets the study to match.
+  IdentificationResult identification() {
+    study.analysis.kind = Analysis::Kind::identification;
+    study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+    IdentificationResult result;
+    result.factors = 2;
+    result.groups = 2;
+    result.poses = kPoses;
+    result.rounding = 1.5e-14;
+    result.required_poses = 3;
+    result.single_below = {0, 4, 1, 4};
+    result.single_max = {1e-3, 0.0, 2e-3, std::numeric_limits<double>::infinity()};
+    result.not_solved = {0, 0, 1, 0};
+    result.coupled_below = {0, 2, 0, 3};
+    result.coupled_reduced = {0, 4, 0, 1};
+    result.single_by_group = {1, 0, 1, 0};
+    result.coupled_by_group = {1, 1, 1, 0};
+    result.single = {1, 0};
+    result.coupled = {1, 1};
+    result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
+    result.solves.by_status = {5, 4, 3, 2, 1};
+    return result;
+  }
+
+  /// Two cases, all details kept; sets the study to match.
+  CaseResult cases() {
+    study.analysis.kind = Analysis::Kind::evaluate;
+    study.analysis.cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
+    EvaluationResult all = evaluation(Pairing::every_pose_with_every_row);
+    const std::size_t cells = 2 * kPoses;
+    all.samples = 2;
+    all.response.resize(2 * cells);
+    all.detail.resize(8 * cells);
+    all.status.resize(cells);
+    all.iterations.resize(cells);
+    return case_result(std::move(all), NotConverged::include);
+  }
+
+  EvaluationResult evaluation(Pairing pairing) const {
+    const std::size_t samples = pairing == Pairing::row_by_row ? 1 : kSamples;
+    const std::size_t rows = kPoses * samples;
+    EvaluationResult result;
+    result.poses = kPoses;
+    result.samples = samples;
+    result.responses = 2;
+    result.details = 8;
+    for (std::size_t k = 0; k < 2 * rows; ++k) result.response.push_back(static_cast<double>(k) / 8.0);
+    for (std::size_t k = 0; k < 8 * rows; ++k) result.detail.push_back(static_cast<double>(k));
+    for (std::size_t k = 0; k < rows; ++k) result.status.push_back(static_cast<SolveStatus>(k % kStatusNames.size()));
+    for (std::size_t k = 0; k < rows; ++k) result.iterations.push_back(static_cast<std::uint32_t>(10 + k));
+    for (std::size_t k = 0; k < 2 * kPoses; ++k) result.joint_displacement.push_back(static_cast<double>(k) / 4.0);
+    return result;
+  }
+
+  ErrorTable errors(Pairing pairing) const {
+    const std::size_t rows = pairing == Pairing::row_by_row ? kPoses : kSamples;
+    ErrorTable table{.factors = {FactorIndex(2), FactorIndex(1)}, .values = {}, .rows = rows};
+    for (std::size_t k = 0; k < 2 * rows; ++k) table.values.push_back(static_cast<double>(k) / 1024.0);
+    return table;
+  }
+
+  void write_sensitivity(const std::string& path) const {
+    poesy::write_sensitivity(path, study, poses, sensitivity(), facts);
+  }
+  void write_monte_carlo(const std::string& path) {
+    const MonteCarloResult result = monte_carlo();
+    poesy::write_monte_carlo(path, study, poses, result, facts);
+  }
+  void write_coupling(const std::string& path) {
+    const CouplingResult result = coupling();
+    poesy::write_coupling(path, study, poses, result, facts);
+  }
+  void write_cases(const std::string& path) {
+    const CaseResult result = cases();
+    poesy::write_cases(path, study, poses, result, facts);
+  }
+  void write_identification(const std::string& path) {
+    const IdentificationResult result = identification();
+    poesy::write_identification(path, study, poses, result, facts);
+  }
+  void write_evaluation(const std::string& path, Pairing pairing) const {
+    poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);
+  }
+
+  Study study;
+  SelectedPoses poses;
+  RunFacts facts;
+
+ private:
+  /// [2 x 2 x length] values that name their place.
+  static std::vector<double> numbered(std::size_t array, std::size_t length) {
+    std::vector<double> values;
+    for (std::size_t r = 0; r < 2; ++r) {
+      for (std::size_t p = 0; p < 2; ++p) {
+        for (std::size_t m = 0; m < length; ++m) {
+          values.push_back(static_cast<double>(1000 * array + 100 * r + 10 * p) + static_cast<double>(m) / 8.0);
+        }
+      }
+    }
+    return values;
+  }
+
+  Catalog catalog_ = fake_catalog();
+};
+
+}  // namespace poesy::test

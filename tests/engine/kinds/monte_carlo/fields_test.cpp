@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/files/h5.h"
+#include "engine/files/result_file.h"
+#include "tests/engine/kinds/example_result.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::size_t kPoses = test::Example::kPoses;
+
+class MonteCarloFile : public testing::Test {
+ protected:
+  MonteCarloFile() : path_(folder_.file("monte_carlo.h5")) { example_.write_monte_carlo(path_); }
+
+  test::TempFolder folder_;
+  test::Example example_;
+  std::string path_;
+};
+
+/// Equal bit by bit, but for NaN, which equals NaN.
+void expect_same(const std::vector<double>& found, const std::vector<double>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_TRUE(found[k] == expected[k] || (std::isnan(found[k]) && std::isnan(expected[k]))) << k;
+  }
+}
+
+TEST_F(MonteCarloFile, IsReadBackAsItWas) {
+  const MonteCarloResult written = example_.monte_carlo();
+  const StoredResult stored = read_result(path_);
+  const MonteCarloResult& found = stored.monte_carlo;
+  EXPECT_EQ(stored.kind, "monte-carlo");
+  EXPECT_EQ(stored.factor_sigma.size(), 2u);
+  EXPECT_EQ(found.responses, 2u);
+  EXPECT_EQ(found.poses, kPoses);
+  EXPECT_EQ(found.conf_level, 0.9);
+  EXPECT_EQ(found.quantile_relative_error, 1.0 / 512.0);
+  EXPECT_EQ(found.levels, written.levels);
+  for (const auto member : {&MonteCarloResult::mean,
+                            &MonteCarloResult::mean_ci_low,
+                            &MonteCarloResult::mean_ci_high,
+                            &MonteCarloResult::std,
+                            &MonteCarloResult::min,
+                            &MonteCarloResult::max,
+                            &MonteCarloResult::quantiles,
+                            &MonteCarloResult::overall_mean,
+                            &MonteCarloResult::overall_std,
+                            &MonteCarloResult::overall_min,
+                            &MonteCarloResult::overall_max,
+                            &MonteCarloResult::overall_quantiles,
+                            &MonteCarloResult::rms,
+                            &MonteCarloResult::overall_rms,
+                            &MonteCarloResult::quantiles_ci_low,
+                            &MonteCarloResult::quantiles_ci_high,
+                            &MonteCarloResult::overall_quantiles_ci_low,
+                            &MonteCarloResult::overall_quantiles_ci_high,
+                            &MonteCarloResult::histogram_edges,
+                            &MonteCarloResult::share_magnitude}) {
+    expect_same(found.*member, written.*member);
+  }
+  EXPECT_EQ(found.failures, written.failures);
+  EXPECT_EQ(found.count, written.count);
+  EXPECT_EQ(found.histogram_counts, written.histogram_counts);
+  EXPECT_EQ(found.overall_count, written.overall_count);
+  ASSERT_EQ(found.solves.size(), kPoses);
+  for (std::size_t m = 0; m < kPoses; ++m) {
+    EXPECT_EQ(found.solves[m].by_status, written.solves[m].by_status);
+    EXPECT_EQ(found.solves[m].iterations, written.solves[m].iterations);
+    EXPECT_EQ(found.solves[m].most_iterations, written.solves[m].most_iterations);
+  }
+  EXPECT_TRUE(verify_result(path_).matches());
+}
+
+TEST_F(MonteCarloFile, HasNamedAxesAndStatesItsError) {
+  const h5::File file = h5::File::open(path_);
+  EXPECT_EQ(file.shape("/monte_carlo/mean"), (h5::Shape{2, kPoses}));
+  EXPECT_EQ(file.shape("/monte_carlo/quantiles"), (h5::Shape{2, kPoses, 2}));
+  EXPECT_EQ(file.read<double>("/monte_carlo/quantile"), (std::vector<double>{0.05, 0.995}));
+  EXPECT_EQ(file.attribute<double>("/monte_carlo/quantiles", "quantile_relative_error").at(0), 1.0 / 512.0);
+  EXPECT_EQ(file.attribute<double>("/monte_carlo/mean_ci_low", "conf_level").at(0), 0.9);
+  EXPECT_EQ(file.read<std::uint64_t>("/solver/not_converged"), (std::vector<std::uint64_t>{3, 4, 5, 6}));
+  EXPECT_EQ(file.shape("/solver/solves_by_status"), (h5::Shape{kStatusNames.size(), kPoses}));
+}
+
+TEST_F(MonteCarloFile, KeepsItsVerdicts) {
+  const LimitVerdicts written = test::Example::verdicts();
+  const auto found = read_result(path_).monte_carlo.verdicts;
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->judge, Judge::share);
+  EXPECT_EQ(found->share, 0.9973);
+  ASSERT_EQ(found->limits.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(found->limits[k].response, written.limits[k].response);
+    EXPECT_EQ(found->limits[k].limit, written.limits[k].limit);
+    EXPECT_EQ(found->limits[k].value, written.limits[k].value);
+    EXPECT_EQ(found->limits[k].passed, written.limits[k].passed);
+    EXPECT_EQ(found->limits[k].tried, written.limits[k].tried);
+    EXPECT_EQ(found->limits[k].within, written.limits[k].within);
+    EXPECT_EQ(found->limits[k].pose, written.limits[k].pose);
+    EXPECT_EQ(found->limits[k].row, written.limits[k].row);
+  }
+}
+
+/// It was written before there were root mean squares, intervals of quantiles, histograms and limits.
+TEST(OlderMonteCarloFile, IsReadWithoutWhatItDoesNotHave) {
+  const StoredResult stored = read_result(POESY_TEST_DATA "/monte_carlo_0_1.h5");
+  const MonteCarloResult& found = stored.monte_carlo;
+  EXPECT_TRUE(found.quantiles_ci_low.empty());
+  EXPECT_TRUE(found.histogram_counts.empty());
+  EXPECT_FALSE(found.verdicts);
+  ASSERT_EQ(found.overall_rms.size(), found.responses);
+  const double mean = found.overall_mean[0];
+  const auto n = static_cast<double>(found.overall_count[0]);
+  EXPECT_DOUBLE_EQ(found.overall_rms[0],
+                   std::sqrt(mean * mean + found.overall_std[0] * found.overall_std[0] * (n - 1) / n));
+}
+
+std::string first_lines(const std::string& text, std::size_t count) {
+  std::size_t end = 0;
+  for (std::size_t n = 0; n < count; ++n) end = text.find('\n', end) + 1;
+  return text.substr(0, end);
+}
+
+TEST_F(MonteCarloFile, IsExportedPoseByPose) {
+  const std::string tables = folder_.file("tables");
+  EXPECT_EQ(export_tables(path_, tables).size(), 10u);
+  EXPECT_EQ(
+      first_lines(test::read_bytes(tables + "/monte_carlo_linear_deformation.csv"), 2),
+      "pose,mean [m],mean_ci_low [m],mean_ci_high [m],std [m],min [m],max [m],count,q_0.05 [m],q_0.995 [m],rms [m],"
+      "q_0.05_ci_low [m],q_0.05_ci_high [m],q_0.995_ci_low [m],q_0.995_ci_high [m]\n"
+      "0,0.625,1.625,2.625,3.625,4.625,5.625,93,7.125,7.25,10.125,11.875,13.875,12,14\n");
+  EXPECT_EQ(test::read_bytes(tables + "/overall.csv"),
+            "response,mean,std,min,max,count,q_0.05,q_0.995,rms,q_0.05_ci_low,q_0.05_ci_high,q_0.995_ci_low,"
+            "q_0.995_ci_high,unit\n"
+            "angular_deformation,8.125,8.375,8.625,8.875,382,9.125,9.25,10.625,14.875,15.375,15,15.5,rad\n"
+            "linear_deformation,NaN,NaN,NaN,NaN,366,9.375,NaN,NaN,15.125,15.625,NaN,NaN,m\n");
+  EXPECT_EQ(test::read_bytes(tables + "/histogram_angular_deformation.csv"),
+            "bin,low [rad],high [rad],count\n0,0,1,100\n1,1,2,200\n2,2,4,82\n");
+  EXPECT_EQ(test::read_bytes(tables + "/limits.csv"),
+            "response,value,limit,passed,tried,within,pose,row,unit\n"
+            "angular_deformation,0.375,0.5,1,400,382,2,-1,rad\n"
+            "linear_deformation,inf,0.25,0,400,96,3,-1,m\n");
+  EXPECT_EQ(first_lines(test::read_bytes(tables + "/not_converged.csv"), 2),
+            "pose,not_converged,iterations_mean,iterations_max,solves_converged,solves_stagnated,solves_iteration_cap,"
+            "solves_singular,solves_non_finite\n0,3,7,50,90,7,2,1,0\n");
+  EXPECT_EQ(first_lines(test::read_bytes(tables + "/factors.csv"), 1), "factor,sigma [rad or m],sigma [deg or mm]\n");
+}
+
+}  // namespace
+}  // namespace poesy

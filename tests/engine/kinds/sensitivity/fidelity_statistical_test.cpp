@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "engine/kinds/sensitivity/fidelity.h"
+#include "engine/run/runner.h"
+#include "tests/support/two_fidelities_model.h"
+
+namespace poesy {
+namespace {
+
+using Model = test::TwoFidelitiesModel;
+
+/// Both fidelities on the same draws, every error with this standard deviation.
+FidelityResult compared(double sigma, std::size_t samples) {
+  const Catalog catalog = test::two_fidelities_catalog();
+  Study study;
+  study.mechanism = {&catalog.front(), {Model::kArm}, 0, {}, 1};
+  study.errors.by_factor.assign(3, Distribution::normal(sigma));
+  study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
+  study.analysis.samples = samples;
+  study.seed = 17;
+  const Plan plan(study, PoseSet(3, {-0.2, 0.0, 0.0, -0.25, 0.1, 0.1}));
+  const auto run = [&](const MechanismChoice& choice) {
+    return *run_sensitivity(plan, *build_model(choice), 0.95, {2, {}, nullptr});
+  };
+  const std::array dimensions{Dimension::length};
+  const std::vector<double> sigmas(3, sigma);
+  return compare_fidelities(run(study.mechanism), run(at_compared_fidelity(study.mechanism)), dimensions, sigmas, 0.01);
+}
+
+// Relative to the shift of the mean, bend sigma^2, its sampling error over both poses together is sqrt(1 / samples),
+// and the spread's change adds less than 1e-3 to the hypot: five standard errors, alpha = 6e-7.
+TEST(FidelityOfAQuadraticModel, HasItsClosedForm) {
+  constexpr std::size_t kSamples = 200'000;
+  const double tolerance = 5.0 / std::sqrt(double{kSamples}) + 1e-3;
+  const double sigma = 0.02;
+  const FidelityResult found = compared(sigma, kSamples);
+  for (std::size_t p = 0; p < 2; ++p) {
+    const double weight = Model::kWeights[p];
+    const double spread = std::sqrt(weight * weight + 2.0 * Model::kBend * Model::kBend * sigma * sigma);
+    const double expected = std::hypot(Model::kBend * sigma, spread - weight) / spread;
+    EXPECT_NEAR(found.nonlinearity[p] / expected, 1.0, tolerance) << p;
+    // The index itself hardly notices.
+    EXPECT_LT(std::abs(found.relative_discrepancy[p]), 0.1 * expected);
+  }
+  EXPECT_TRUE(std::isnan(found.nonlinearity[2]));
+}
+
+// Verdicts turn where bend sigma / weight is 1 %: at sigma = 0.04 for delta_1, at 0.02 for epsilon_1.
+TEST(FidelityOfAQuadraticModel, VerdictsTurnWithTheSize) {
+  EXPECT_EQ(compared(0.015, 20'000).linear, (std::vector<std::uint8_t>{1, 1, 1}));
+  EXPECT_EQ(compared(0.025, 20'000).linear, (std::vector<std::uint8_t>{1, 0, 1}));
+  EXPECT_EQ(compared(0.060, 20'000).linear, (std::vector<std::uint8_t>{0, 0, 1}));
+}
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,102 @@
+#include "engine/kinds/sensitivity/index_change.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/report/tables.h"
+#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "tests/engine/kinds/sensitivity/ranked_result.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Of delta_b, epsilon_a, delta_c, delta_a; the last has no index.
+StoredResult result(std::vector<double> changes) {
+  StoredResult stored = ranked_result();
+  stored.factor_limb = {1, 1, 2, 3};
+  stored.sensitivity.index_change = std::move(changes);
+  stored.sensitivity.index_change.resize(12, kNaN);
+  return stored;
+}
+
+/// Without a limit, these tolerances of equal effect.
+ResponseTolerances tolerances(std::vector<double> equal_effect) {
+  ResponseTolerances found{.response = 0, .all = {}, .limit = std::nullopt};
+  found.all.reference = ReferenceError{0, 1e-3};
+  found.all.equal_effect = std::move(equal_effect);
+  found.all.mean_square_share = {0.25, 0.75, 0.0, kNaN};
+  found.all.mean_square = {.background = 0.0, .effects = {0.25, 0.0, 0.0, 0.0}};
+  return found;
+}
+
+TEST(IndexChange, NamesErrorsWhoseIndexChangesTheLargestFirst) {
+  EXPECT_EQ(index_change_text(result({-0.5, 0.01, -0.991}), 0),
+            "the index on x holds at a tenth of the size, within 2 %: 1 of 3 errors with an effect; not for delta_c "
+            "(-99.1 %), delta_b (-50.0 %)");
+  EXPECT_EQ(index_change_text(result({0.0, kNaN, -0.02}), 0),
+            "the index on x holds at a tenth of the size, within 2 %: 2 of 3 errors with an effect; not known for 1");
+  EXPECT_EQ(changing_errors(result({-0.5, 0.01, -0.991, -0.9}), 0), (std::vector<std::size_t>{2, 0}))
+      << "an error without an index has none that changes";
+}
+
+TEST(IndexChange, IsAColumnOfTheRankingAndANote) {
+  const StoredResult stored = result({-0.5, 1e-14, -0.991});
+  const Table table = result_tables(stored, "x").front();
+  const auto at = std::ranges::find(table.columns, "index_change", &Column::name) - table.columns.begin();
+  ASSERT_LT(static_cast<std::size_t>(at), table.columns.size());
+  std::vector<std::string> texts;
+  for (const std::vector<Cell>& row : table.rows) texts.push_back(row[static_cast<std::size_t>(at)].text);
+  EXPECT_EQ(texts, (std::vector<std::string>{"0.0", "-99.1", "-50.0", "-"}));  // epsilon_a, delta_c, delta_b, delta_a
+  EXPECT_TRUE(std::ranges::count(table.notes, index_change_text(stored, 0)));
+  const StoredResult older = ranked_result();
+  const Table of_older = result_tables(older, "x").front();
+  for (const Column& column : of_older.columns) {
+    EXPECT_NE(column.name, "index_change");
+  }
+}
+
+TEST(WrongSizes, AreTolerancesOfAnotherSizeWhereTheIndexChanges) {
+  const StoredResult stored = result({-0.5, 0.01, -0.991});  // studied at 1 mm, 0.5 deg, 2 mm
+  EXPECT_EQ(wrong_sizes_text(stored, tolerances({0.6e-3, 1e-6, 1e-3, kNaN})), "");
+  EXPECT_EQ(wrong_sizes_text(stored, tolerances({2.5e-3, 1e-6, 0.9e-3, kNaN})),
+            "2 errors have an index on x that changes with size, by so much at a tenth of it, and a tolerance of "
+            "another size than was studied: delta_c (-99.1 %; study it at 1.54 mm), delta_b (-50.0 %; study it at "
+            "2.02 mm)");
+  EXPECT_EQ(wrong_sizes_text(ranked_result(), tolerances({1.0, 1.0, 1.0, 1.0})), "") << "an older result";
+  EXPECT_EQ(wrong_sizes_text(stored, tolerances({std::numeric_limits<double>::infinity(), 1e-3, 2e-3, kNaN})), "")
+      << "no effect";
+}
+
+// At the size of the tolerance a quadratic error would be found a hundred times smaller, and so its tolerance be again
+// that of the first study.
+TEST(WrongSizes, OfAQuadraticErrorAreStudiedInTheMiddle) {
+  const StoredResult stored = result({-0.9, 0.01, 0.0});
+  const std::string text = wrong_sizes_text(stored, tolerances({0.01e-3, 1e-6, 2e-3, kNaN}));
+  EXPECT_NE(text.find("delta_b (-90.0 %; study it at 0.1 mm)"), std::string::npos) << text;
+}
+
+TEST(WrongSizes, OfALimitAreThoseOfEitherWayToShareIt) {
+  const StoredResult stored = result({-0.5, 0.01, 0.0});
+  ResponseTolerances found = tolerances({1.0, 1.0, 1.0, 1.0});
+  found.limit = LimitTolerances{1e-4, {1e-3, 1e-3, 1e-3, 1e-3}, {1e-3, 1e-3, 1e-3, 1e-3}};
+  EXPECT_EQ(wrong_sizes_text(stored, found), "");
+  found.limit->equal_tolerance[0] = 1e-4;
+  EXPECT_NE(wrong_sizes_text(stored, found).find("delta_b (-50.0 %; study it at 0.17 mm)"), std::string::npos);
+}
+
+TEST(WrongSizes, StandBelowTheTolerances) {
+  ResponseTolerances found = tolerances({2.5e-3, 1e-6, 0.9e-3, kNaN});
+  found.caveat = "they may not hold";
+  EXPECT_TRUE(std::ranges::count(tolerance_table(result({}), found).notes, "they may not hold"));
+  const auto older = [](const std::string& note) { return note.starts_with("whether indices hold at other sizes is"); };
+  EXPECT_TRUE(std::ranges::none_of(tolerance_table(result({}), found).notes, older));
+  StoredResult stored = result({});
+  stored.sensitivity.index_change.clear();
+  EXPECT_TRUE(std::ranges::any_of(tolerance_table(stored, found).notes, older));
+}
+
+}  // namespace
+}  // namespace poesy

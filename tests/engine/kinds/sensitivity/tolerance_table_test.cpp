@@ -1,0 +1,90 @@
+#include "engine/kinds/sensitivity/tolerance_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/report/text_table.h"
+#include "tests/engine/kinds/sensitivity/ranked_result.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+ResponseTolerances example() {
+  ResponseTolerances found{.response = 0, .all = {}, .limit = std::nullopt};
+  found.all.reference = ReferenceError{0, 1e-3};
+  found.all.equal_effect = {1e-3, 0.004, kInfinity, kNaN};
+  found.all.mean_square_share = {0.25, 0.75, 0.0, kNaN};
+  found.all.mean_square = {.background = 0.0, .effects = {0.25, 0.0, 0.0, 0.0}};
+  return found;
+}
+
+StoredResult result() {
+  StoredResult stored = ranked_result();
+  stored.factor_limb = {1, 1, 2, 3};
+  return stored;
+}
+
+TEST(ToleranceTable, HasTolerancesInTheUnitOfEachError) {
+  Table table = tolerance_table(result(), example());
+  EXPECT_EQ(table.notes[0],
+            "equal effect: as much as delta_b = 1 mm; with these, predicted root mean square of x: 0.5 mm");
+  table.notes.clear();
+  EXPECT_EQ(text_of(table, kUnlimitedWidth),
+            "Tolerances for x: standard deviations of normal errors\n"
+            "                              equal\n"
+            "error      kind     limb     effect  unit      index        low       high  share\n"
+            "                                           [mm/unit]  [mm/unit]  [mm/unit]    [%]\n"
+            "delta_b    linear      1     1       mm        0.4        0.3        0.5       25\n"
+            "epsilon_a  angular     1     0.2292  deg       1.745      1.571      3.491     75\n"
+            "delta_c    linear      2  no effect  mm        0.3        0.2        0.35       0\n"
+            "delta_a    linear      3          -  mm            -          -          -      -\n");
+}
+
+TEST(ToleranceTable, OfALimitHasBothWaysToShareIt) {
+  ResponseTolerances found = example();
+  found.limit =
+      LimitTolerances{.limit = 1e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
+  const Table table = tolerance_table(result(), found);
+  EXPECT_EQ(table.columns[4].name, "limit_equal_effect");
+  EXPECT_EQ(table.rows[0][4].text, "0.1");
+  EXPECT_EQ(table.rows[0][5].text, "1000");
+  EXPECT_TRUE(std::ranges::any_of(table.notes, [](const std::string& note) {
+    return note.starts_with("4 of 4 errors have a tolerance larger than the sigma of the study");
+  }));
+}
+
+/// Whether a note has these words.
+bool says(const Table& table, std::string_view words) {
+  return std::ranges::any_of(table.notes,
+                             [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+TEST(ToleranceTable, SaysByHowMuchALimitMayBeExceeded) {
+  StoredResult stored = result();
+  ResponseTolerances found = example();
+  found.limit =
+      LimitTolerances{.limit = 3e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
+  stored.mean_square_bound = {2.25, 1.0};
+  const Table table = tolerance_table(stored, found);
+  EXPECT_TRUE(says(table, "may come out up to 1.5 times as large, 0.45 mm"));
+  EXPECT_TRUE(says(table, "give --limit \"0.2 mm\""));
+  stored.mean_square_bound = {1.0, 2.25};
+  EXPECT_FALSE(says(tolerance_table(stored, found), "times as large"));
+}
+
+TEST(ToleranceTable, SaysWhichErrorsAreNotNormal) {
+  StoredResult stored = result();
+  stored.factor_distribution = {"normal", "uniform", "triangular", "uniform"};
+  EXPECT_TRUE(says(tolerance_table(stored, example()),
+                   "3 of 4 errors are not normal in the study (uniform, triangular): the tolerance is still"));
+  stored.factor_distribution = {"normal", "normal", "normal", "normal"};
+  EXPECT_FALSE(says(tolerance_table(stored, example()), "not normal"));
+}
+
+}  // namespace
+}  // namespace poesy

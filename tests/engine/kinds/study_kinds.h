@@ -1,0 +1,134 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "engine/kinds/identification/identification.h"
+#include "engine/run/runner.h"
+#include "tests/engine/run/prepared.h"
+#include "tests/support/failing_model.h"
+
+namespace poesy::test {
+
+using Kind = Analysis::Kind;
+
+inline const Catalog& catalog() {
+  static const Catalog failing = failing_catalog();
+  return failing;
+}
+
+inline Study study_of(Kind kind, std::size_t samples) {
+  Study study;
+  study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
+  study.errors.by_factor.assign(3, Distribution::normal(1e-3));
+  study.poses.count = 3;
+  study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
+  study.analysis.kind = kind;
+  study.analysis.factors = {FactorIndex(0), FactorIndex(1)};
+  study.analysis.samples = samples;
+  study.analysis.quantiles = {0.1, 0.9};
+  study.seed = 3;
+  return study;
+}
+
+/// All numbers of a result, bit by bit.
+using Bits = std::vector<std::uint64_t>;
+
+inline void append(Bits& bits, const std::vector<double>& values) {
+  for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
+}
+
+inline void append(Bits& bits, const SolveCounts& solves) {
+  bits.insert(bits.end(), solves.by_status.begin(), solves.by_status.end());
+  bits.insert(bits.end(), {solves.iterations, solves.most_iterations});
+}
+
+inline void append(Bits& bits, const std::vector<Failure>& failures) {
+  for (const Failure& failure : failures) {
+    bits.insert(bits.end(), {failure.slot, failure.pose.value, failure.failed.sample.value,
+                             static_cast<std::uint64_t>(failure.failed.status)});
+  }
+}
+
+inline Bits bits_of(const SensitivityResult& result) {
+  Bits bits;
+  for (const auto* values : {&result.local, &result.local_ci_low, &result.global, &result.global_ci_high, &result.mean,
+                             &result.std, &result.count, &result.background}) {
+    append(bits, *values);
+  }
+  for (const SolveCounts& solves : result.solves) append(bits, solves);
+  append(bits, result.failures);
+  if (result.history) {
+    bits.insert(bits.end(), result.history->samples.begin(), result.history->samples.end());
+    for (const auto* values : {&result.history->value, &result.history->ci_low, &result.history->ci_high}) {
+      append(bits, *values);
+    }
+  }
+  return bits;
+}
+
+inline Bits bits_of(const MonteCarloResult& result) {
+  Bits bits;
+  for (const auto* values :
+       {&result.mean, &result.mean_ci_low, &result.std, &result.min, &result.max, &result.quantiles,
+        &result.overall_mean, &result.overall_std, &result.overall_min, &result.overall_quantiles}) {
+    append(bits, *values);
+  }
+  bits.insert(bits.end(), result.count.begin(), result.count.end());
+  bits.insert(bits.end(), result.overall_count.begin(), result.overall_count.end());
+  for (const SolveCounts& solves : result.solves) append(bits, solves);
+  append(bits, result.failures);
+  return bits;
+}
+
+inline Bits bits_of(const EvaluationResult& result) {
+  Bits bits;
+  append(bits, result.response);
+  append(bits, result.detail);
+  append(bits, result.total());
+  return bits;
+}
+
+inline Bits bits_of(const IdentificationResult& result) {
+  Bits bits(result.coupled_below);
+  append(bits, result.single_max);
+  bits.insert(bits.end(), result.coupled_reduced.begin(), result.coupled_reduced.end());
+  bits.insert(bits.end(), result.coupled.begin(), result.coupled.end());
+  append(bits, result.solves);
+  return bits;
+}
+
+/// One run of a study of some kind; its result's bits, or nothing when it was stopped.
+inline std::optional<Bits> run(const Prepared& prepared, const RunOptions& options) {
+  const auto table = [&](const ErrorTable& errors) {
+    return run_evaluation(*prepared.model, {}, prepared.plan.poses(), errors, Pairing::every_pose_with_every_row,
+                          options);
+  };
+  const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
+  switch (prepared.study.analysis.kind) {
+    case Kind::sensitivity:
+      return bits(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
+    case Kind::monte_carlo:
+      return bits(run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options));
+    case Kind::identification: {
+      Analysis analysis = prepared.study.analysis;
+      analysis.groups = {{"one", 1e-3, 1e-3}, {"two", 2e-3, 2e-3}};
+      analysis.pose_share = 0.9;
+      return bits(identify(analysis, prepared.model->description(), table));
+    }
+    default: {
+      ErrorTable errors{{FactorIndex(0), FactorIndex(1)}, {}, 700};
+      for (std::size_t k = 0; k < 2 * errors.rows; ++k) errors.values.push_back(1e-6 * static_cast<double>(k));
+      return bits(table(errors));
+    }
+  }
+}
+
+inline std::string kind_name(const testing::TestParamInfo<Kind>& info) {
+  std::string text(name(info.param));
+  std::erase(text, '-');
+  return text;
+}
+
+}  // namespace poesy::test

@@ -1,0 +1,370 @@
+#include "engine/study/keys.h"
+
+#include <gtest/gtest.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <tuple>
+
+#include "tests/support/fake_model.h"
+#include "tests/support/input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy {
+namespace {
+
+/// The fake mechanism as if its platform had points.
+class FakeByPlatform final : public test::FakeModel {
+ public:
+  std::vector<PlatformPoint> metric_points() const override { return {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}; }
+};
+
+/// The fake mechanism with two fidelities and two metrics, which make no difference.
+Catalog catalog() {
+  Catalog two = test::fake_catalog();
+  two.front().description.fidelities = {"exact", "first-order"};
+  CatalogEntry by_platform = two.front();
+  by_platform.description.metric = "platform";
+  by_platform.build = [](auto, auto) { return std::make_unique<FakeByPlatform>(); };
+  by_platform.build_with_points = [](auto, auto, auto) { return std::make_unique<FakeByPlatform>(); };
+  two.front().description.metric = "published";
+  two.front().by_platform = std::make_shared<const CatalogEntry>(std::move(by_platform));
+  return two;
+}
+
+const Catalog kCatalog = catalog();
+
+constexpr std::string_view kHead = R"(format = "poesy-study"
+version = 1
+title = "A study"
+[mechanism]
+model = "fake"
+geometry = { arm = "50 mm" }
+fidelity = "exact"
+[errors]
+linear = { distribution = "normal", sigma = "2 mm" }
+angular = { distribution = "truncated-normal", sigma = "1 deg", half_width = "2 deg" }
+override = { delta_1 = { distribution = "uniform", half_width = "1 mm" }, delta_2 = { distribution = "triangular", half_width = "1 mm" } }
+[solver]
+metric = "published"
+method = "newton"
+tolerance = 1e-12
+max_iterations = 40
+not_converged = "include"
+max_not_converged = 0.5
+[run]
+seed = 7
+)";
+
+constexpr std::string_view kBox =
+    R"(workspace = { z = ["-0.3 m", "-0.2 m"], beta = ["-0.1 rad", "0.1 rad"], gamma = ["-0.1 rad", "0.1 rad"] }
+limits = { q_1 = ["0 mm", "400 mm"], q_2 = ["-1 rad", "1 rad"] }
+max_condition = 1e6
+)";
+
+/// Studies in which every key of every table is used, for every kind and choice of poses for which it holds.
+std::vector<std::string> studies() {
+  const std::string head(kHead);
+  const std::string box(kBox);
+  std::string both = head;
+  both.replace(both.find("\"exact\""), 7, "\"both\"");
+  // Without a tolerance, whose default is another one by the platform's metric.
+  std::string by_platform = head;
+  by_platform.replace(by_platform.find("tolerance = 1e-12"), 17, "");
+  by_platform.replace(by_platform.find("\"published\""), 11,
+                      "\"platform\"\npoints = [[\"1 m\", 0, 0], [0, \"1 m\", 0], [0, 0, \"1 m\"]]");
+  const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
+  return {head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
+              "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" +
+              background + "reference = { factor = \"delta_1\", tolerance = \"2 mm\" }\n",
+          by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
+          both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
+          head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
+              "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\nconf_level = 0.95\nquantiles = [0.1, 0.2]\n" +
+              background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+              "judge = \"rms\"\nlimits = { angular_deformation = \"1 deg\", linear_deformation = \"1 mm\" }\n",
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+              "judge = \"share\"\nshare = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
+          head + "[poses]\nselect = \"boundary\"\ncount = 3\n" + box +
+              "[analysis]\nkind = \"identification\"\nfactors = \"all\"\npose_share = 0.9\n"
+              "groups = [{ name = \"small\", linear = \"2 mm\", angular = \"2 deg\" }]\n",
+          head +
+              "[poses]\nselect = \"trajectory\"\nmax_condition = 1e6\n"
+              "trajectory = { curve = \"wave\", origin = [\"0.21 m\", \"-1 rad\", \"0 rad\"], points = 5, time = [\"0 "
+              "s\", \"1 s\"] }\n"
+              "[analysis]\nkind = \"evaluate\"\nlimits = { angular_deformation = \"1 deg\" }\n" +
+              background +
+              "cases = [{ name = \"one\", errors = { linear = \"1 mm\", angular = \"1 deg\", delta_1 = \"2 mm\", "
+              "deforming = { linear = \"1 mm\", angular = \"1 deg\" } } }]\n",
+          head +
+              "[poses]\nselect = \"trajectory\"\n"
+              "trajectory = { file = \"curve.csv\", points = 5, time = [\"0 s\", \"1 s\"] }\n"
+              "[analysis]\nkind = \"coupling\"\nlinear = [\"1 mm\"]\nangular = [\"1 deg\"]\nlimbs = \"independent\"\n"
+              "components = \"independent\"\nsources = [{ name = \"A\", factors = \"deforming\" }, { name = \"B\", "
+              "factors = "
+              "[\"delta_2\"] }]\n"};
+}
+
+using OnTable = std::function<void(toml::table& table, const std::string& path)>;
+
+void visit(toml::table& table, const std::string& path, const OnTable& on_table);
+
+void visit(toml::array& list, const std::string& path, const OnTable& on_table) {
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (auto* table = list[k].as_table()) visit(*table, path + "[" + std::to_string(k) + "]", on_table);
+  }
+}
+
+/// Calls `on_table` for every table of a study, always in the same order.
+void visit(toml::table& table, const std::string& path, const OnTable& on_table) {
+  on_table(table, path);
+  for (auto&& [key, value] : table) {
+    const std::string below = (path.empty() ? "" : path + ".") + std::string(key.str());
+    if (auto* section = value.as_table()) visit(*section, below, on_table);
+    if (auto* list = value.as_array()) visit(*list, below, on_table);
+  }
+}
+
+/// A key where a study uses it.
+struct Use {
+  const StudyTable* table;
+  const StudyKey* key;
+  std::size_t study;      ///< position among studies()
+  std::size_t visited;    ///< position among its tables, as visit() counts them
+  std::string name;       ///< of the key, there
+  std::string full_name;  ///< as messages have it
+  std::string word;       ///< of the table's chooser, there
+};
+
+/// The description of a name in a table: its own, or that of names of the model's.
+const StudyKey* description(const StudyTable& table, const std::string& name) {
+  if (const StudyKey* key = table.find(name)) return key;
+  const bool is_set = kCatalog.front().description.find_set(name) != nullptr;
+  for (const StudyKey& key : table.keys) {
+    if (is_name_of_model(key) && (key.name == "SET") == is_set) return &key;
+  }
+  return nullptr;
+}
+
+std::string word_of(const toml::table& table, const StudyTable& described) {
+  if (described.chooser.empty()) return {};
+  const std::string_view usual = described.find(described.chooser)->usual;
+  const std::string_view written = usual.size() > 4 ? usual.substr(2, usual.size() - 4) : usual;
+  return std::string(table[described.chooser].value_or(written));
+}
+
+std::vector<Use> uses() {
+  std::vector<Use> found;
+  const std::vector<std::string> texts = studies();
+  for (std::size_t s = 0; s < texts.size(); ++s) {
+    toml::table study = toml::parse(texts[s]);
+    std::size_t visited = 0;
+    visit(study, "", [&](toml::table& table, const std::string& path) {
+      const StudyTable* described = find_table(study_tables(), path);
+      if (described == nullptr) throw std::logic_error("no description of [" + path + "]");
+      const std::string word = word_of(table, *described);
+      for (auto&& [key, value] : table) {
+        const std::string name(key.str());
+        found.push_back({described, description(*described, name), s, visited, name,
+                         (path.empty() ? "" : path + ".") + name, word});
+      }
+      ++visited;
+    });
+  }
+  return found;
+}
+
+const std::vector<Use>& all_uses() {
+  static const std::vector<Use> found = uses();
+  return found;
+}
+
+/// The study of a use with the key set to this TOML value, or without the key where there is none.
+std::string changed(const Use& use, std::string_view value) {
+  toml::table study = toml::parse(studies()[use.study]);
+  std::size_t visited = 0;
+  toml::table* changed = nullptr;
+  visit(study, "", [&](toml::table& table, const std::string&) {
+    if (visited++ == use.visited) changed = &table;
+  });
+  if (value.empty()) {
+    changed->erase(use.name);
+  } else {
+    const toml::table parsed = toml::parse("x = " + std::string(value));
+    changed->insert_or_assign(use.name, *parsed.get("x"));
+  }
+  std::ostringstream text;
+  text << study;
+  return text.str();
+}
+
+/// The study with every default filled in.
+std::string read(const std::string& text) {
+  static const test::TempFolder folder;
+  static const std::string poses = folder.write("poses.csv", "z,beta,gamma\n-0.2,0,0\n");
+  static const std::string curve = folder.write("curve.csv", "t,z,beta,gamma\n0,-0.2,0,0\n1,-0.2,0.1,0\n");
+  return resolved_text(read_study(folder.write("study.toml", text), kCatalog, StudyUse::run));
+}
+
+/// Why the study is refused; empty when it is not.
+std::string refusal(const std::string& text) {
+  return test::refusal_of([&] { read(text); });
+}
+
+std::string literal(std::string_view usual) {
+  return usual.starts_with('`') ? std::string(usual.substr(1, usual.find('`', 1) - 1)) : std::string();
+}
+
+TEST(StudyKeys, AreAllUsedByTheStudiesOfThisTest) {
+  std::set<std::tuple<const StudyKey*, std::string>> used;
+  for (const Use& use : all_uses()) {
+    ASSERT_NE(use.key, nullptr) << use.full_name;
+    used.insert({use.key, ""});
+    used.insert({use.key, use.word});
+  }
+  for (const StudyTable& table : study_tables()) {
+    for (const StudyKey& key : table.keys) {
+      EXPECT_TRUE(used.contains({&key, ""})) << table.paths.front() << " " << key.name;
+      for (const std::string_view word : key.only_for) {
+        EXPECT_TRUE(used.contains({&key, std::string(word)})) << table.paths.front() << " " << key.name << " " << word;
+      }
+    }
+  }
+  for (const std::string& study : studies()) EXPECT_EQ(refusal(study), "") << study;
+}
+
+/// No key takes a date, so what is not refused for it was not read.
+TEST(StudyKeys, AreAllRead) {
+  for (const Use& use : all_uses()) {
+    const std::string reason = refusal(changed(use, "2026-01-31"));
+    EXPECT_NE(reason.find(" " + use.full_name + " is a date or time"), std::string::npos)
+        << use.full_name << ": " << reason;
+  }
+}
+
+TEST(StudyKeys, AreRequiredWhereTheySayIt) {
+  for (const Use& use : all_uses()) {
+    if (!use.key->required) continue;
+    const std::string reason = refusal(changed(use, ""));
+    const bool missing = reason.find("'" + use.name + "' is missing") != std::string::npos;
+    EXPECT_TRUE(missing || reason.find("at least one case") != std::string::npos) << use.full_name << ": " << reason;
+  }
+}
+
+/// A key that is left out is as one with its default, wherever it may be left out alone.
+TEST(StudyKeys, HaveTheDefaultsThatTheyName) {
+  std::set<const StudyKey*> left_out;
+  for (const Use& use : all_uses()) {
+    const std::string without = changed(use, "");
+    if (use.key->usual.empty() || !refusal(without).empty()) continue;
+    left_out.insert(use.key);
+    const std::string usual = literal(use.key->usual);
+    EXPECT_EQ(read(without), read(usual.empty() ? without : changed(use, usual))) << use.full_name;
+  }
+  for (const StudyTable& table : study_tables()) {
+    for (const StudyKey& key : table.keys) {
+      EXPECT_FALSE(key.required && !key.usual.empty()) << table.paths.front() << " " << key.name;
+      EXPECT_EQ(left_out.contains(&key), !key.usual.empty()) << table.paths.front() << " " << key.name;
+    }
+  }
+}
+
+TEST(StudyKeys, TakeTheWordsThatTheyName) {
+  for (const Use& use : all_uses()) {
+    if (use.key->words.empty()) continue;
+    std::string known;
+    for (const StudyWord& word : use.key->words) known += (known.empty() ? "known: " : ", ") + std::string(word.name);
+    const std::string reason = refusal(changed(use, "\"?\""));
+    EXPECT_TRUE(reason.ends_with(known)) << reason << " but " << known;
+  }
+}
+
+/// What lies just outside bounds, as a study has it for one type or another, and what its refusal says.
+struct Outside {
+  std::string_view bounds;
+  std::vector<std::string> values;
+  std::string says;
+};
+
+TEST(StudyKeys, HaveTheBoundsThatTheyName) {
+  const std::array known{Outside{"at least 0", {"-1"}, "it must be at least 0"},
+                         Outside{"at least 1", {"0"}, "it must be at least 1"},
+                         Outside{"at least 2", {"1"}, "it must be at least 2"},
+                         Outside{"greater than 0",
+                                 {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
+                                 "it must be greater than zero"},
+                         Outside{"at least 1e-30 m or rad",
+                                 {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
+                                 "it must be at least 1e-30 m or 1e-30 rad"},
+                         Outside{"greater than 1", {"1"}, "it must be greater than 1"},
+                         Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
+                         Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
+  for (const Use& use : all_uses()) {
+    if (use.key->bounds.empty()) continue;
+    const auto outside = std::ranges::find(known, use.key->bounds, &Outside::bounds);
+    ASSERT_NE(outside, known.end()) << use.full_name;
+    const bool refused = std::ranges::any_of(outside->values, [&](const std::string& value) {
+      const std::string reason = refusal(changed(use, value));
+      return reason.find(use.full_name) != std::string::npos && reason.find(outside->says) != std::string::npos;
+    });
+    EXPECT_TRUE(refused) << use.full_name;
+  }
+}
+
+TEST(StudyKeys, AreFoundAtEveryPathOfAStudy) {
+  EXPECT_EQ(find_table(study_tables(), "errors.override.delta_1"), find_table(study_tables(), "errors.linear"));
+  EXPECT_EQ(find_table(study_tables(), "analysis.cases[12].errors.all"),
+            find_table(study_tables(), "analysis.cases.errors.SET"));
+  EXPECT_EQ(find_table(study_tables(), "")->keys.front().name, "format");
+  EXPECT_EQ(find_table(study_tables(), "analysis.cases.errors.all.more"), nullptr);
+  EXPECT_EQ(find_table(study_tables(), "analysi"), nullptr);
+}
+
+/// Without comment signs and with single spaces.
+std::string words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::string words;
+  for (std::string word; in >> word;) {
+    if (word != "#") words += " " + word;
+  }
+  return words + " ";
+}
+
+/// Names of the model's stand there themselves, and sections explain themselves.
+bool in_templates(const StudyTable& table, const StudyKey& key) {
+  return !(table.paths.front().empty() && key.type == "table") && !is_name_of_model(key);
+}
+
+TEST(Template, ExplainsEveryKeyInTheWordsOfItsDescription) {
+  std::string all;
+  for (const Analysis::Kind kind : kKinds) all += words_of(template_text(kCatalog.front(), kind));
+  for (const StudyTable& table : study_tables()) {
+    for (const StudyKey& key : table.keys) {
+      if (!in_templates(table, key)) continue;
+      EXPECT_NE(all.find(words_of(explanation(table, key))), std::string::npos)
+          << table.paths.front() << " " << key.name;
+    }
+  }
+}
+
+TEST(Reference, HasEveryKeyAndNoUndividedRow) {
+  std::istringstream lines(study_reference());
+  std::size_t rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("| `")) ++rows;
+    EXPECT_TRUE(line.empty() || line.back() != ' ') << line;
+  }
+  std::size_t keys = 0;
+  for (const StudyTable& table : study_tables()) keys += table.keys.size();
+  EXPECT_EQ(rows, keys);
+}
+
+}  // namespace
+}  // namespace poesy
