@@ -9,8 +9,9 @@
 #include "bench/published_study.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/kinds/monte_carlo/collector.h"
-#include "engine/run/run_in_order.h"
 #include "engine/kinds/sensitivity/collector.h"
+#include "engine/run/run_in_order.h"
+#include "engine/run/run_options.h"
 #include "tests/support/fake_ranks.h"
 
 // How many units one writer takes: hands out, receives, unpacks and merges. Ranks solve nothing, but send what a unit

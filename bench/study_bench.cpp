@@ -3,7 +3,8 @@
 #include "bench/instruction_sets.h"
 #include "bench/published_study.h"
 #include "bench/reference_model.h"
-#include "engine/run/runner.h"
+#include "engine/kinds/sensitivity/run.h"
+#include "engine/run/run_options.h"
 
 namespace {
 

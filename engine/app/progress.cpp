@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
+#include "engine/run/run_options.h"
 
 namespace poesy::app {
 namespace {

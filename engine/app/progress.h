@@ -6,7 +6,7 @@
 #include <deque>
 #include <string>
 
-#include "engine/run/runner.h"
+#include "engine/run/run_options.h"
 
 namespace poesy::app {
 

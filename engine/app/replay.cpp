@@ -14,6 +14,7 @@
 #include "engine/files/trial_read.h"
 #include "engine/files/version.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/run/evaluation.h"
 #include "engine/run/replay.h"
 #include "models/registry.h"
 

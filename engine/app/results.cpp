@@ -131,7 +131,7 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
   const bool writes = job.options.team == nullptr || job.options.team->leads();
   if (writes && result) write_result(job.path, job.study, job.poses, *result, outcome_of(job).facts);
   RunOutcome outcome = outcome_of(job);
-  if (result) outcome.verdicts = verdicts_of(*result);
+  if (result) outcome.verdicts = result->verdicts;
   if (const auto& shard = job.options.shard; shard && writes) {
     write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), outcome.facts);
   }

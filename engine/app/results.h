@@ -9,7 +9,7 @@
 #include "engine/files/checkpoint.h"
 #include "engine/files/result_file.h"
 #include "engine/run/result.h"
-#include "engine/run/runner.h"
+#include "engine/run/run_options.h"
 #include "engine/study/study.h"
 
 namespace poesy::app {

@@ -8,7 +8,6 @@
 #include "engine/files/checkpoint_files.h"
 #include "engine/files/run_lock.h"
 #include "engine/run/checkpoints.h"
-#include "engine/run/runner.h"
 
 namespace poesy::app {
 

@@ -13,7 +13,12 @@
 #include "engine/files/poesy_file.h"
 #include "engine/files/result_parts.h"
 #include "engine/files/shard_file.h"
+#include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {
@@ -130,19 +135,14 @@ void write_coupling(const std::string& path, const Study& study, const SelectedP
 
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const StudyResult& result,
                   const RunFacts& facts) {
-  struct Write {
-    void operator()(const SensitivityResult& found) const { write_sensitivity(path, study, poses, found, facts); }
-    void operator()(const IdentificationResult& found) const { write_identification(path, study, poses, found, facts); }
-    void operator()(const CaseResult& found) const { write_cases(path, study, poses, found, facts); }
-    void operator()(const MonteCarloResult& found) const { write_monte_carlo(path, study, poses, found, facts); }
-    void operator()(const CouplingResult& found) const { write_coupling(path, study, poses, found, facts); }
-
-    const std::string& path;
-    const Study& study;
-    const SelectedPoses& poses;
-    const RunFacts& facts;
-  };
-  std::visit(Write{path, study, poses, facts}, result);
+  if (const auto* one = std::any_cast<SensitivityResult>(&result.found))
+    write_sensitivity(path, study, poses, *one, facts);
+  if (const auto* one = std::any_cast<IdentificationResult>(&result.found))
+    write_identification(path, study, poses, *one, facts);
+  if (const auto* one = std::any_cast<CaseResult>(&result.found)) write_cases(path, study, poses, *one, facts);
+  if (const auto* one = std::any_cast<MonteCarloResult>(&result.found))
+    write_monte_carlo(path, study, poses, *one, facts);
+  if (const auto* one = std::any_cast<CouplingResult>(&result.found)) write_coupling(path, study, poses, *one, facts);
 }
 
 void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,

@@ -7,10 +7,15 @@
 #include <vector>
 
 #include "engine/base/units.h"
-#include "engine/model/pose_set.h"
-#include "engine/run/result.h"
-#include "engine/run/runner.h"
+#include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/study_run.h"
+#include "engine/model/pose_set.h"
+#include "engine/run/evaluation.h"
+#include "engine/run/result.h"
 #include "engine/stats/tolerance.h"
 #include "engine/study/study.h"
 

@@ -10,6 +10,12 @@
 #include "engine/files/csv_table.h"
 #include "engine/files/fields.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/run/evaluation.h"
 
 /// The parts of result files: for each how it is written, read back, and shown as CSV.
 namespace poesy {

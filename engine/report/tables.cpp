@@ -9,9 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "engine/report/display.h"
 #include "engine/kinds/report_kind.h"
+#include "engine/report/display.h"
 #include "engine/report/text_table.h"
+#include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {

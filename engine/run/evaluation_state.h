@@ -4,6 +4,7 @@
 #include <span>
 
 #include "engine/base/bytes.h"
+#include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/run/shard.h"
 

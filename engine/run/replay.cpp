@@ -2,6 +2,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/evaluation.h"
 #include "engine/run/pose_unit.h"
 
 namespace poesy {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
-#include "engine/run/runner.h"
+#include "engine/run/evaluation.h"
 #include "engine/study/study.h"
 
 namespace poesy {

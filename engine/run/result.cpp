@@ -5,15 +5,11 @@
 #include <numeric>
 
 namespace poesy {
-namespace {
-
-SolveCounts sum_of(const std::vector<SolveCounts>& cells) {
+SolveCounts total_of(const std::vector<SolveCounts>& cells) {
   SolveCounts sum;
   for (const SolveCounts& cell : cells) sum.merge(cell);
   return sum;
 }
-
-}  // namespace
 
 std::uint64_t SolveCounts::total() const {
   return std::accumulate(by_status.begin(), by_status.end(), std::uint64_t{0});
@@ -53,18 +49,6 @@ SolveCounts SolveCounts::read(ByteReader& from) {
   solves.iterations = from.number();
   solves.most_iterations = static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
   return solves;
-}
-
-SolveCounts SensitivityResult::total() const { return sum_of(solves); }
-
-SolveCounts MonteCarloResult::total() const { return sum_of(solves); }
-
-SolveCounts CouplingResult::total() const { return sum_of(solves); }
-
-SolveCounts EvaluationResult::total() const {
-  SolveCounts sum;
-  for (std::size_t n = 0; n < status.size(); ++n) sum.add(status[n], iterations[n]);
-  return sum;
 }
 
 bool LimitVerdicts::passed() const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -21,6 +22,12 @@ double half_width(const Estimate& estimate) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> all_positions(std::size_t count) {
+  std::vector<std::size_t> positions(count);
+  std::iota(positions.begin(), positions.end(), std::size_t{0});
+  return positions;
+}
 
 std::size_t least_samples(const Plan& plan) {
   if (!plan.adaptive()) return plan.samples();

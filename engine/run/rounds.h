@@ -13,6 +13,9 @@
 
 namespace poesy {
 
+/// 0 .. count - 1.
+std::vector<std::size_t> all_positions(std::size_t count);
+
 /// Samples that each pose of every slot gets in any case.
 std::size_t least_samples(const Plan& plan);
 
@@ -43,6 +46,10 @@ class Rounds {
   /// Of the whole study, as far as the half-widths so far let expect: they fall with the root of the samples. At least
   /// those of this round; before the first decision all that there may be.
   std::uint64_t expected_solves() const;
+  /// Solves after those that were done, as far as that is known: for a fixed number of samples those that are pending.
+  std::uint64_t expected_left(const SolveCounts& done, std::uint64_t pending) const {
+    return adaptive_ ? expected_solves() - done.total() : pending;
+  }
 
   /// Ends the round; whether another one follows, which begins. estimates(slot): its quantities, [R].
   bool go_on(const std::function<std::vector<Estimate>(std::size_t slot)>& estimates);

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/run/ranks/run_over_ranks.h"
 #include "engine/run/result.h"
 #include "engine/run/run_in_slots.h"
-#include "engine/run/ranks/run_over_ranks.h"
-#include "engine/run/runner.h"
+#include "engine/run/run_options.h"
 
 namespace poesy {
 
@@ -44,9 +44,8 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
 class ProgressCounter {
  public:
   /// before: how the solves of an earlier run ended that is continued.
-  ProgressCounter(std::uint64_t total, const SolveCounts& before, const RunOptions& options) : options_(&options) {
-    progress_ = {before.total(), total, before.not_converged(), before.total()};
-  }
+  ProgressCounter(const SolveCounts& before, const RunOptions& options)
+      : options_(&options), progress_{before.total(), before.total(), before.not_converged(), before.total()} {}
 
   /// So many solves are still to come, as far as is known now.
   void expect_left(std::uint64_t solves) { progress_.total = progress_.solves + solves; }

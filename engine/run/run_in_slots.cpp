@@ -5,7 +5,11 @@
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
+#include <thread>
+
 #include "engine/run/handover.h"
+#include "engine/run/run_options.h"
 
 namespace poesy {
 namespace {
@@ -13,6 +17,10 @@ namespace {
 namespace tbb = oneapi::tbb;
 
 }  // namespace
+
+std::size_t resolved_threads(std::size_t threads) {
+  return threads != 0 ? threads : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
 
 std::size_t pool_slots(const RunOptions& options) { return 4 * resolved_threads(options.threads); }
 

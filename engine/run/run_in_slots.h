@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "engine/run/runner.h"
+#include "engine/run/run_options.h"
 
 namespace poesy {
 

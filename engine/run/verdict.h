@@ -2,21 +2,11 @@
 
 #include <span>
 
+#include "engine/run/evaluation.h"
 #include "engine/run/result.h"
-#include "engine/run/runner.h"
-#include "engine/stats/quantile_sketch.h"
 #include "engine/study/study.h"
 
 namespace poesy {
-
-/// Judges the limits of a Monte Carlo study by what it found. A limit is kept
-/// - by Judge::rms, if the response's root mean square over the samples of all poses that count is within it;
-/// - by Judge::share, if at every pose at least that share of all draws is within it: if the largest of the poses'
-///   share_magnitude is. Draws that do not count are not within it.
-/// overall: [R], the samples of all poses that count. Numbers from a sketch are off by its kRelativeError at most.
-/// Precondition: found.overall_rms is there, and found.share_magnitude where it is needed.
-LimitVerdicts judge_draws(const Analysis& analysis, const MonteCarloResult& found,
-                          std::span<const QuantileSketch> overall);
 
 /// Judges limits by an evaluation, row by row of its errors: a row (a case) is within a limit if its largest magnitude
 /// over all its poses is, and every one of them counts (see counts()). A limit is kept if every row is within it.

@@ -13,6 +13,7 @@
 #include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/files/csv_lines.h"
+#include "engine/run/evaluation.h"
 #include "engine/study/error_words.h"
 #include "engine/study/table_file.h"
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/run/evaluation.h"
 #include "engine/study/table_file.h"
 #include "models/registry.h"
 #include "tests/fuzz/target.h"

@@ -10,7 +10,13 @@
 #include "engine/files/checkpoint.h"
 #include "engine/files/shard_file.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/run.h"
+#include "engine/run/evaluation.h"
 #include "engine/run/evaluation_state.h"
+#include "engine/run/run_options.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/fuzz/small_plans.h"
 

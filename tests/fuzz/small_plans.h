@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "engine/run/evaluation.h"
 #include "engine/study/plan.h"
 #include "tests/support/fake_model.h"
 

@@ -3,6 +3,7 @@
 #include <exception>
 #include <string>
 
+#include "engine/run/evaluation.h"
 #include "tests/engine/kinds/example_result.h"
 
 int main(int argc, char** argv) try {

@@ -10,6 +10,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/run/evaluation.h"
 #include "engine/study/study_file.h"
 
 namespace poesy {

@@ -6,6 +6,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/run/counts.h"
+#include "engine/run/evaluation.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {

@@ -4,8 +4,9 @@
 #include <cstddef>
 #include <span>
 
-#include "engine/report/display.h"
+#include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/report_kind.h"
+#include "engine/report/display.h"
 
 namespace poesy {
 namespace {

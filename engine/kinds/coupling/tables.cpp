@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/kinds/coupling/coupling.h"
 #include "engine/report/display.h"
 #include "engine/report/study_settings.h"
 #include "engine/report/tables.h"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/run/counts.h"
+#include "engine/run/evaluation.h"
 
 namespace poesy {
 

@@ -3,9 +3,10 @@
 #include <utility>
 
 #include "engine/files/result_parts.h"
-#include "engine/kinds/evaluate/row_outcomes.h"
-#include "engine/study/table_file.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/row_outcomes.h"
+#include "engine/run/evaluation.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 namespace {

@@ -5,8 +5,9 @@
 #include <span>
 
 #include "engine/base/nan.h"
-#include "engine/report/display.h"
 #include "engine/kinds/report_kind.h"
+#include "engine/report/display.h"
+#include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {

@@ -1,4 +1,5 @@
 #include "engine/kinds/evaluate/row_outcomes.h"
+#include "engine/run/evaluation.h"
 
 #include <cmath>
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/run/evaluation.h"
 
 namespace poesy {
 

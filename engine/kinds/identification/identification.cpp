@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {

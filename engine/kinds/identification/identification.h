@@ -3,11 +3,41 @@
 #include <functional>
 #include <optional>
 
+#include "engine/run/evaluation.h"
 #include "engine/run/result.h"
-#include "engine/run/runner.h"
 #include "engine/study/study.h"
 
 namespace poesy {
+
+/// Two errors of one frame that deform together and not alone.
+struct Coupling {
+  std::size_t group;              ///< position among the groups
+  std::size_t first;              ///< position among the factors
+  std::size_t second;             ///< position among the factors
+  std::uint64_t deforming_poses;  ///< poses where both together deform, and neither alone
+};
+
+/// Which of P errors deform the mechanism, tried at G groups of sizes and M poses.
+struct IdentificationResult {
+  std::size_t factors = 0;  ///< P
+  std::size_t groups = 0;   ///< G
+  /// M.
+  std::size_t poses = 0;             ///< M
+  double rounding = 0.0;             ///< deformations up to this cannot be told from zero
+  std::uint64_t required_poses = 0;  ///< that a verdict asks for
+
+  std::vector<std::uint64_t> single_below;     ///< [G x P] poses where the error alone gives no more than rounding
+  std::vector<double> single_max;              ///< [G x P] largest deformation over the solved poses; NaN where none
+  std::vector<std::uint64_t> not_solved;       ///< [G x P] poses without a solution, single stage
+  std::vector<std::uint64_t> coupled_below;    ///< [G x P] as single_below, for all errors tried together in its frame
+  std::vector<std::uint64_t> coupled_reduced;  ///< [G x P] poses where leaving it out takes nine tenths away
+  std::vector<std::uint8_t> single_by_group;   ///< [G x P] verdict of the single stage, 0 or 1
+  std::vector<std::uint8_t> coupled_by_group;  ///< [G x P] verdict of both stages
+  std::vector<std::uint8_t> single;            ///< [P] in any group
+  std::vector<std::uint8_t> coupled;           ///< [P] in any group
+  std::vector<Coupling> couplings;             ///< pairs that deform together only, by group and position
+  SolveCounts solves;                          ///< of all solves of both stages
+};
 
 /// Solves every row of a table of errors at every pose of the study. Empty when stopped.
 using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTable&)>;

@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
-#include "engine/report/display.h"
+#include "engine/kinds/identification/identification.h"
 #include "engine/kinds/report_kind.h"
+#include "engine/report/display.h"
 
 namespace poesy {
 namespace {

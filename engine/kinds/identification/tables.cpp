@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/kinds/identification/identification.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/pose_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/quantile_interval.h"

@@ -2,6 +2,7 @@
 
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -161,7 +162,8 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
   add_sigma(result, study);
   result.add_axis("quantile", found.levels, {"1", "Share of the samples below the quantile"});
   result.add_axis("bin", axis_numbers(bins), {"1", "Number of the histogram's bin, from 0"});
-  result.add_axis("edge", axis_numbers(bins + 1), {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
+  result.add_axis("edge", axis_numbers(bins + 1),
+                  {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
   write_group(result, kMonteCarlo, found);
   if (!found.share_magnitude.empty()) {
     result.file().set_attribute("/monte_carlo/share_magnitude", "share", study.analysis.share);

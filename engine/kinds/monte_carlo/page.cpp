@@ -4,8 +4,9 @@
 #include <span>
 
 #include "engine/base/units.h"
-#include "engine/report/display.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/report_kind.h"
+#include "engine/report/display.h"
 
 namespace poesy {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 

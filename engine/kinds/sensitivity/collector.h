@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/run/evaluate_unit.h"
 #include "engine/kinds/sensitivity/index_history.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/study/plan.h"
 
 namespace poesy {

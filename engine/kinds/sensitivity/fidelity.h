@@ -3,6 +3,7 @@
 #include <span>
 
 #include "engine/base/units.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/run/result.h"
 
 namespace poesy {

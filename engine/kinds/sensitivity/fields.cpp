@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/files/result_parts.h"
+#include "engine/kinds/sensitivity/result.h"
 
 namespace poesy {
 namespace {

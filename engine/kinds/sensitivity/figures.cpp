@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/report/display.h"
 #include "engine/stats/rank_correlation.h"
 
 namespace poesy {

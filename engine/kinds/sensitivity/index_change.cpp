@@ -7,8 +7,9 @@
 #include <optional>
 #include <span>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/report/display.h"
 #include "engine/stats/sensitivity_index.h"
 
 namespace poesy {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/interval.h"

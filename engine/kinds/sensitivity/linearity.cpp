@@ -6,10 +6,10 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/kinds/sensitivity/indices.h"
 #include "engine/run/counts.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/run_in_order.h"
-#include "engine/kinds/sensitivity/indices.h"
+#include "engine/run/fold.h"
 #include "engine/run/some_poses.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/sensitivity_index.h"
@@ -71,29 +71,54 @@ class CellEvaluator {
   UnitEvaluator solve_;
 };
 
-/// Collects cells, pose by pose, and fills in an error's changes when its poses are there.
-class ChangeCollector {
+/// Collects cells, pose by pose, and fills in an error's changes when its poses are there: the work of fold().
+class ChangeWork {
  public:
-  ChangeCollector(const Plan& plan, const Model& model)
-      : plan_(&plan),
+  ChangeWork(const Plan& plan, const Model& model)
+      : plan_(plan),
+        model_(model),
         rounding_(response_rounding(model)),
         at_poses_(kSizes * rounding_.size()),
         changes_(rounding_.size() * plan.slots(), kNaN) {}
 
-  void add(std::size_t cell, const CellIndices& indices) {
-    const std::size_t poses = chosen_poses(*plan_);
+  std::size_t begin_round() const { return plan_.slots() * chosen_poses(plan_); }
+  CellEvaluator worker() const { return {plan_, model_}; }
+  static CellIndices solve(CellEvaluator& evaluate, std::size_t cell) { return evaluate(cell); }
+  SolveCounts merge(std::size_t cell, const CellIndices& indices) {
+    const std::size_t poses = chosen_poses(plan_);
     for (std::size_t n = 0; n < at_poses_.size(); ++n) at_poses_[n].push_back(indices[n]);
-    if ((cell + 1) % poses != 0) return;
+    if ((cell + 1) % poses != 0) return {};
     const std::size_t slot = cell / poses;
-    for (std::size_t r = 0; r < rounding_.size(); ++r) changes_[r * plan_->slots() + slot] = change(r, slot);
+    for (std::size_t r = 0; r < rounding_.size(); ++r) changes_[r * plan_.slots() + slot] = change(r, slot);
     for (std::vector<LocalIndex>& poses_of_one : at_poses_) poses_of_one.clear();
+    return {};
   }
+  static void write(std::size_t, const CellIndices& indices, ByteWriter& to) {
+    for (const LocalIndex& index : indices) to.reals(std::array{index.value, index.standard_error});
+  }
+  CellIndices read(std::size_t, ByteReader& from) const {
+    CellIndices indices;
+    for (std::size_t n = 0; n < at_poses_.size(); ++n) {
+      const double value = from.real();
+      indices.push_back({value, from.real()});
+    }
+    return indices;
+  }
+  static SolveCounts solved() { return {}; }
+  static std::uint64_t left() { return 0; }
+  Bytes state() const {
+    ByteWriter to;
+    to.reals(changes_);
+    return to.take();
+  }
+  void restore(std::span<const std::byte> state) { ByteReader(state).reals(std::span(changes_)); }
+  static bool next_round() { return false; }
 
-  std::vector<double> take() && { return std::move(changes_); }
+  std::vector<double> result() && { return std::move(changes_); }
 
  private:
   double change(std::size_t response, std::size_t slot) const {
-    const double sigma = plan_->distributions()[slot].standard_deviation();
+    const double sigma = plan_.distributions()[slot].standard_deviation();
     std::array<double, kSizes> index{};
     for (std::size_t size = 0; size < kSizes; ++size) {
       index[size] = told_from_rounding(published_index(at_poses_[size * rounding_.size() + response]),
@@ -102,50 +127,23 @@ class ChangeCollector {
     return index[1] / index[0] - 1.0;
   }
 
-  const Plan* plan_;
+  const Plan& plan_;
+  const Model& model_;
   std::vector<double> rounding_;                   ///< [R]
   std::vector<std::vector<LocalIndex>> at_poses_;  ///< [2 x R] of the error that is being collected
   std::vector<double> changes_;                    ///< [R x P]
 };
 
-void pack(const CellIndices& indices, ByteWriter& to) {
-  for (const LocalIndex& index : indices) to.reals(std::array{index.value, index.standard_error});
-}
-
-CellIndices unpack(ByteReader& from, std::size_t count) {
-  CellIndices indices;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double value = from.real();
-    indices.push_back({value, from.real()});
-  }
-  return indices;
-}
-
 }  // namespace
 
 std::optional<std::vector<double>> index_changes(const Plan& plan, const Model& model, const RunOptions& options) {
   POESY_EXPECTS(plan.slots() == plan.factors().size());
-  const std::size_t responses = model.description().responses.size();
-  ChangeCollector collect(plan, model);
-  Stage stage(nullptr, options.team);
-  stage.begin([](std::span<const std::byte>) {});
-  const bool complete = run_in_order(
-      plan.slots() * chosen_poses(plan), options, [&] { return CellEvaluator(plan, model); },
-      [](CellEvaluator& evaluate, std::size_t cell) { return evaluate(cell); },
-      [&](std::size_t cell, const CellIndices& found) { collect.add(cell, found); },
-      [](std::size_t, const CellIndices& found, ByteWriter& to) { pack(found, to); },
-      [&](std::size_t, ByteReader& from) { return unpack(from, kSizes * responses); });
-  std::vector<double> changes = std::move(collect).take();
-  stage.end(
-      complete, [] { return SolveCounts(); },
-      [&] {
-        ByteWriter to;
-        to.reals(changes);
-        return to.take();
-      },
-      [&](std::span<const std::byte> end) { ByteReader(end).reals(std::span(changes)); });
-  if (!complete) return std::nullopt;
-  return changes;
+  RunOptions without_state = options;
+  without_state.checkpoints = nullptr;
+  without_state.progress = {};
+  ChangeWork work(plan, model);
+  if (!fold(work, without_state)) return std::nullopt;
+  return std::move(work).result();
 }
 
 double index_change_solves(const Plan& plan) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/model/model.h"
-#include "engine/run/runner.h"
+#include "engine/run/run_options.h"
 #include "engine/study/plan.h"
 
 namespace poesy {

@@ -7,12 +7,13 @@
 #include <optional>
 #include <span>
 
-#include "engine/kinds/sensitivity/tolerance_files.h"
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/figures.h"
 #include "engine/kinds/sensitivity/index_change.h"
-#include "engine/kinds/sensitivity/tolerance_table.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/report/display.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/tolerance.h"
 

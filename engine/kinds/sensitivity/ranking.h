@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
 
 namespace poesy {

@@ -5,6 +5,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {

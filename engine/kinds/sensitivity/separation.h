@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/model/model.h"
 #include "engine/model/pose_set.h"
 #include "engine/run/result.h"

@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/index_change.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/report/display.h"
 #include "engine/report/tables.h"
 
 namespace poesy {

@@ -5,8 +5,9 @@
 
 #include "engine/base/nan.h"
 #include "engine/files/result_parts.h"
-#include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/tolerance_files.h"
 
 namespace poesy {
 namespace {

@@ -8,9 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/index_change.h"
 #include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/report/display.h"
 
 namespace poesy {
 namespace {

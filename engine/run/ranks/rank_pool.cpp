@@ -1,4 +1,5 @@
 #include "engine/run/ranks/rank_pool.h"
+#include "engine/run/run_options.h"
 
 #include <utility>
 

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "engine/run/run_in_slots.h"
+#include "engine/run/run_options.h"
 
 namespace poesy {
 

@@ -5,6 +5,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/run/run_in_slots.h"
+#include "engine/run/run_options.h"
 
 namespace poesy {
 

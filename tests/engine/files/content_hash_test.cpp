@@ -1,4 +1,5 @@
 #include "engine/files/content_hash.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>

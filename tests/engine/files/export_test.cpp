@@ -7,6 +7,8 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/run/evaluation.h"
 #include "engine/study/table_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"

@@ -1,4 +1,5 @@
 #include "engine/files/output_folder.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,6 @@
 #include "engine/files/result_file.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +9,8 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/study/study_file.h"
 #include "engine/files/version.h"
+#include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

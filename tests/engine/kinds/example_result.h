@@ -6,7 +6,12 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/run/evaluation.h"
 #include "tests/support/fake_model.h"
 
 namespace poesy::test {

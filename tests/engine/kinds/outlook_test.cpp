@@ -1,4 +1,4 @@
-#include "engine/kinds/outlook.h"
+#include "engine/kinds/study_run.h"
 
 #include <gtest/gtest.h>
 

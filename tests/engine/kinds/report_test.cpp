@@ -1,5 +1,7 @@
 #include "engine/kinds/report.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/report/tables.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,12 @@
 #include <bit>
 
 #include "engine/kinds/identification/identification.h"
-#include "engine/run/runner.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/run.h"
+#include "engine/run/evaluation.h"
+#include "engine/run/run_options.h"
 #include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
 

@@ -1,4 +1,7 @@
 #include "engine/kinds/study_run.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/sensitivity/result.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +22,7 @@ TEST(RunStudy, FindsASensitivityStudysResultAndItsChanges) {
   const Prepared prepared(study_of(Kind::sensitivity, 200));
   const auto result = run_study(prepared.study);
   ASSERT_TRUE(result);
-  const auto& found = std::get<SensitivityResult>(*result);
+  const auto& found = result->as<SensitivityResult>();
   EXPECT_EQ(bits_of(found), run(prepared, {}));
   EXPECT_EQ(found.index_change.size(), 4u);
   EXPECT_FALSE(verdicts_of(*result));

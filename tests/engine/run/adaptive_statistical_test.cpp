@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/stats/moments.h"
 #include "tests/engine/run/adaptive_study.h"
 

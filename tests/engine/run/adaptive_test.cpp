@@ -4,7 +4,10 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/run/rounds.h"
+#include "engine/run/run_options.h"
 #include "engine/stats/tolerance.h"
 #include "engine/study/milestones.h"
 #include "tests/engine/run/adaptive_study.h"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "engine/run/run_options.h"
 #include "tests/engine/kinds/study_kinds.h"
 
 namespace poesy {

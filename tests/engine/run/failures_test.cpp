@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/sensitivity/run.h"
 #include "engine/random/stream.h"
 #include "engine/run/replay.h"
-#include "engine/run/runner.h"
+#include "engine/run/run_options.h"
 #include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
 

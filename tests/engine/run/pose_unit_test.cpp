@@ -7,8 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/sensitivity/run.h"
 #include "engine/random/stream.h"
-#include "engine/run/runner.h"
+#include "engine/run/run_options.h"
 #include "engine/stats/quantile_interval.h"
 #include "tests/engine/stats/plain_sort.h"
 #include "tests/support/fake_model.h"

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/run/run_in_order.h"
+#include "engine/run/run_options.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
 

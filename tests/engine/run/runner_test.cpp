@@ -1,4 +1,7 @@
-#include "engine/run/runner.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/run.h"
+#include "engine/run/evaluation.h"
+#include "engine/run/run_options.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "engine/study/table_file.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

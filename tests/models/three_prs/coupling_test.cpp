@@ -1,4 +1,6 @@
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

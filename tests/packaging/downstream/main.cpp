@@ -7,8 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/study_run.h"
+#include "engine/study/study_file.h"
 #include "models/registry.h"
 
 namespace {
@@ -44,7 +45,7 @@ bool run_file(const std::string& path, const std::string& result_path) {
   const auto result = poesy::run_study(study, *model, poses.poses);
   if (!result) return false;
   poesy::write_result(result_path, study, poses, *result, {});
-  const auto& found = std::get<poesy::SensitivityResult>(*result);
+  const auto& found = result->as<poesy::SensitivityResult>();
   std::printf("%s: %zu errors at %zu poses\n", path.c_str(), found.factors, found.poses);
   return some_index_is_positive(found);
 }

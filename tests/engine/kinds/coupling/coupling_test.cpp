@@ -1,4 +1,5 @@
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

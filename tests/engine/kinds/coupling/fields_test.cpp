@@ -5,6 +5,7 @@
 
 #include "engine/files/h5.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/coupling/coupling.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "engine/kinds/identification/identification.h"
 #include "engine/study/study_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"

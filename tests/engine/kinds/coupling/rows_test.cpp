@@ -1,4 +1,5 @@
 #include "engine/kinds/coupling/rows.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/kinds/coupling/coupling.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 

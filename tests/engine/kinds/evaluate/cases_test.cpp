@@ -1,4 +1,5 @@
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

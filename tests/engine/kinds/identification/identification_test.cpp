@@ -1,4 +1,5 @@
 #include "engine/kinds/identification/identification.h"
+#include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,10 @@
 
 #include "engine/files/h5.h"
 #include "engine/files/result_file.h"
-#include "engine/study/study_file.h"
-#include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "engine/kinds/sensitivity/fidelity.h"
-#include "engine/run/runner.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/run.h"
 #include "tests/support/two_fidelities_model.h"
 
 namespace poesy {

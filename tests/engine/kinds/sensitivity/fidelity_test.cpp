@@ -1,4 +1,5 @@
 #include "engine/kinds/sensitivity/fidelity.h"
+#include "engine/kinds/sensitivity/result.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,6 @@
 #include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/run.h"
+#include "engine/run/run_options.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine/files/result_file.h"
+#include "engine/kinds/sensitivity/result.h"
 
 namespace poesy {
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 

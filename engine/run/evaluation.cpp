@@ -1,8 +1,10 @@
+#include "engine/run/evaluation.h"
+
 #include <algorithm>
+#include <utility>
 
 #include "engine/run/evaluation_state.h"
-#include "engine/run/run_in_order.h"
-#include "engine/run/runner.h"
+#include "engine/run/fold.h"
 
 namespace poesy {
 namespace {
@@ -87,45 +89,74 @@ EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std:
   return result;
 }
 
+/// Blocks of rows of an error table, pose by pose: the work of fold(). Threads write outcomes where they belong.
+class TableWork {
+ public:
+  TableWork(const Model& model, const SolverOptions& solver, const PoseSet& poses, const ErrorTable& errors,
+            Pairing pairing, Outcomes outcomes, const Shard& shard)
+      : model_(model),
+        solver_(solver),
+        poses_(poses),
+        errors_(errors),
+        paired_(pairing == Pairing::row_by_row),
+        shard_(shard),
+        result_(empty_evaluation(model, poses, paired_ ? 1 : errors.rows, outcomes)),
+        done_(result_, kBlockRows, shard) {}
+
+  std::size_t begin_round() {
+    pending_ = done_.pending();
+    return pending_.end - pending_.first;
+  }
+  TableEvaluator worker() { return {model_, solver_, poses_, errors_, result_}; }
+  SolveCounts solve(TableEvaluator& evaluate, std::size_t n) const {
+    const std::size_t blocks = (result_.samples + kBlockRows - 1) / kBlockRows;
+    const std::size_t pose = (pending_.first + n) / blocks;
+    const std::size_t first = (pending_.first + n) % blocks * kBlockRows;
+    return evaluate(PoseIndex(pose), first, paired_ ? pose : first, std::min(kBlockRows, result_.samples - first));
+  }
+  const SolveCounts& merge(std::size_t, const SolveCounts& solves) {
+    done_.add_block();
+    return solves;
+  }
+  void write(std::size_t n, const SolveCounts&, ByteWriter& to) const { done_.write_block(pending_.first + n, to); }
+  SolveCounts read(std::size_t n, ByteReader& from) { return done_.read_block(pending_.first + n, from); }
+  SolveCounts solved() const { return done_.total(); }
+  std::uint64_t left() const { return done_.samples() - solved().total(); }
+  Bytes state() const { return done_.state(); }
+  void restore(std::span<const std::byte> state) {
+    done_ = EvaluationProgress(result_, kBlockRows, shard_);
+    done_.restore(state);
+  }
+  static bool next_round() { return false; }
+
+  EvaluationResult result() && { return std::move(result_); }
+
+ private:
+  const Model& model_;
+  const SolverOptions& solver_;
+  const PoseSet& poses_;
+  const ErrorTable& errors_;
+  bool paired_;
+  Shard shard_;
+  EvaluationResult result_;
+  EvaluationProgress done_;
+  NumberRange pending_{};
+};
+
 }  // namespace
+
+SolveCounts EvaluationResult::total() const {
+  SolveCounts sum;
+  for (std::size_t n = 0; n < status.size(); ++n) sum.add(status[n], iterations[n]);
+  return sum;
+}
 
 std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,
                                                const ErrorTable& errors, Pairing pairing, const RunOptions& options,
                                                Outcomes outcomes) {
-  const bool paired = pairing == Pairing::row_by_row;
-  const std::size_t samples = paired ? 1 : errors.rows;
-  EvaluationResult result = empty_evaluation(model, poses, samples, outcomes);
-  const std::size_t blocks = (samples + kBlockRows - 1) / kBlockRows;
-  EvaluationProgress done(result, kBlockRows, options.shard.value_or(Shard()));
-  const auto restore = [&](std::span<const std::byte> state) {
-    done = EvaluationProgress(result, kBlockRows, options.shard.value_or(Shard()));
-    done.restore(state);
-  };
-  Stage stage(options.checkpoints, options.team);
-  stage.begin(restore);
-  ProgressCounter counter(done.samples(), done.total(), options);
-  const NumberRange pending = done.pending();
-  const auto state = [&] { return done.state(); };
-  const bool complete = run_in_order(
-      pending.end - pending.first, options, [&] { return TableEvaluator(model, solver, poses, errors, result); },
-      [&](TableEvaluator& evaluate, std::size_t n) {
-        const std::size_t block = pending.first + n;
-        const std::size_t pose = block / blocks;
-        const std::size_t first = block % blocks * kBlockRows;
-        const std::size_t count = std::min(kBlockRows, samples - first);
-        return evaluate(PoseIndex(pose), first, paired ? pose : first, count);
-      },
-      [&](std::size_t, const SolveCounts& solves) {
-        done.add_block();
-        counter.add(solves);
-        stage.merged(state);
-      },
-      [&](std::size_t n, const SolveCounts&, ByteWriter& to) { done.write_block(pending.first + n, to); },
-      [&](std::size_t n, ByteReader& from) { return done.read_block(pending.first + n, from); });
-  stage.end(
-      complete, [&] { return done.total(); }, state, restore);
-  if (!complete || options.shard) return std::nullopt;
-  return result;
+  TableWork work(model, solver, poses, errors, pairing, outcomes, options.shard.value_or(Shard()));
+  if (!fold(work, options) || options.shard) return std::nullopt;
+  return std::move(work).result();
 }
 
 }  // namespace poesy

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "engine/kinds/run_kind.h"
+
+namespace poesy {
+
+/// How coupling studies are run.
+extern const RunKind kCouplingRun;
+
+}  // namespace poesy

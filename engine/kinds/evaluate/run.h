@@ -1,0 +1,10 @@
+#pragma once
+
+#include "engine/kinds/run_kind.h"
+
+namespace poesy {
+
+/// How studies of named cases are run.
+extern const RunKind kCasesRun;
+
+}  // namespace poesy

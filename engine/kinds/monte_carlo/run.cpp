@@ -1,0 +1,155 @@
+#include "engine/kinds/monte_carlo/run.h"
+
+#include <utility>
+
+#include "engine/kinds/monte_carlo/collector.h"
+#include "engine/run/fold.h"
+#include "engine/run/pending_units.h"
+#include "engine/run/pose_unit.h"
+#include "engine/run/rounds.h"
+#include "engine/stats/mean_interval.h"
+
+namespace poesy {
+namespace {
+
+/// Of each response over the samples of all poses, [R].
+std::vector<Estimate> overall_means(const MonteCarloResult& found) {
+  std::vector<Estimate> means;
+  for (std::size_t first = 0; first < found.mean.size(); first += found.poses) {
+    means.push_back(stratified_mean(
+        {std::span(found.count).subspan(first, found.poses), std::span(found.mean).subspan(first, found.poses),
+         std::span(found.std).subspan(first, found.poses)},
+        found.conf_level));
+  }
+  return means;
+}
+
+/// The draws of all errors together, pose by pose, in rounds: the work of fold(). Each round has a collector of its
+/// own, which begins with what the one before kept.
+class PoseWork {
+ public:
+  PoseWork(const Plan& plan, const Model& model, const Analysis& analysis, const RunOptions& options)
+      : plan_(plan),
+        model_(model),
+        analysis_(analysis),
+        responses_(model.description().responses.size()),
+        shard_(options.shard.value_or(Shard())),
+        keep_checkpoint_(options.keep_checkpoint || plan.adaptive()),
+        rule_{responses_,
+              model.description().headline.empty() ? all_positions(responses_) : model.description().headline,
+              analysis.conf_level, std::vector<double>(responses_, 0.0)},
+        rounds_(plan, rule_) {
+    collect({});
+  }
+
+  std::size_t begin_round() {
+    pending_.emplace(*part_, shard_, [&](std::size_t pose) { return collect_->units_done(PoseIndex(pose)); });
+    return pending_->size();
+  }
+  PoseUnitEvaluator worker() const { return {*part_, model_}; }
+  PoseUnit solve(PoseUnitEvaluator& evaluate, std::size_t n) const { return evaluate((*pending_)[n]); }
+  const SolveCounts& merge(std::size_t n, const PoseUnit& found) {
+    collect_->add((*pending_)[n].pose, found);
+    return found.solves;
+  }
+  static void write(std::size_t, const PoseUnit& found, ByteWriter& to) { found.write(to); }
+  PoseUnit read(std::size_t n, ByteReader& from) const {
+    return PoseUnit::read(from, responses_, (*pending_)[n].first.value);
+  }
+  SolveCounts solved() const { return collect_->total(); }
+  std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
+  Bytes state() const { return rounds_.state_before(collect_->state()); }
+  void restore(std::span<const std::byte> state) {
+    rounds_ = Rounds(plan_, rule_);
+    ByteReader from(state);
+    rounds_.restore(from);
+    if (from.left() == 0) throw BytesError("is cut off");
+    collect(state.last(from.left()));
+  }
+  bool next_round() {
+    if (!rounds_.go_on([&](std::size_t) { return overall_means(collect_->finished()); })) return false;
+    const Bytes kept = collect_->state();
+    collect_.reset();
+    collect(kept);
+    return true;
+  }
+
+  /// Precondition: every unit was merged, and no round follows.
+  MonteCarloResult result() && {
+    MonteCarloResult result = std::move(*collect_).result();
+    result.convergence = rounds_.result();
+    return result;
+  }
+
+ private:
+  /// Begins the round with these samples.
+  void collect(std::span<const std::byte> kept) {
+    part_.emplace(plan_.with_samples(rounds_.samples(0)));
+    collect_.emplace(*part_, responses_, analysis_, keep_checkpoint_);
+    if (!kept.empty()) collect_->restore(kept);
+  }
+
+  const Plan& plan_;
+  const Model& model_;
+  const Analysis& analysis_;
+  std::size_t responses_;
+  Shard shard_;
+  bool keep_checkpoint_;
+  Rounds::Rule rule_;
+  Rounds rounds_;
+  std::optional<Plan> part_;  ///< the plan with this round's samples
+  std::optional<MonteCarloCollector> collect_;
+  std::optional<PendingUnits> pending_;  ///< of this round
+};
+
+std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
+  const Plan plan(run.study, run.poses);
+  auto result = run_monte_carlo(plan, run.model, run.study.analysis, run.options);
+  if (!result || !run.makes_result()) return std::nullopt;
+  StudyResult found{{}, result->verdicts};
+  found.found = *std::move(result);
+  return found;
+}
+
+MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
+  constexpr std::size_t kNumbers = 8;  // mean, its interval, std, min, max, count, rms
+  const std::size_t responses = study.model().responses.size();
+  // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
+  const std::size_t of_sketch = 3 * study.analysis.quantiles.size() + (study.analysis.judge == Judge::share ? 1 : 0);
+  const std::size_t numbers = responses * (kNumbers + of_sketch) * sizeof(double);
+  const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
+                              responses * (kStoredMoments + (2 + of_sketch) * sizeof(double)) + kStoredSolves,
+                              numbers + sizeof(SolveCounts), numbers + kSolverColumns};
+  MemoryOutlook memory = times(plan.poses().size(), of_pose);
+  if (!plan.adaptive()) return memory;
+  // Packed sketches of finished poses, for the next round.
+  constexpr std::size_t kPackedSketch = 6000;
+  const std::size_t kept =
+      std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
+  memory.accumulators += kept;
+  memory.state += kept;
+  return memory;
+}
+
+Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const auto plan = std::make_shared<const Plan>(study, poses);
+  return {.solves = counted_things(poses.size(), "poses x ") + samples_text(*plan) + " samples of " +
+                    counted_things(plan->factors().size(), "errors together = ") + solves_text(*plan, 1),
+          .memory = monte_carlo_memory(study, *plan),
+          .shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model), 1.0)},
+          .by_one = {},
+          .least = least_share(*plan)};
+}
+
+}  // namespace
+
+std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
+                                                const RunOptions& options) {
+  PoseWork work(plan, model, analysis, options);
+  if (!fold(work, options) || options.shard) return std::nullopt;
+  return std::move(work).result();
+}
+
+constinit const RunKind kMonteCarloRun{run_study_of_kind, monte_carlo_outlook, shards_by_pose};
+
+}  // namespace poesy

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/run_kind.h"
+#include "engine/model/model.h"
+#include "engine/run/run_options.h"
+#include "engine/study/plan.h"
+
+namespace poesy {
+
+/// Runs a Monte Carlo study on a pool of threads: as run_sensitivity, and memory does not grow with the number of
+/// samples either; a pose's samples are dropped once its quantiles are known, but for what MonteCarloCollector keeps
+/// for a longer study. Of the analysis it takes conf_level, quantiles and limits.
+std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
+                                                const RunOptions& options);
+
+/// How Monte Carlo studies are run.
+extern const RunKind kMonteCarloRun;
+
+}  // namespace poesy

@@ -1,0 +1,216 @@
+#include "engine/kinds/sensitivity/run.h"
+
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "engine/kinds/sensitivity/collector.h"
+#include "engine/kinds/sensitivity/fidelity.h"
+#include "engine/kinds/sensitivity/history_points.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/points_radius.h"
+#include "engine/kinds/sensitivity/separation.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/fold.h"
+#include "engine/run/pending_units.h"
+#include "engine/run/rounds.h"
+
+namespace poesy {
+namespace {
+
+/// Below which the index of each error is rounding, [R x P].
+std::vector<double> index_roundings(const Plan& plan, const Model& model) {
+  std::vector<double> list;
+  for (const double rounding : response_rounding(model)) {
+    for (const Distribution& error : plan.distributions()) {
+      list.push_back(index_rounding(rounding, error.standard_deviation()));
+    }
+  }
+  return list;
+}
+
+/// The draws of one error at one pose after the other, in rounds: the work of fold().
+class CellWork {
+ public:
+  CellWork(const Plan& plan, const Model& model, double conf_level, const Shard& shard)
+      : plan_(plan),
+        model_(model),
+        responses_(model.description().responses.size()),
+        conf_level_(conf_level),
+        cells_(shard.of(plan.cells())),
+        points_(history_points(plan)),
+        rule_{responses_, all_positions(responses_), conf_level, index_roundings(plan, model)},
+        rounds_(plan, rule_),
+        collect_(plan, responses_, conf_level) {}
+
+  std::size_t begin_round() {
+    pending_.emplace(
+        plan_, [&](std::size_t cell) { return collect_.units_done(cell); },
+        [&](std::size_t cell) { return cells_.holds(cell) ? rounds_.units(cell / plan_.poses().size()) : 0; });
+    return pending_->size();
+  }
+  UnitEvaluator worker() const { return {plan_, model_}; }
+  SensitivityUnit solve(UnitEvaluator& evaluate, std::size_t n) const { return evaluate((*pending_)[n]); }
+  const SolveCounts& merge(std::size_t n, const SensitivityUnit& found) {
+    collect_.add((*pending_)[n], found);
+    return found.solves;
+  }
+  static void write(std::size_t, const SensitivityUnit& found, ByteWriter& to) { found.write(to); }
+  SensitivityUnit read(std::size_t n, ByteReader& from) const {
+    const WorkUnit unit = (*pending_)[n];
+    return SensitivityUnit::read(from, responses_, unit.first.value, points_within(unit, points_).size());
+  }
+  SolveCounts solved() const { return collect_.total(); }
+  std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
+  Bytes state() const { return rounds_.state_before(collect_.state()); }
+  void restore(std::span<const std::byte> state) {
+    collect_ = SensitivityCollector(plan_, responses_, conf_level_);
+    rounds_ = Rounds(plan_, rule_);
+    ByteReader from(state);
+    rounds_.restore(from);
+    collect_.restore(state.last(from.left()));
+    for (std::size_t cell = 0; cell < plan_.cells(); ++cell) {
+      if (!rounds_.may_hold(cell / plan_.poses().size(), collect_.units_done(cell))) {
+        throw BytesError("has a cell of another round");
+      }
+    }
+  }
+  bool next_round() {
+    return rounds_.go_on([&](std::size_t slot) {
+      return global_indices(collect_.cells_of(slot), plan_.distributions()[slot].standard_deviation(), conf_level_);
+    });
+  }
+
+  /// Precondition: all cells of the plan are there, and no round follows.
+  SensitivityResult result() && {
+    SensitivityResult result =
+        sensitivity_result(plan_, std::move(collect_).cells(), background_responses(plan_, model_),
+                           response_rounding(model_), conf_level_);
+    result.convergence = rounds_.result();
+    if (!plan_.adaptive()) result.history = collect_.history(result);
+    return result;
+  }
+
+ private:
+  const Plan& plan_;
+  const Model& model_;
+  std::size_t responses_;
+  double conf_level_;
+  NumberRange cells_;  ///< of the shard
+  std::vector<std::size_t> points_;
+  Rounds::Rule rule_;
+  Rounds rounds_;
+  SensitivityCollector collect_;
+  std::optional<PendingUnits> pending_;  ///< of this round
+};
+
+std::vector<Dimension> response_dimensions(const ModelDescription& model) {
+  std::vector<Dimension> dimensions;
+  for (const Response& response : model.responses) dimensions.push_back(response.dimension);
+  return dimensions;
+}
+
+/// The study at both of its fidelities, on the same draws.
+std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const Plan& plan) {
+  const Analysis& analysis = run.study.analysis;
+  const auto report = [&](const Progress& progress) {
+    if (run.options.progress) run.options.progress(progress);
+  };
+  // Progress is that of both as one run. A first half that reports none was done by the run that is continued.
+  std::optional<std::uint64_t> before;
+  RunOptions options = run.options;
+  options.progress = [&](const Progress& half) {
+    before = half.before;
+    report({half.solves, 2 * half.total, half.not_converged, half.before});
+  };
+  auto first = run_sensitivity(plan, run.model, analysis.conf_level, options);
+  if (!run.checkpoints().complete()) return std::nullopt;
+  const SolveCounts solves = run.checkpoints().solves();
+  options.progress = [&](const Progress& half) {
+    report({solves.total() + half.solves, solves.total() + half.total, solves.not_converged() + half.not_converged,
+            before.value_or(solves.total()) + half.before});
+  };
+  const std::unique_ptr<Model> other = build_model(at_compared_fidelity(run.study.mechanism));
+  const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
+  if (!first || !second) return std::nullopt;
+  first->fidelity = compare_fidelities(*first, *second, response_dimensions(run.study.model()),
+                                       standard_deviations(run.study), analysis.linearity);
+  return first;
+}
+
+std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
+  const Plan plan(run.study, run.poses);
+  auto result = run.study.mechanism.compared
+                    ? run_both_fidelities(run, plan)
+                    : run_sensitivity(plan, run.model, run.study.analysis.conf_level, run.options);
+  if (!result) return std::nullopt;
+  auto changes = index_changes(plan, run.model, run.options);
+  if (!changes) {
+    run.checkpoints().stopped_after_stages();
+    return std::nullopt;
+  }
+  if (!run.makes_result()) return std::nullopt;
+  result->index_change = *std::move(changes);
+  result->radius_tau = radius_rank_correlations(run.study, plan);
+  if (run.model.description().separation) {
+    result->separation = separate_errors(run.model, plan.poses(), plan.factors(), standard_deviations(run.study));
+  }
+  return StudyResult{*std::move(result), std::nullopt};
+}
+
+std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }
+
+/// Separating the errors of a sensitivity study at one pose of all.
+WorkOutlook separating(const Study& study, const Model& model, const PoseSet& poses) {
+  return {[&](double at) {
+    const auto pose = poses[PoseIndex(static_cast<std::size_t>(at * static_cast<double>(poses.size())))];
+    const PoseSet one(poses.coordinates(), std::vector<double>(pose.begin(), pose.end()));
+    static_cast<void>(separate_errors(model, one, study.analysis.factors, standard_deviations(study)));
+    return 1.0 / static_cast<double>(poses.size());
+  }};
+}
+
+MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size_t fidelities) {
+  const std::size_t responses = study.model().responses.size();
+  const std::size_t numbers = 6 * responses * sizeof(double);  // local, its interval, count, mean, std
+  const std::size_t separated = study.model().separation ? 5 * sizeof(double) : 0;
+  const std::size_t last_units = plan.samples() % Plan::kUnitSamples != 0 ? 2 : 1;  // kept apart from whole ones
+  MemoryOutlook of_cell{last_units * (sizeof(UnitStats) + kAllocation + responses * sizeof(Moments)),
+                        fidelities * (responses * kStoredMoments + kStoredSolves),
+                        fidelities * (numbers + sizeof(SolveCounts)) + separated,
+                        numbers + kSolverColumns + separated + (fidelities - 1) * sizeof(double)};
+  return times(plan.cells(), of_cell);
+}
+
+Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const auto plan = std::make_shared<const Plan>(study, poses);
+  const std::size_t fidelities = study.mechanism.compared ? 2 : 1;
+  const double with_changes = 1.0 + index_change_solves(*plan) / static_cast<double>(plan->solves());
+  Outlook expected{.solves = counted_things(plan->factors().size(), "errors x ") +
+                             counted_things(poses.size(), "poses x ") + samples_text(*plan) + " samples" +
+                             (fidelities == 2 ? " x 2 fidelities" : "") + " = " + solves_text(*plan, fidelities),
+                   .memory = sensitivity_memory(study, *plan, fidelities),
+                   .shared = {sampling<UnitEvaluator>(plan, borrowed(model), with_changes)},
+                   .by_one = {},
+                   .least = least_share(*plan)};
+  if (model.description().separation) expected.by_one.push_back(separating(study, model, poses));
+  if (fidelities == 2) {
+    const std::shared_ptr<const Model> other = build_model(at_compared_fidelity(study.mechanism));
+    expected.shared.push_back(sampling<UnitEvaluator>(plan, other, 1.0));
+  }
+  return expected;
+}
+
+}  // namespace
+
+std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
+                                                 const RunOptions& options) {
+  CellWork work(plan, model, conf_level, options.shard.value_or(Shard()));
+  if (!fold(work, options) || options.shard) return std::nullopt;
+  return std::move(work).result();
+}
+
+constinit const RunKind kSensitivityRun{run_study_of_kind, sensitivity_outlook, cells};
+
+}  // namespace poesy

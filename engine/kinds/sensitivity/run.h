@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/kinds/run_kind.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/model/model.h"
+#include "engine/run/run_options.h"
+#include "engine/study/plan.h"
+
+namespace poesy {
+
+/// Runs a sensitivity study at one fidelity on a pool of threads. Units are merged in plan order, so the result has the
+/// same bits for any number of threads, and whether it was continued from checkpoints or not: also from those of a plan
+/// with fewer samples. Memory does not grow with the number of samples. Empty when stopped, and of a shard.
+std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
+                                                 const RunOptions& options);
+
+/// How sensitivity studies are run.
+extern const RunKind kSensitivityRun;
+
+}  // namespace poesy
