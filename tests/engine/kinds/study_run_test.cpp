@@ -25,22 +25,22 @@ TEST(RunStudy, FindsASensitivityStudysResultAndItsChanges) {
   const auto& found = result->as<SensitivityResult>();
   EXPECT_EQ(bits_of(found), run(prepared, {}));
   EXPECT_EQ(found.index_change.size(), 4u);
-  EXPECT_FALSE(verdicts_of(*result));
+  EXPECT_FALSE(result->verdicts);
 }
 
 TEST(RunStudy, FindsWhatTheRunOfAMonteCarloStudyFinds) {
   const Prepared prepared(study_of(Kind::monte_carlo, 200));
   const auto result = run_study(prepared.study, *prepared.model, prepared.plan.poses(), {.threads = 2});
   ASSERT_TRUE(result);
-  EXPECT_EQ(bits_of(std::get<MonteCarloResult>(*result)), run(prepared, {}));
+  EXPECT_EQ(bits_of(result->as<MonteCarloResult>()), run(prepared, {}));
 }
 
 TEST(RunStudy, JudgesTheLimitsOfCases) {
   const auto result = run_study(with_cases());
   ASSERT_TRUE(result);
-  EXPECT_EQ(std::get<CaseResult>(*result).evaluation.samples, 2u);
-  ASSERT_TRUE(verdicts_of(*result));
-  EXPECT_FALSE(verdicts_of(*result)->passed());
+  EXPECT_EQ(result->as<CaseResult>().evaluation.samples, 2u);
+  ASSERT_TRUE(result->verdicts);
+  EXPECT_FALSE(result->verdicts->passed());
 }
 
 TEST(RunStudy, GivesNothingWhenItIsStopped) {
