@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/files/result_file.h"
+#include "engine/report/tables.h"
+#include "engine/run/result.h"
+
+/// What a file keeps of an identification.
+namespace poesy {
+
+/// What an identification says, read back.
+struct StoredIdentification : IdentificationResult {
+  std::vector<ErrorSize> sizes;  ///< [G] of the errors, by group
+};
+
+/// Precondition: the result of an identification.
+inline const StoredIdentification& identification_of(const StoredResult& result) {
+  return found_of<StoredIdentification>(result);
+}
+
+/// The errors that deform, limb by limb as far as their order goes, with the counts of poses
+/// behind the verdicts; then the couplings, where there are any.
+std::vector<Table> identification_tables(const StoredResult& result, const TableOptions& options = {});
+
+}  // namespace poesy
