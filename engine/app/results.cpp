@@ -13,11 +13,11 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/files/shard_file.h"
+#include "engine/kinds/result_file.h"
+#include "engine/kinds/study_run.h"
 #include "engine/report/solves.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
-#include "engine/kinds/result_file.h"
-#include "engine/kinds/study_run.h"
 
 namespace poesy::app {
 namespace {

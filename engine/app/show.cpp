@@ -14,14 +14,14 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/study/error_words.h"
 #include "engine/files/result_file.h"
+#include "engine/files/stored_study.h"
+#include "engine/kinds/result_kinds.h"
 #include "engine/report/display.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
-#include "engine/kinds/result_kinds.h"
-#include "engine/files/stored_study.h"
+#include "engine/study/error_words.h"
 #include "models/registry.h"
 
 namespace poesy::app {

@@ -6,8 +6,8 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/sha256.h"
-#include "engine/study/study_file.h"
 #include "engine/files/version.h"
+#include "engine/study/study_file.h"
 
 namespace poesy {
 namespace {

@@ -18,8 +18,7 @@ Fields<ConvergenceResult> end_fields(const CourseWords& words) {
 
 CsvTable end_table(const StoredResult& result, const CourseWords& words, const ConvergenceResult& found) {
   const std::size_t slots = found.samples.size();
-  CsvTable table{
-      "convergence", {words.csv_slot, [&](std::size_t slot) { return result.varied[slot]; }}, slots};
+  CsvTable table{"convergence", {words.csv_slot, [&](std::size_t slot) { return result.varied[slot]; }}, slots};
   table.columns.push_back(list_column("samples", found.samples));
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const std::string& response = result.responses[r].name;
@@ -66,10 +65,9 @@ void append_course_tables(CsvTables& tables, const StoredResult& result, const C
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
     const std::size_t lines = found.value.size() / result.responses.size();
-    CsvTable table{
-        words.csv + response.name,
-        {words.csv_slot, [&, numbers](std::size_t line) { return result.varied[line / numbers]; }},
-        lines};
+    CsvTable table{words.csv + response.name,
+                   {words.csv_slot, [&, numbers](std::size_t line) { return result.varied[line / numbers]; }},
+                   lines};
     table.columns.push_back(
         {"samples", [&, numbers](std::size_t line) { return static_cast<double>(found.samples[line % numbers]); }});
     for (std::size_t k = 0; k < words.group.fields.size(); ++k) {

@@ -66,7 +66,7 @@ struct StoredResult {
   std::vector<Failure> failures;                 ///< the first; their slots are positions in `varied`
   std::optional<ConvergenceResult> convergence;  ///< where the study had adaptive samples
   std::optional<LimitVerdicts> verdicts;         ///< where the study states limits
-  std::vector<std::string> row_names;            ///< of the rows of errors that verdicts name; empty: they have no names
+  std::vector<std::string> row_names;  ///< of the rows of errors that verdicts name; empty: they have no names
 
   std::any found;  ///< what the kind alone found, of the kind's own type: found_of()
 };
@@ -82,8 +82,8 @@ const Found& found_of(const StoredResult& result) {
 /// What a failure's address says where all errors vary together.
 inline constexpr std::string_view kAllFactors = "all";
 
-/// Reads a result file of a kind that find_kind knows. Throws FileError when it is not one, or of a newer major version.
-/// One that was changed since it was written is read as it is, and says so.
+/// Reads a result file of a kind that find_kind knows. Throws FileError when it is not one, or of a newer major
+/// version. One that was changed since it was written is read as it is, and says so.
 StoredResult read_result(const std::string& path, FindFileKind find_kind);
 
 /// What a recomputed content hash is compared with.
@@ -97,8 +97,8 @@ struct Verification {
 /// Recomputes the content hash of a result file. Throws FileError when it cannot be read as one.
 Verification verify_result(const std::string& path);
 
-/// Writes every table of a result of this kind as CSV into a folder, made if missing: one file per table, first line the
-/// column names with their units. engine/RESULT_FILE.md lists them. Only the first column may hold text (names of
+/// Writes every table of a result of this kind as CSV into a folder, made if missing: one file per table, first line
+/// the column names with their units. engine/RESULT_FILE.md lists them. Only the first column may hold text (names of
 /// factors), nothing is quoted: in Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns
 /// the paths of the files written. Throws FileError; InputError where a file in the folder is not poesy's.
 std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder);

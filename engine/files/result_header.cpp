@@ -4,8 +4,8 @@
 #include "engine/files/content_hash.h"
 #include "engine/files/poesy_file.h"
 #include "engine/files/result_parts.h"
-#include "engine/study/study_file.h"
 #include "engine/files/version.h"
+#include "engine/study/study_file.h"
 
 namespace poesy {
 namespace {

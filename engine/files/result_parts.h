@@ -12,7 +12,8 @@
 #include "engine/files/result_file.h"
 #include "engine/run/shard.h"
 
-/// The parts that result files of all or of several kinds have: for each how it is written, read back, and shown as CSV.
+/// The parts that result files of all or of several kinds have: for each how it is written, read back, and shown as
+/// CSV.
 namespace poesy {
 
 /// 0 .. count - 1, the values of an axis that has no names.

@@ -20,7 +20,8 @@ constexpr std::array kResultKinds{
 }  // namespace
 
 const ResultKind* find_result_kind(std::string_view name) {
-  const auto* const found = std::ranges::find(kResultKinds, name, [](const ResultKind& kind) { return kind.file.name; });
+  const auto* const found =
+      std::ranges::find(kResultKinds, name, [](const ResultKind& kind) { return kind.file.name; });
   return found == kResultKinds.end() ? nullptr : found;
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "engine/files/result_file.h"
-#include "engine/report/table.h"
 #include "engine/report/rankings.h"
+#include "engine/report/table.h"
 
 namespace poesy {
 

@@ -29,7 +29,8 @@ std::string ranked_text(char letter, const RankedResult& ranked) {
                                           : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
   if (!result.metric.empty()) text += "; metric: " + metric_text(result);
   return text + fmt::format("; ranked by {}; {} of {} did not converge", ranked.response,
-                            count_text(ranked.solves.not_converged()), counted(ranked.solves.total(), "solve", "solves"));
+                            count_text(ranked.solves.not_converged()),
+                            counted(ranked.solves.total(), "solve", "solves"));
 }
 
 }  // namespace poesy

@@ -28,8 +28,8 @@ struct ReportKind {
   std::vector<Table> (*tables)(const StoredResult&, const TableOptions&);  ///< those that not every kind has
   /// Puts the errors of two results in order beside each other; null: it ranks nothing.
   TwoRankings (*two_rankings)(const RankedResult& a, const RankedResult& b, RowOrder order) = nullptr;
-  Settling (*settling)(const StoredResult&) = nullptr;                     ///< null: it is not sampled
-  StudyWords (*words)(const StoredResult&);                                ///< for the list of what was run
+  Settling (*settling)(const StoredResult&) = nullptr;  ///< null: it is not sampled
+  StudyWords (*words)(const StoredResult&);             ///< for the list of what was run
   /// Adds warnings of its own; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
   ShownCells (*shown_cells)(const StoredResult&);                            ///< what its figures by pose show

@@ -54,8 +54,7 @@ std::string count_line(std::uint64_t failed, std::uint64_t solves) {
 std::string line_of_both(const SolveCounts& first, const SecondFidelity& second) {
   return fmt::format("{}: {} at fidelity \"{}\", {} at \"{}\"",
                      count_line(first.not_converged() + second.not_converged, first.total() + second.total),
-                     count_text(first.not_converged()), second.first, count_text(second.not_converged),
-                     second.second);
+                     count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
 }
 
 /// Which of the failures the result lists.
@@ -124,8 +123,7 @@ std::string failures_text(const StoredResult& result, const SolveTally& tally, c
                           std::size_t width) {
   const SolveCounts solves = tally.total();
   std::string text = prose_of(
-      tally.second ? line_of_both(solves, *tally.second) : count_line(solves.not_converged(), solves.total()),
-      width);
+      tally.second ? line_of_both(solves, *tally.second) : count_line(solves.not_converged(), solves.total()), width);
   if (result.failures.empty()) return text;
   const Failure& first = result.failures.front();
   const std::string name = printable(result.varied[first.slot], std::string::npos);

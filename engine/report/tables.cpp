@@ -86,7 +86,8 @@ std::string summary_text(const StoredResult& result, const SolveTally& tally, st
   const RunFacts& facts = result.facts;
   const double per_second =
       static_cast<double>(facts.solves) / std::max(facts.wall_seconds, std::numeric_limits<double>::min());
-  const std::string each = tally.second ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
+  const std::string each =
+      tally.second ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
   std::string text = prose_of(result.title, width);
   text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
                                counted(result.poses.size(), "pose", "poses"), result.poesy_version),

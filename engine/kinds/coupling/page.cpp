@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include "engine/kinds/result_kinds.h"
 #include "engine/kinds/coupling/stored.h"
+#include "engine/kinds/result_kinds.h"
 #include "engine/report/display.h"
 
 namespace poesy {

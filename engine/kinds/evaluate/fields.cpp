@@ -246,12 +246,11 @@ void append_solve_columns(CsvTable& table, const StoredResult& result, const At&
 CsvTable solve_table(const StoredResult& result) {
   const StoredEvaluation& stored = evaluation_of(result);
   const std::size_t samples = stored.evaluation.samples;
-  CsvTable table{"evaluate",
-                 {labelled(stored.labels, "pose"),
-                  [&, samples](std::size_t at) {
-                    return labelled(stored.labels, row_of_solve(stored, at), at / samples);
-                  }},
-                 stored.evaluation.status.size()};
+  CsvTable table{
+      "evaluate",
+      {labelled(stored.labels, "pose"),
+       [&, samples](std::size_t at) { return labelled(stored.labels, row_of_solve(stored, at), at / samples); }},
+      stored.evaluation.status.size()};
   table.columns.push_back({"sample", [samples](std::size_t at) { return static_cast<double>(at % samples); }});
   append_solve_columns(table, result, std::identity());
   return table;
@@ -302,8 +301,7 @@ CsvTable error_table(const StoredResult& result) {
 /// A line for each row of errors that has a label.
 CsvTable part_table(const StoredResult& result) {
   const RowLabels& labels = evaluation_of(result).labels;
-  CsvTable table{
-      "parts", {labels.column, [&](std::size_t row) { return labels.names[row]; }}, labels.names.size()};
+  CsvTable table{"parts", {labels.column, [&](std::size_t row) { return labels.names[row]; }}, labels.names.size()};
   const auto append = [&](const std::string& heading, const std::vector<RowOutcome>& outcomes, auto member) {
     table.columns.push_back(
         {heading, [outcomes, member](std::size_t row) { return static_cast<double>(outcomes[row].*member); }});

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <span>
 
-#include "engine/kinds/result_kinds.h"
-#include "engine/kinds/evaluate/stored.h"
 #include "engine/base/nan.h"
+#include "engine/kinds/evaluate/stored.h"
+#include "engine/kinds/result_kinds.h"
 #include "engine/report/display.h"
 
 namespace poesy {
@@ -130,8 +130,10 @@ void add_rows(const StoredResult& result, const PoseFigures& figures, Page& page
 
 std::string rows_text(const StoredResult& result) {
   const std::string poses = counted(result.poses.size(), "pose", "poses");
-  if (evaluation_of(result).pairing == Pairing::row_by_row) return fmt::format("{}, each with a row of errors of its own.", poses);
-  return fmt::format("{} of errors, each at {}.", counted(evaluation_of(result).evaluation.samples, "row", "rows"), poses);
+  if (evaluation_of(result).pairing == Pairing::row_by_row)
+    return fmt::format("{}, each with a row of errors of its own.", poses);
+  return fmt::format("{} of errors, each at {}.", counted(evaluation_of(result).evaluation.samples, "row", "rows"),
+                     poses);
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {

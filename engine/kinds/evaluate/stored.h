@@ -30,7 +30,8 @@ inline const StoredEvaluation& evaluation_of(const StoredResult& result) { retur
 /// The errors of its solves.
 GivenErrors evaluated_errors(const StoredResult& result);
 
-/// What a limit calls the rows of errors: "part 17" where they have labels, "sample 3" where every pose had all of them.
+/// What a limit calls the rows of errors: "part 17" where they have labels, "sample 3" where every pose had all of
+/// them.
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows);
 
 /// Writes the result of `poesy evaluate`, which takes poses and errors from tables; as write_result.

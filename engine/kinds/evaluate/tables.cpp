@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/kinds/evaluate/stored.h"
 #include "engine/kinds/evaluate/row_outcomes.h"
+#include "engine/kinds/evaluate/stored.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 
@@ -55,9 +55,9 @@ std::string worst_note(const StoredResult& result, std::size_t r) {
   const std::size_t worst = worst_row(outcomes);
   if (worst == outcomes.size()) return {};
   const NamedUnit& response = result.responses[r];
-  return fmt::format("{} {} is worst in {}: {} at {}{}", labels.column, labels.names[worst],
-                     response.name, response_text(response, outcomes[worst].extreme),
-                     place_text(result, outcomes[worst].pose), passes(result, r));
+  return fmt::format("{} {} is worst in {}: {} at {}{}", labels.column, labels.names[worst], response.name,
+                     response_text(response, outcomes[worst].extreme), place_text(result, outcomes[worst].pose),
+                     passes(result, r));
 }
 
 Table parts_table(const StoredResult& result) {
@@ -118,7 +118,8 @@ Table cases_table(const StoredResult& result) {
 
 Table evaluation_table(const StoredResult& result) {
   std::vector<Summary> found;
-  for (std::size_t r = 0; r < result.responses.size(); ++r) found.push_back(summary(evaluation_of(result).evaluation, r));
+  for (std::size_t r = 0; r < result.responses.size(); ++r)
+    found.push_back(summary(evaluation_of(result).evaluation, r));
   const auto number = [&](const std::string& name, double Summary::*member) {
     return FilledColumn{number_column(name, name), [&, member](std::size_t r) {
                           return value_cell(found[r].*member, result.responses[r], kDigits);

@@ -49,7 +49,8 @@ void append_group_columns(CsvTable& table, const StoredResult& result, const std
                           const FieldRow<Identification>& field) {
   for (std::size_t g = 0; g < identification_of(result).groups; ++g) {
     const std::string heading = prefix + "group_" + std::to_string(g + 1);
-    table.columns.push_back(field_column<Identification>(heading, field, identification_of(result), g * result.factors.size()));
+    table.columns.push_back(
+        field_column<Identification>(heading, field, identification_of(result), g * result.factors.size()));
   }
 }
 

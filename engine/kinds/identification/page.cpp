@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "engine/kinds/result_kinds.h"
 #include "engine/kinds/identification/stored.h"
+#include "engine/kinds/result_kinds.h"
 #include "engine/report/display.h"
 
 namespace poesy {

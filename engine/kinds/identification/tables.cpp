@@ -45,7 +45,8 @@ Table verdict_table(const StoredResult& result) {
       {text_column("verdict", "verdict"), [&](std::size_t p) { return text_cell(verdict(found, p)); }}};
   for (std::size_t g = 0; g < found.groups; ++g) {
     columns.push_back(
-        {number_column(fmt::format("deforming_poses_{}", g + 1), identification_of(result).sizes[g].name, "", static_cast<int>(g)),
+        {number_column(fmt::format("deforming_poses_{}", g + 1), identification_of(result).sizes[g].name, "",
+                       static_cast<int>(g)),
          [&, g](std::size_t p) { return count_cell(found.poses - found.single_below[g * found.factors + p]); }});
   }
   fill(table, positions(found.factors), columns);
@@ -59,9 +60,9 @@ Table coupling_rows(const StoredResult& result) {
                           number_column("deforming_poses", "poses")},
               .notes = {fmt::format("poses: where the two deform, of {}", identification_of(result).poses)}};
   for (const Coupling& coupling : identification_of(result).couplings) {
-    table.rows.push_back({text_cell(result.factors[coupling.first].name),
-                          text_cell(result.factors[coupling.second].name),
-                          text_cell(identification_of(result).sizes[coupling.group].name), count_cell(coupling.deforming_poses)});
+    table.rows.push_back(
+        {text_cell(result.factors[coupling.first].name), text_cell(result.factors[coupling.second].name),
+         text_cell(identification_of(result).sizes[coupling.group].name), count_cell(coupling.deforming_poses)});
   }
   return table;
 }

@@ -169,7 +169,8 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
   add_sigma(result, study);
   result.add_axis("quantile", found.levels, {"1", "Share of the samples below the quantile"});
   result.add_axis("bin", axis_numbers(bins), {"1", "Number of the histogram's bin, from 0"});
-  result.add_axis("edge", axis_numbers(bins + 1), {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
+  result.add_axis("edge", axis_numbers(bins + 1),
+                  {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
   write_group(result, kMonteCarlo, found);
   if (!found.share_magnitude.empty()) {
     result.file().set_attribute("/monte_carlo/share_magnitude", "share", study.analysis.share);

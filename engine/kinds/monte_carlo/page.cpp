@@ -3,9 +3,9 @@
 #include <optional>
 #include <span>
 
-#include "engine/kinds/result_kinds.h"
-#include "engine/kinds/monte_carlo/stored.h"
 #include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/stored.h"
+#include "engine/kinds/result_kinds.h"
 #include "engine/report/display.h"
 
 namespace poesy {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/kinds/monte_carlo/stored.h"
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/stored.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/figures.h"
+#include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/two_rankings.h"
-#include "engine/kinds/sensitivity/indices.h"
+#include "engine/report/display.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/tolerance.h"
 

@@ -146,7 +146,8 @@ void append_local_tables(CsvTables& tables, const StoredResult& result) {
       const NamedUnit& response = result.responses[r];
       const std::size_t first = r * result.factors.size() * result.poses.size();
       CsvTable table = lines_of_factors(result, field.name + "_" + response.name);
-      append_pose_columns<Indices>(table, result, field, sensitivity_of(result), first, csv_unit(field.unit, result, &response));
+      append_pose_columns<Indices>(table, result, field, sensitivity_of(result), first,
+                                   csv_unit(field.unit, result, &response));
       tables.push_back(std::move(table));
     }
   }

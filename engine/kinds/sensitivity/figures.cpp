@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/ranking.h"
+#include "engine/report/display.h"
 #include "engine/stats/rank_correlation.h"
 
 namespace poesy {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/ranking.h"
+#include "engine/report/display.h"
 #include "engine/stats/sensitivity_index.h"
 
 namespace poesy {

@@ -8,14 +8,14 @@
 #include <span>
 
 #include "engine/kinds/result_kinds.h"
-#include "engine/kinds/sensitivity/ranking.h"
-#include "engine/kinds/sensitivity/tolerance_files.h"
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/figures.h"
 #include "engine/kinds/sensitivity/index_change.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/tolerance_table.h"
 #include "engine/kinds/sensitivity/two_rankings.h"
-#include "engine/kinds/sensitivity/indices.h"
+#include "engine/report/display.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/tolerance.h"
 
@@ -119,7 +119,8 @@ std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::s
     list.push_back({"effect on " + response.name, unit_text(response),
                     figures.add(fmt::format("effect/{}", r), in_order(local_effects(result, r), rows), response)});
   }
-  list.push_back({"not converged", "%", figures.add("not_converged", in_order(sensitivity_tally(result).shares(), rows), 0.01)});
+  list.push_back(
+      {"not converged", "%", figures.add("not_converged", in_order(sensitivity_tally(result).shares(), rows), 0.01)});
   return list;
 }
 

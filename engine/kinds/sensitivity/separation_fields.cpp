@@ -46,9 +46,8 @@ CsvTable share_table(const StoredResult& result, const SeparationResult& found) 
   }
   const std::vector<std::string>& of_errors = sensitivity_of(result).published_class;
   for (const std::string& published : classes_of(of_errors)) {
-    table.columns.push_back({"published_" + published, [&of_errors, published](std::size_t p) {
-                               return of_errors[p] == published ? 1.0 : 0.0;
-                             }});
+    table.columns.push_back({"published_" + published,
+                             [&of_errors, published](std::size_t p) { return of_errors[p] == published ? 1.0 : 0.0; }});
   }
   return table;
 }

@@ -130,8 +130,8 @@ void check_prediction(const StoredResult& result, const MeanSquare& response, co
 }
 
 LimitTolerances tolerances_within_limit(const TolerancesOptions& options, const StoredResult& result,
-                                        const ResponseStudy& study, const MeanSquare& response,
-                                        const NamedUnit& named, const Catalog& catalog) {
+                                        const ResponseStudy& study, const MeanSquare& response, const NamedUnit& named,
+                                        const Catalog& catalog) {
   const double limit = positive(*options.limit, "--limit", named);
   check_prediction(result, response, named.name);
   if (limit * limit <= response.background) {
@@ -226,7 +226,8 @@ std::string set_sensitivity_tolerances(const StoredResult& result, const Toleran
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
-  if (options.limit) found.limit = tolerances_within_limit(options, result, study, found.all.mean_square, named, catalog);
+  if (options.limit)
+    found.limit = tolerances_within_limit(options, result, study, found.all.mean_square, named, catalog);
   found.caveat = caveat_of(options, result, found);
   Table table = tolerance_table(result, found);
   if (const auto note = perfect_errors_note(result, catalog)) table.notes.push_back(*note);

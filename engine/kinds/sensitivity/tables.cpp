@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/kinds/sensitivity/index_change.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/report/display.h"
-#include "engine/kinds/sensitivity/index_change.h"
 #include "engine/report/tables.h"
 
 namespace poesy {
@@ -214,8 +214,8 @@ std::vector<std::string> fidelity_notes(const StoredResult& result, const Fideli
 Table fidelity_table(const StoredResult& result, const RankedErrors& ranked) {
   const FidelityResult& found = *sensitivity_of(result).fidelity;
   Table table{.name = "fidelity",
-              .caption = fmt::format("Fidelity \"{}\" against \"{}\" on the same draws", sensitivity_of(result).fidelities[1],
-                                     sensitivity_of(result).fidelities[0]),
+              .caption = fmt::format("Fidelity \"{}\" against \"{}\" on the same draws",
+                                     sensitivity_of(result).fidelities[1], sensitivity_of(result).fidelities[0]),
               .columns = {},
               .notes = fidelity_notes(result, found),
               .ranked = true};

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/index_change.h"
 #include "engine/kinds/sensitivity/ranking.h"
+#include "engine/report/display.h"
 
 namespace poesy {
 namespace {
@@ -138,7 +138,8 @@ std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTole
       name_column(result.factors, "error"),
       {text_column("kind", "kind", 4),
        [&](std::size_t p) { return text_cell(error_kind(dimension_of(result.factors[p].unit))); }},
-      {number_column("limb", "limb", "", 3), [&](std::size_t p) { return count_cell(sensitivity_of(result).factor_limb[p]); }},
+      {number_column("limb", "limb", "", 3),
+       [&](std::size_t p) { return count_cell(sensitivity_of(result).factor_limb[p]); }},
       tolerance("equal_effect", "equal effect", tolerances.all.equal_effect)};
   if (tolerances.limit) {
     list.push_back(tolerance("limit_equal_effect", "limit, equal effect", tolerances.limit->equal_effect));

@@ -82,7 +82,8 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
     section.paragraph(unsolved_text(stored, outcomes) +
                       " Each is counted where it happened. Whether the numbers above leave such solves out is the "
                       "study's choice, not_converged under [solver].");
-    if (many_not_converged(stored, total.not_converged(), total.total())) add_figures(kind, stored, outcomes, page, section);
+    if (many_not_converged(stored, total.not_converged(), total.total()))
+      add_figures(kind, stored, outcomes, page, section);
   }
   if (const std::optional<SecondFidelity>& second = outcomes.second) {
     const std::string solves = count_text(second->total);

@@ -6,9 +6,8 @@
 #include <variant>
 
 #include "engine/base/error.h"
-#include "engine/files/result_file.h"
+#include "engine/kinds/result_file.h"
 #include "engine/study/study_file.h"
-#include "engine/kinds/study_run.h"
 #include "models/registry.h"
 
 namespace {
@@ -43,7 +42,7 @@ bool run_file(const std::string& path, const std::string& result_path) {
   const poesy::SelectedPoses poses = poesy::select_poses(study.poses, *model);
   const auto result = poesy::run_study(study, *model, poses.poses);
   if (!result) return false;
-  poesy::write_result(result_path, study, poses, *result, {});
+  poesy::write_result(result_path, study, poses, poesy::found_in(*result), {});
   const auto& found = std::get<poesy::SensitivityResult>(*result);
   std::printf("%s: %zu errors at %zu poses\n", path.c_str(), found.factors, found.poses);
   return some_index_is_positive(found);
