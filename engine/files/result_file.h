@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <typeinfo>
 #include <vector>
 
 #include "engine/base/contract.h"
@@ -74,9 +75,8 @@ struct StoredResult {
 /// What a kind alone found. Precondition: `result` is of the kind that has this type.
 template <class Found>
 const Found& found_of(const StoredResult& result) {
-  const Found* found = std::any_cast<Found>(&result.found);
-  POESY_EXPECTS(found != nullptr);
-  return *found;
+  POESY_EXPECTS(result.found.type() == typeid(Found));
+  return std::any_cast<const Found&>(result.found);
 }
 
 /// What a failure's address says where all errors vary together.
