@@ -58,9 +58,6 @@ ExitCode judge_limits(const StoredResult& result, const std::string& study_path,
 StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
                            const std::optional<LimitVerdicts>& verdicts);
 
-/// The study that a result holds; none where this program cannot read it.
-std::optional<Study> study_in(const StoredResult& result);
-
 /// Reads a result, and warns on stderr where it was changed since it was written. Throws FileError.
 StoredResult read_result_with_warning(const std::string& path);
 

@@ -34,4 +34,12 @@ StoredStudy stored_study(const StoredResult& result, const std::string& path, co
   return stored_study(result.study_text, std::move(poses), path, catalog);
 }
 
+std::optional<Study> study_in(const StoredResult& result, const Catalog& catalog) {
+  try {
+    return study_of_text(result.study_text, "the study in the result", catalog, StudyUse::evaluate);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace poesy

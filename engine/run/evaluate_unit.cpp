@@ -1,12 +1,13 @@
 #include "engine/run/evaluate_unit.h"
 
+#include "engine/run/history_points.h"
+
 #include <algorithm>
 #include <array>
 
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
 #include "engine/run/counts.h"
-#include "engine/kinds/sensitivity/history_points.h"
 
 namespace poesy {
 namespace {

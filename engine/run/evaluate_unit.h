@@ -38,7 +38,7 @@ struct SensitivityUnit : UnitStats {
   static SensitivityUnit read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points);
 };
 
-/// Those of the history points (engine/kinds/sensitivity/history_points.h) that lie between the unit's samples; only in the first
+/// Those of the history points (engine/run/history_points.h) that lie between the unit's samples; only in the first
 /// unit of a cell there are any. Refers to the points.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
 

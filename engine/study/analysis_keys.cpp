@@ -6,7 +6,6 @@
 #include "engine/base/text.h"
 #include "engine/study/keys.h"
 #include "engine/study/study_text.h"
-#include "engine/kinds/coupling/rows.h"
 
 namespace poesy {
 namespace {

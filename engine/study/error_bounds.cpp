@@ -3,7 +3,6 @@
 #include "engine/base/text.h"
 #include "engine/study/error_words.h"
 #include "engine/study/keys.h"
-#include "engine/kinds/coupling/rows.h"
 
 namespace poesy {
 namespace {

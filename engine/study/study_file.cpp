@@ -9,7 +9,6 @@
 #include "engine/base/text.h"
 #include "engine/study/keys.h"
 #include "engine/study/text_file.h"
-#include "engine/kinds/coupling/rows.h"
 #include "engine/schema/keys_section.h"
 
 namespace poesy {

@@ -58,7 +58,7 @@ void write_sensitivity_seed(const std::string& path) {
   fidelity.linear = {1, 0};
   fidelity.not_converged = {0, 1, 2, 3, 4, 5, 6, 7};
   result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::singular}}};
-  write_sensitivity(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_convergence_seed(const std::string& path) {
@@ -77,7 +77,7 @@ void write_convergence_seed(const std::string& path) {
   convergence.relative_half_width.assign(indices, 0.5);
   convergence.samples.assign(result.factors, 2000);
   example.study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
-  write_sensitivity(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_shard_seed(const std::string& path) {
@@ -92,7 +92,7 @@ void write_cases_seed(const std::string& path) {
   example.study.analysis.cases = {
       {"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}, {"none", {0.0, 0.0, 0.0}}};
   const CaseResult result = case_result(example.evaluation(Pairing::every_pose_with_every_row), NotConverged::include);
-  write_cases(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_identification_seed(const std::string& path) {
@@ -116,7 +116,7 @@ void write_identification_seed(const std::string& path) {
   result.coupled = {1, 1};
   result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
   result.solves.by_status = {5, 4, 3, 2, 1};
-  write_identification(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_results(const std::string& folder) {

@@ -6,7 +6,7 @@
 
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/kinds/sensitivity/fidelity.h"
-#include "engine/kinds/sensitivity/history_points.h"
+#include "engine/run/history_points.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/linearity.h"
 #include "engine/kinds/sensitivity/points_radius.h"

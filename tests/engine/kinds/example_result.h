@@ -8,9 +8,12 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/stored.h"
 #include "engine/kinds/identification/identification.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/stored.h"
 #include "engine/run/evaluation.h"
 #include "tests/support/fake_model.h"
 
@@ -262,23 +265,23 @@ class Example {
   }
 
   void write_sensitivity(const std::string& path) const {
-    poesy::write_sensitivity(path, study, poses, sensitivity(), facts);
+    poesy::write_result(path, study, poses, sensitivity(), facts);
   }
   void write_monte_carlo(const std::string& path) {
     const MonteCarloResult result = monte_carlo();
-    poesy::write_monte_carlo(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_coupling(const std::string& path) {
     const CouplingResult result = coupling();
-    poesy::write_coupling(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_cases(const std::string& path) {
     const CaseResult result = cases();
-    poesy::write_cases(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_identification(const std::string& path) {
     const IdentificationResult result = identification();
-    poesy::write_identification(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_evaluation(const std::string& path, Pairing pairing) const {
     poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);

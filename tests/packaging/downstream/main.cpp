@@ -3,10 +3,9 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <variant>
 
 #include "engine/base/error.h"
-#include "engine/files/result_file.h"
+#include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/study_run.h"
 #include "engine/study/study_file.h"
@@ -44,7 +43,7 @@ bool run_file(const std::string& path, const std::string& result_path) {
   const poesy::SelectedPoses poses = poesy::select_poses(study.poses, *model);
   const auto result = poesy::run_study(study, *model, poses.poses);
   if (!result) return false;
-  poesy::write_result(result_path, study, poses, *result, {});
+  poesy::write_result(result_path, study, poses, result->found, {});
   const auto& found = result->as<poesy::SensitivityResult>();
   std::printf("%s: %zu errors at %zu poses\n", path.c_str(), found.factors, found.poses);
   return some_index_is_positive(found);

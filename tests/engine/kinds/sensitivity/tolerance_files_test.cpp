@@ -14,6 +14,7 @@
 #include "engine/study/study_file.h"
 #include "engine/study/study_text.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/engine/kinds/stored.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -28,7 +29,7 @@ class ToleranceFiles : public testing::Test {
   StoredResult written(const std::vector<double>& index) {
     SensitivityResult found = example_.sensitivity();
     found.global = index;
-    write_sensitivity(path_, example_.study, example_.poses, found, example_.facts);
+    write_result(path_, example_.study, example_.poses, found, example_.facts);
     return read_result(path_);
   }
 
@@ -50,9 +51,9 @@ class ToleranceFiles : public testing::Test {
 TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
   example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
   const StoredResult stored = written({1.0, 2.0, 3.0, 4.0});
-  EXPECT_EQ(stored.factor_limb, (std::vector<std::uint64_t>{1, 1}));
-  ASSERT_EQ(stored.tolerance_reference.size(), 2U);
-  for (const auto& reference : stored.tolerance_reference) {
+  EXPECT_EQ(sensitivity_of(stored).factor_limb, (std::vector<std::uint64_t>{1, 1}));
+  ASSERT_EQ(sensitivity_of(stored).tolerance_reference.size(), 2U);
+  for (const auto& reference : sensitivity_of(stored).tolerance_reference) {
     ASSERT_TRUE(reference);
     EXPECT_EQ(reference->factor, 1U);  // delta_1 is the second that the study varies
     EXPECT_EQ(reference->tolerance, 3e-3);
@@ -61,9 +62,9 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
 
 TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
   const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: 2.9e-6 and 2e-3
-  EXPECT_EQ(stored.tolerance_reference[0]->factor, 0U);
-  EXPECT_EQ(stored.tolerance_reference[0]->tolerance, kDegree);
-  EXPECT_FALSE(stored.tolerance_reference[1]);
+  EXPECT_EQ(sensitivity_of(stored).tolerance_reference[0]->factor, 0U);
+  EXPECT_EQ(sensitivity_of(stored).tolerance_reference[0]->tolerance, kDegree);
+  EXPECT_FALSE(sensitivity_of(stored).tolerance_reference[1]);
 }
 
 TEST_F(ToleranceFiles, ReferenceWithoutEffectLeavesTolerancesUnknown) {
@@ -213,7 +214,7 @@ TEST_F(ToleranceFiles, ExportHasTheSameRows) {
 TEST_F(ToleranceFiles, ExportLeavesThemOutWithoutABackground) {
   StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
   EXPECT_TRUE(has_tolerances(stored));
-  stored.sensitivity.background.clear();
+  sensitivity_in(stored).background.clear();
   EXPECT_FALSE(has_tolerances(stored));
   for (const std::string& path : export_tables(stored, folder_ / "tables")) {
     EXPECT_EQ(path.find("tolerances"), std::string::npos) << path;

@@ -1,0 +1,10 @@
+#include "engine/kinds/coupling/kind.h"
+
+#include "engine/kinds/coupling/run.h"
+#include "engine/kinds/coupling/stored.h"
+
+namespace poesy {
+
+constinit const Kind kCouplingKind{.run = kCouplingRun, .file = kCouplingFile, .report = kCouplingReport};
+
+}  // namespace poesy

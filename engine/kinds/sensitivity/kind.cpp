@@ -1,0 +1,12 @@
+#include "engine/kinds/sensitivity/kind.h"
+
+#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/sensitivity/set_tolerances.h"
+#include "engine/kinds/sensitivity/stored.h"
+
+namespace poesy {
+
+constinit const Kind kSensitivityKind{.run = kSensitivityRun, .file = kSensitivityFile, .report = kSensitivityReport,
+                              .set_tolerances = set_sensitivity_tolerances};
+
+}  // namespace poesy
