@@ -10,11 +10,11 @@
 #include "engine/app/ending.h"
 #include "engine/app/progress.h"
 #include "engine/files/content_hash.h"
-#include "engine/study/error_words.h"
 #include "engine/files/h5.h"
-#include "engine/study/study_file.h"
 #include "engine/kinds/outlook.h"
+#include "engine/kinds/study_file.h"
 #include "engine/run/runner.h"
+#include "engine/study/error_words.h"
 #include "models/registry.h"
 
 namespace poesy::app {

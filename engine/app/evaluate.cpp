@@ -13,12 +13,12 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
-#include "engine/study/study_file.h"
-#include "engine/study/table_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/run/runner.h"
 #include "engine/run/verdict.h"
+#include "engine/study/table_file.h"
 #include "models/registry.h"
 
 namespace poesy::app {

@@ -16,11 +16,11 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/study/error_words.h"
 #include "engine/files/result_file.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/ranks/team.h"
+#include "engine/study/error_words.h"
 #include "models/registry.h"
 
 namespace poesy::app {

@@ -6,8 +6,9 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/sha256.h"
-#include "engine/study/study_file.h"
 #include "engine/files/version.h"
+#include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -15,9 +16,7 @@ namespace {
 constexpr std::uint64_t kVersion = 2;
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
 
-bool draws_samples(const Study& study) {
-  return study.analysis.kind == Analysis::Kind::sensitivity || study.analysis.kind == Analysis::Kind::monte_carlo;
-}
+bool draws_samples(const Study& study) { return study.analysis.kind->varies != Varies::none; }
 
 std::string hash_of(const PoseSet& poses) {
   ByteWriter bytes;

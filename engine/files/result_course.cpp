@@ -1,4 +1,5 @@
 #include "engine/files/result_parts.h"
+#include "engine/study/study_kind.h"
 
 /// Courses of estimates: the history of indices of a study with a fixed number of samples, and how adaptive samples
 /// came to their end.
@@ -71,14 +72,14 @@ const CourseWords kMeanConvergence{
     "errors",
     {"mean", "half_width"}};
 
-bool of_indices(Analysis::Kind kind) { return kind == Analysis::Kind::sensitivity; }
+bool of_indices(const StudyKind& kind) { return kind.varies == Varies::one_by_one; }
 
-const CourseWords& convergence_words(Analysis::Kind kind) {
+const CourseWords& convergence_words(const StudyKind& kind) {
   return of_indices(kind) ? kIndexConvergence : kMeanConvergence;
 }
 
 /// What a convergence says in addition to its course: one number for each quantity, or for each slot.
-Fields<ConvergenceResult> end_fields(Analysis::Kind kind) {
+Fields<ConvergenceResult> end_fields(const StudyKind& kind) {
   const Axes quantities = of_indices(kind) ? Axes{"response", "factor"} : Axes{"response"};
   const Axes slots = of_indices(kind) ? Axes{"factor"} : Axes{};
   return {{"reached", &ConvergenceResult::reached, quantities, "1",
@@ -148,7 +149,7 @@ CsvTable end_table(const StoredResult& result, const CourseWords& words, const C
 
 }  // namespace
 
-void add_convergence(ResultBuilder& result, Analysis::Kind kind, const std::optional<ConvergenceResult>& found) {
+void add_convergence(ResultBuilder& result, const StudyKind& kind, const std::optional<ConvergenceResult>& found) {
   if (!found) return;
   add_course(result, convergence_words(kind), found->course);
   write_fields(result, "/convergence", end_fields(kind), *found);
@@ -159,7 +160,7 @@ void add_convergence(ResultBuilder& result, Analysis::Kind kind, const std::opti
   file.set_attribute("/convergence", "max", std::span(limits).last(1));
 }
 
-std::optional<ConvergenceResult> read_convergence(const h5::File& file, Analysis::Kind kind) {
+std::optional<ConvergenceResult> read_convergence(const h5::File& file, const StudyKind& kind) {
   if (!file.exists("/convergence")) return std::nullopt;
   ConvergenceResult found;
   found.course = read_course(file, convergence_words(kind));
@@ -173,7 +174,7 @@ std::optional<ConvergenceResult> read_convergence(const h5::File& file, Analysis
   return found;
 }
 
-void append_convergence_tables(CsvTables& tables, const StoredResult& result, Analysis::Kind kind,
+void append_convergence_tables(CsvTables& tables, const StoredResult& result, const StudyKind& kind,
                                const std::optional<ConvergenceResult>& found) {
   if (!found) return;
   const CourseWords& words = convergence_words(kind);

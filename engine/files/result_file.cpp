@@ -13,28 +13,34 @@
 #include "engine/files/poesy_file.h"
 #include "engine/files/result_parts.h"
 #include "engine/files/shard_file.h"
+#include "engine/kinds/coupling/options.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/options.h"
+#include "engine/kinds/identification/options.h"
+#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/sensitivity/options.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
 /// What reads the groups of a kind of study, and what shows them as CSV.
 struct KindOfResult {
-  Analysis::Kind kind;
+  const StudyKind* kind;
   void (*read)(const h5::File& file, StoredResult& result);
   void (*append_tables)(CsvTables& tables, const StoredResult& result);
 };
 
 constexpr std::array kKindsOfResult{
-    KindOfResult{Analysis::Kind::sensitivity, read_sensitivity, append_sensitivity_tables},
-    KindOfResult{Analysis::Kind::identification, read_identification, append_identification_tables},
-    KindOfResult{Analysis::Kind::evaluate, read_evaluation, append_evaluation_tables},
-    KindOfResult{Analysis::Kind::monte_carlo, read_monte_carlo, append_monte_carlo_tables},
-    KindOfResult{Analysis::Kind::coupling, read_coupling, append_coupling_tables}};
+    KindOfResult{&kSensitivityStudy, read_sensitivity, append_sensitivity_tables},
+    KindOfResult{&kIdentificationStudy, read_identification, append_identification_tables},
+    KindOfResult{&kEvaluateStudy, read_evaluation, append_evaluation_tables},
+    KindOfResult{&kMonteCarloStudy, read_monte_carlo, append_monte_carlo_tables},
+    KindOfResult{&kCouplingStudy, read_coupling, append_coupling_tables}};
 
 const KindOfResult& kind_named(const std::string& name) {
   for (const KindOfResult& each : kKindsOfResult) {
-    if (poesy::name(each.kind) == name) return each;
+    if (each.kind->name == name) return each;
   }
   throw h5::Error("its kind '" + name + "' is unknown");
 }
@@ -50,7 +56,7 @@ void write_file(const std::string& path, h5::File& file) {
 
 /// Composes what every file has, with compose(file) for the rest, and writes it.
 template <class Compose>
-void compose_and_write(const std::string& path, std::string_view filetype, Analysis::Kind kind, const Study& study,
+void compose_and_write(const std::string& path, std::string_view filetype, const StudyKind& kind, const Study& study,
                        const SelectedPoses& poses, const RunFacts& facts, const Compose& compose) {
   try {
     ResultBuilder result;
@@ -65,7 +71,7 @@ void compose_and_write(const std::string& path, std::string_view filetype, Analy
 
 /// The same for a result, which has factors and responses.
 template <class Compose>
-void compose_result(const std::string& path, Analysis::Kind kind, const Study& study, const SelectedPoses& poses,
+void compose_result(const std::string& path, const StudyKind& kind, const Study& study, const SelectedPoses& poses,
                     std::span<const FactorIndex> factors, const RunFacts& facts, const Compose& compose) {
   compose_and_write(path, kResultFile, kind, study, poses, facts, [&](ResultBuilder& result) {
     add_names(result, study, factors);
@@ -88,43 +94,43 @@ bool may_be_replaced(const std::string& path) {
 void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const SensitivityResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::sensitivity, study, poses, study.analysis.factors, facts,
+  compose_result(path, kSensitivityStudy, study, poses, study.analysis.factors, facts,
                  [&](ResultBuilder& file) { add_sensitivity(file, study, result); });
 }
 
 void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::evaluate, study, poses, errors.factors, facts,
+  compose_result(path, kEvaluateStudy, study, poses, errors.factors, facts,
                  [&](ResultBuilder& file) { add_evaluation(file, study.model(), result, errors, pairing); });
 }
 
 void write_cases(const std::string& path, const Study& study, const SelectedPoses& poses, const CaseResult& result,
                  const RunFacts& facts) {
   POESY_EXPECTS(result.evaluation.poses == poses.poses.size());
-  const ErrorTable errors = case_table(study.analysis.cases);
-  compose_result(path, Analysis::Kind::evaluate, study, poses, errors.factors, facts,
+  const ErrorTable errors = case_table(asked_of<CaseOptions>(study.analysis).cases);
+  compose_result(path, kEvaluateStudy, study, poses, errors.factors, facts,
                  [&](ResultBuilder& file) { add_cases(file, study, errors, result); });
 }
 
 void write_identification(const std::string& path, const Study& study, const SelectedPoses& poses,
                           const IdentificationResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::identification, study, poses, study.analysis.factors, facts,
+  compose_result(path, kIdentificationStudy, study, poses, study.analysis.factors, facts,
                  [&](ResultBuilder& file) { add_identification(file, study, result); });
 }
 
 void write_monte_carlo(const std::string& path, const Study& study, const SelectedPoses& poses,
                        const MonteCarloResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::monte_carlo, study, poses, study.analysis.factors, facts,
+  compose_result(path, kMonteCarloStudy, study, poses, study.analysis.factors, facts,
                  [&](ResultBuilder& file) { add_monte_carlo(file, study, result); });
 }
 
 void write_coupling(const std::string& path, const Study& study, const SelectedPoses& poses,
                     const CouplingResult& result, const RunFacts& facts) {
   POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::coupling, study, poses, study.analysis.factors, facts,
+  compose_result(path, kCouplingStudy, study, poses, study.analysis.factors, facts,
                  [&](ResultBuilder& file) { add_coupling(file, study, result); });
 }
 
@@ -147,7 +153,7 @@ void write_result(const std::string& path, const Study& study, const SelectedPos
 
 void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
                  std::span<const Bytes> stages, const RunFacts& facts) {
-  compose_and_write(path, kShardFile, study.analysis.kind, study, poses, facts,
+  compose_and_write(path, kShardFile, *study.analysis.kind, study, poses, facts,
                     [&](ResultBuilder& file) { add_shard(file, shard, stages); });
 }
 

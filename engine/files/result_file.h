@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "engine/base/units.h"
+#include "engine/kinds/identification/options.h"
+#include "engine/kinds/study_run.h"
 #include "engine/model/pose_set.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
-#include "engine/kinds/study_run.h"
 #include "engine/stats/tolerance.h"
 #include "engine/study/study.h"
 

@@ -4,9 +4,10 @@
 #include "engine/files/content_hash.h"
 #include "engine/files/poesy_file.h"
 #include "engine/files/result_parts.h"
-#include "engine/study/study_file.h"
 #include "engine/files/version.h"
 #include "engine/kinds/sensitivity/points_radius.h"
+#include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -162,13 +163,13 @@ void check_names(const std::vector<std::string>& names, const std::string& path)
   }
 }
 
-void add_header(ResultBuilder& result, std::string_view filetype, Analysis::Kind kind, const Study& study,
+void add_header(ResultBuilder& result, std::string_view filetype, const StudyKind& kind, const Study& study,
                 const SelectedPoses& poses) {
   h5::File& file = result.file();
   const std::vector<std::int64_t> version{kMajorVersion, kMinorVersion};
   file.set_attribute("/", "filetype", std::string(filetype));
   file.set_attribute("/", "version", std::span(version));
-  file.set_attribute("/", "kind", std::string(name(kind)));
+  file.set_attribute("/", "kind", std::string(kind.name));
   file.set_attribute("/", "title", study.title);
   file.set_attribute("/", "model", study.model().name);
   file.set_attribute("/", "poesy_version", poesy_version());

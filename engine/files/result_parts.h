@@ -39,7 +39,7 @@ std::string unit_of(const Thing& thing) {
 void check_names(const std::vector<std::string>& names, const std::string& path);
 
 /// What every file has: what the file is, /study and /poses. filetype, kind: attributes of the root.
-void add_header(ResultBuilder& result, std::string_view filetype, Analysis::Kind kind, const Study& study,
+void add_header(ResultBuilder& result, std::string_view filetype, const StudyKind& kind, const Study& study,
                 const SelectedPoses& poses);
 /// What every result has: /factors, /responses, and /metric where the mechanism weighs angles against lengths.
 void add_names(ResultBuilder& result, const Study& study, std::span<const FactorIndex> factors);
@@ -99,11 +99,11 @@ std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResul
 void append_limit_table(CsvTables& tables, const StoredResult& result, const std::optional<LimitVerdicts>& verdicts);
 
 /// How adaptive samples came to their end: /convergence; nothing where the number of samples was fixed.
-void add_convergence(ResultBuilder& result, Analysis::Kind kind, const std::optional<ConvergenceResult>& found);
+void add_convergence(ResultBuilder& result, const StudyKind& kind, const std::optional<ConvergenceResult>& found);
 /// Of a result of this kind.
-std::optional<ConvergenceResult> read_convergence(const h5::File& file, Analysis::Kind kind);
+std::optional<ConvergenceResult> read_convergence(const h5::File& file, const StudyKind& kind);
 /// convergence.csv and convergence_RESPONSE.csv.
-void append_convergence_tables(CsvTables& tables, const StoredResult& result, Analysis::Kind kind,
+void append_convergence_tables(CsvTables& tables, const StoredResult& result, const StudyKind& kind,
                                const std::optional<ConvergenceResult>& found);
 /// What the indices were after fewer samples: /sensitivity/history; nothing where there is none.
 void add_history(ResultBuilder& result, const std::optional<EstimateCourse>& found);

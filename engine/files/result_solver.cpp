@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "engine/files/result_parts.h"
+#include "engine/kinds/monte_carlo/options.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -49,7 +51,7 @@ const Fields<FailureRow> kFailureFields{
      "1",
      "How these solves ended: a position in status_names, from 0"}};
 
-bool all_errors_vary(const StoredResult& result) { return result.kind == name(Analysis::Kind::monte_carlo); }
+bool all_errors_vary(const StoredResult& result) { return result.kind == kMonteCarloStudy.name; }
 
 std::size_t slot_named(const std::string& factor, const StoredResult& result) {
   if (all_errors_vary(result) && factor == kAllFactors) return 0;

@@ -5,15 +5,20 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/coupling/options.h"
 #include "engine/kinds/coupling/rows.h"
-#include "engine/run/evaluate_unit.h"
-#include "engine/kinds/sensitivity/linearity.h"
-#include "engine/run/pose_unit.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/options.h"
+#include "engine/kinds/identification/options.h"
 #include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/options.h"
+#include "engine/kinds/sensitivity/separation.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/pose_unit.h"
 #include "engine/run/rounds.h"
 #include "engine/run/runner.h"
-#include "engine/kinds/sensitivity/separation.h"
 
 namespace poesy {
 namespace {
@@ -122,7 +127,8 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
   constexpr std::size_t kNumbers = 8;  // mean, its interval, std, min, max, count, rms
   const std::size_t responses = study.model().responses.size();
   // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
-  const std::size_t of_sketch = 3 * study.analysis.quantiles.size() + (study.analysis.judge == Judge::share ? 1 : 0);
+  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const std::size_t numbers = responses * (kNumbers + of_sketch) * sizeof(double);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
                               responses * (kStoredMoments + (2 + of_sketch) * sizeof(double)) + kStoredSolves,
@@ -184,7 +190,7 @@ WorkOutlook table_work(const Study& study, const Model& model, const PoseSet& po
 
 Outlook identification_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const std::size_t errors = study.analysis.factors.size();
-  const std::size_t groups = study.analysis.groups.size();
+  const std::size_t groups = asked_of<IdentificationOptions>(study.analysis).groups.size();
   const std::size_t solves = errors * groups * poses.size();
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
   return {.solves = factor_text(errors, "errors x ") + factor_text(groups, "groups x ") +
@@ -197,7 +203,7 @@ Outlook identification_outlook(const Study& study, const Model& model, const Pos
 }
 
 Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  const ErrorTable table = case_table(study.analysis.cases);
+  const ErrorTable table = case_table(asked_of<CaseOptions>(study.analysis).cases);
   const std::size_t solves = table.rows * poses.size();
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::with_details);
   // The file has cases before poses: a transposed copy of the outcomes.
@@ -209,7 +215,7 @@ Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& pos
 }
 
 Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   const CouplingRows rows = coupling_rows(coupling, study.model());
   const ErrorTable table = coupling_table(coupling, study.model());
   const std::size_t solves = table.rows * poses.size();
@@ -230,18 +236,11 @@ Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& 
 }  // namespace
 
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  switch (study.analysis.kind) {
-    case Analysis::Kind::sensitivity:
-      return sensitivity_outlook(study, model, poses);
-    case Analysis::Kind::identification:
-      return identification_outlook(study, model, poses);
-    case Analysis::Kind::evaluate:
-      return cases_outlook(study, model, poses);
-    case Analysis::Kind::monte_carlo:
-      return monte_carlo_outlook(study, model, poses);
-    case Analysis::Kind::coupling:
-      break;
-  }
+  const StudyKind* kind = study.analysis.kind;
+  if (kind == &kSensitivityStudy) return sensitivity_outlook(study, model, poses);
+  if (kind == &kIdentificationStudy) return identification_outlook(study, model, poses);
+  if (kind == &kEvaluateStudy) return cases_outlook(study, model, poses);
+  if (kind == &kMonteCarloStudy) return monte_carlo_outlook(study, model, poses);
   return coupling_outlook(study, model, poses);
 }
 

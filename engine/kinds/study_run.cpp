@@ -4,11 +4,16 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/options.h"
 #include "engine/kinds/coupling/rows.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/options.h"
+#include "engine/kinds/identification/options.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/points_radius.h"
 #include "engine/kinds/sensitivity/separation.h"
 #include "engine/run/verdict.h"
@@ -59,8 +64,9 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
   const std::unique_ptr<Model> other = build_model(at_compared_fidelity(run.study.mechanism));
   const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
   if (!first || !second) return std::nullopt;
-  first->fidelity = compare_fidelities(*first, *second, response_dimensions(run.study.model()),
-                                       standard_deviations(run.study), analysis.linearity);
+  first->fidelity =
+      compare_fidelities(*first, *second, response_dimensions(run.study.model()), standard_deviations(run.study),
+                         asked_of<SensitivityOptions>(analysis).linearity);
   return first;
 }
 
@@ -92,8 +98,9 @@ std::optional<StudyResult> run_identification_study(const StudyRun& run) {
 
 std::optional<StudyResult> run_cases_study(const StudyRun& run) {
   constexpr Pairing kPairing = Pairing::every_pose_with_every_row;
-  auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, case_table(run.study.analysis.cases),
-                                   kPairing, run.options);
+  auto evaluation =
+      run_evaluation(run.model, run.study.solver, run.poses,
+                     case_table(asked_of<CaseOptions>(run.study.analysis).cases), kPairing, run.options);
   if (!evaluation || !run.makes_result()) return std::nullopt;
   if (const auto& limits = run.study.analysis.limits; !limits.empty()) {
     evaluation->verdicts = judge_rows(limits, *evaluation, kPairing, run.study.not_converged);
@@ -109,7 +116,7 @@ std::optional<StudyResult> run_monte_carlo_study(const StudyRun& run) {
 }
 
 std::optional<StudyResult> run_coupling_study(const StudyRun& run) {
-  const CouplingStudy& coupling = run.study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(run.study.analysis);
   const ModelDescription& model = run.model.description();
   const auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
                                          Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
@@ -118,24 +125,17 @@ std::optional<StudyResult> run_coupling_study(const StudyRun& run) {
 }
 
 std::optional<StudyResult> run_kind(const StudyRun& run) {
-  switch (run.study.analysis.kind) {
-    case Analysis::Kind::sensitivity:
-      return run_sensitivity_study(run);
-    case Analysis::Kind::identification:
-      return run_identification_study(run);
-    case Analysis::Kind::evaluate:
-      return run_cases_study(run);
-    case Analysis::Kind::monte_carlo:
-      return run_monte_carlo_study(run);
-    case Analysis::Kind::coupling:
-      break;
-  }
+  const StudyKind* kind = run.study.analysis.kind;
+  if (kind == &kSensitivityStudy) return run_sensitivity_study(run);
+  if (kind == &kIdentificationStudy) return run_identification_study(run);
+  if (kind == &kEvaluateStudy) return run_cases_study(run);
+  if (kind == &kMonteCarloStudy) return run_monte_carlo_study(run);
   return run_coupling_study(run);
 }
 
 /// Cells or blocks that shards of the study can divide between them.
 std::size_t divisible(const Study& study, std::size_t poses) {
-  const bool by_factor = study.analysis.kind == Analysis::Kind::sensitivity;
+  const bool by_factor = study.analysis.kind == &kSensitivityStudy;
   return by_factor ? study.analysis.factors.size() * poses : poses;
 }
 
@@ -155,7 +155,7 @@ std::optional<StudyResult> run_study(const Study& study, const RunOptions& optio
 }
 
 void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
-  if (study.analysis.kind == Analysis::Kind::identification) {
+  if (study.analysis.kind == &kIdentificationStudy) {
     throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
                      "run it whole, for it is small, or with mpirun");
   }

@@ -15,8 +15,8 @@ namespace poesy {
 ///   share_magnitude is. Draws that do not count are not within it.
 /// overall: [R], the samples of all poses that count. Numbers from a sketch are off by its kRelativeError at most.
 /// Precondition: found.overall_rms is there, and found.share_magnitude where it is needed.
-LimitVerdicts judge_draws(const Analysis& analysis, const MonteCarloResult& found,
-                          std::span<const QuantileSketch> overall);
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
+                          const MonteCarloResult& found, std::span<const QuantileSketch> overall);
 
 /// Judges limits by an evaluation, row by row of its errors: a row (a case) is within a limit if its largest magnitude
 /// over all its poses is, and every one of them counts (see counts()). A limit is kept if every row is within it.

@@ -5,12 +5,13 @@
 #include "engine/base/error.h"
 #include "engine/files/checkpoint.h"
 #include "engine/files/sha256.h"
-#include "engine/run/evaluation_state.h"
 #include "engine/kinds/monte_carlo/collector.h"
-#include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/collector.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/run/evaluation_state.h"
 #include "tests/fuzz/small_plans.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/kinds.h"
 
 namespace {
 
@@ -30,7 +31,7 @@ void offer(State state, const Make& make, const Use& use) {
 }
 
 void offer_to_sensitivity(State state) {
-  static const fuzz::SmallPlan small(Analysis::Kind::sensitivity);
+  static const fuzz::SmallPlan small(&kSensitivityStudy);
   const Plan& plan = small.plan;
   const auto make = [&] { return SensitivityCollector(plan, fuzz::kResponses, 0.95); };
   offer(state, make, [&](SensitivityCollector&& collector) {
@@ -48,7 +49,7 @@ void offer_to_sensitivity(State state) {
 }
 
 void offer_to_monte_carlo(State state) {
-  static const fuzz::SmallPlan small(Analysis::Kind::monte_carlo);
+  static const fuzz::SmallPlan small(&kMonteCarloStudy);
   const Plan& plan = small.plan;
   const auto make = [&] { return MonteCarloCollector(plan, fuzz::kResponses, small.study.analysis); };
   offer(state, make, [&](MonteCarloCollector&& collector) {

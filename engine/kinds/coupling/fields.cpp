@@ -6,6 +6,7 @@
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/options.h"
 
 namespace poesy {
 namespace {
@@ -89,7 +90,7 @@ struct Membership {
 };
 
 Membership membership(const Study& study) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
   for (std::size_t s = 0; s < coupling.sources.size(); ++s) {
     const auto blocks = error_blocks(coupling.sources[s], coupling.pattern, study.model());
@@ -113,7 +114,7 @@ void add_axes(ResultBuilder& result, const CouplingStudy& coupling) {
 
 /// The sizes, the subsets, and where each error belongs.
 void add_choices(ResultBuilder& result, const Study& study) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   StoredCoupling sizes;
   sizes.linear = or_nan(coupling.linear, coupling.sizes());
   sizes.angular = or_nan(coupling.angular, coupling.sizes());
@@ -175,7 +176,7 @@ CsvTable curve_table(const StoredResult& result) {
 }  // namespace
 
 void add_coupling(ResultBuilder& result, const Study& study, const CouplingResult& found) {
-  add_axes(result, study.analysis.coupling);
+  add_axes(result, asked_of<CouplingStudy>(study.analysis));
   write_group(result, kCoupling, found);
   add_choices(result, study);
   add_solver(result, {"size", "pose"}, found.solves);

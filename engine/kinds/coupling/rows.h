@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/kinds/coupling/options.h"
 #include "engine/model/model.h"
 #include "engine/run/runner.h"
-#include "engine/study/study.h"
 
 namespace poesy {
 

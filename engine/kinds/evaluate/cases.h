@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/kinds/evaluate/options.h"
 #include "engine/run/result.h"
 #include "engine/run/runner.h"
-#include "engine/study/study.h"
 
 namespace poesy {
 

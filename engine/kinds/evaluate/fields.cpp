@@ -3,9 +3,10 @@
 #include <utility>
 
 #include "engine/files/result_parts.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/options.h"
 #include "engine/kinds/evaluate/row_outcomes.h"
 #include "engine/study/table_file.h"
-#include "engine/kinds/evaluate/cases.h"
 
 namespace poesy {
 namespace {
@@ -337,7 +338,8 @@ void add_evaluation(ResultBuilder& result, const ModelDescription& model, const 
 }
 
 void add_cases(ResultBuilder& result, const Study& study, const ErrorTable& errors, const CaseResult& found) {
-  result.add_axis("case", texts(study.analysis.cases, &ErrorCase::name), {"1", "Name of the case"});
+  result.add_axis("case", texts(asked_of<CaseOptions>(study.analysis).cases, &ErrorCase::name),
+                  {"1", "Name of the case"});
   add_solves(result, study.model(), transposed(found.evaluation), kCaseAxes);
   add_errors(result, errors, "case", Pairing::every_pose_with_every_row);
   add_limits(result, study.model(), found.evaluation.verdicts);

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/files/result_parts.h"
+#include "engine/kinds/identification/options.h"
 
 namespace poesy {
 namespace {
@@ -80,7 +81,7 @@ CsvTable coupling_table(const StoredResult& result) {
 }  // namespace
 
 void add_identification(ResultBuilder& result, const Study& study, const IdentificationResult& found) {
-  const std::vector<ErrorSize>& groups = study.analysis.groups;
+  const std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
   result.add_axis("status", texts(kStatusNames, std::identity()), {"1", "How a solve ended"});
   result.add_axis("group", texts(groups, &ErrorSize::name), {"1", "Name of the group of sizes"});
   result.add_axis("coupling", axis_numbers(found.couplings.size()), {"1", "Number of the coupling, from 0"});

@@ -2,6 +2,7 @@
 
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -161,13 +162,15 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
   add_sigma(result, study);
   result.add_axis("quantile", found.levels, {"1", "Share of the samples below the quantile"});
   result.add_axis("bin", axis_numbers(bins), {"1", "Number of the histogram's bin, from 0"});
-  result.add_axis("edge", axis_numbers(bins + 1), {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
+  result.add_axis("edge", axis_numbers(bins + 1),
+                  {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
   write_group(result, kMonteCarlo, found);
   if (!found.share_magnitude.empty()) {
-    result.file().set_attribute("/monte_carlo/share_magnitude", "share", study.analysis.share);
+    result.file().set_attribute("/monte_carlo/share_magnitude", "share",
+                                asked_of<MonteCarloOptions>(study.analysis).share);
   }
   add_limits(result, study.model(), found.verdicts);
-  add_convergence(result, Analysis::Kind::monte_carlo, found.convergence);
+  add_convergence(result, kMonteCarloStudy, found.convergence);
   add_solver(result, {"pose"}, found.solves);
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
@@ -183,7 +186,7 @@ void read_monte_carlo(const h5::File& file, StoredResult& result) {
   }
   fill_in_root_mean_squares(found);
   found.verdicts = read_limits(file, result);
-  found.convergence = read_convergence(file, Analysis::Kind::monte_carlo);
+  found.convergence = read_convergence(file, kMonteCarloStudy);
   found.solves = read_solver(file, {"pose"});
   found.failures = read_failures(file, result);
 }
@@ -201,7 +204,7 @@ void append_monte_carlo_tables(CsvTables& tables, const StoredResult& result) {
   append_solve_columns(solves, found.solves);
   tables.push_back(std::move(solves));
   tables.push_back(failure_table(result));
-  append_convergence_tables(tables, result, Analysis::Kind::monte_carlo, found.convergence);
+  append_convergence_tables(tables, result, kMonteCarloStudy, found.convergence);
 }
 
 }  // namespace poesy

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/files/result_parts.h"
+#include "engine/kinds/sensitivity/options.h"
 
 namespace poesy {
 namespace {
@@ -128,7 +129,7 @@ void add_sensitivity(ResultBuilder& result, const Study& study, const Sensitivit
   add_tolerances(result, study, found);
   add_separation(result, study, found.separation);
   add_fidelity(result, study, found.fidelity);
-  add_convergence(result, Analysis::Kind::sensitivity, found.convergence);
+  add_convergence(result, kSensitivityStudy, found.convergence);
   if (!found.radius_tau.empty()) add_radius_tau(result, found.radius_tau);
   add_solver(result, {"factor", "pose"}, found.solves);
   const auto names =
@@ -148,7 +149,7 @@ void read_sensitivity(const h5::File& file, StoredResult& result) {
   found.radius_tau = read_radius_tau(file);
   found.history = read_history(file);
   found.failures = read_failures(file, result);
-  found.convergence = read_convergence(file, Analysis::Kind::sensitivity);
+  found.convergence = read_convergence(file, kSensitivityStudy);
   read_tolerances(file, result);
   read_separation(file, result);
   read_fidelity(file, result);
@@ -164,7 +165,7 @@ void append_sensitivity_tables(CsvTables& tables, const StoredResult& result) {
   append_tolerance_tables(tables, result);
   append_separation_tables(tables, result);
   append_fidelity_tables(tables, result);
-  append_convergence_tables(tables, result, Analysis::Kind::sensitivity, result.sensitivity.convergence);
+  append_convergence_tables(tables, result, kSensitivityStudy, result.sensitivity.convergence);
   append_history_tables(tables, result);
 }
 

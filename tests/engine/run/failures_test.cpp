@@ -8,13 +8,12 @@
 #include "engine/run/runner.h"
 #include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
 
 using test::Prepared;
-
-using Kind = Analysis::Kind;
 
 FailedSamples failing(std::initializer_list<std::size_t> samples) {
   FailedSamples cell;
@@ -106,7 +105,7 @@ std::vector<Failure> expected_failures(const Prepared& prepared) {
 }
 
 std::optional<std::vector<Failure>> run(const Prepared& prepared, const RunOptions& options) {
-  if (prepared.study.analysis.kind == Kind::monte_carlo) {
+  if (prepared.study.analysis.kind == &kMonteCarloStudy) {
     const auto result = run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options);
     return result ? std::optional(result->failures) : std::nullopt;
   }
@@ -161,8 +160,9 @@ TEST_P(Failures, ReplayToTheirStatusAndDraws) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Failures, testing::Values(Kind::sensitivity, Kind::monte_carlo),
-                         [](const auto& made) { return made.param == Kind::sensitivity ? "sensitivity" : "together"; });
+INSTANTIATE_TEST_SUITE_P(Kinds, Failures, testing::Values(&kSensitivityStudy, &kMonteCarloStudy), [](const auto& made) {
+  return made.param == &kSensitivityStudy ? "sensitivity" : "together";
+});
 
 }  // namespace
 }  // namespace poesy

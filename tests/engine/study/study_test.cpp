@@ -42,11 +42,6 @@ TEST(Names, AreThoseOfTheStudyFile) {
   EXPECT_EQ(name(Select::boundary), "boundary");
   EXPECT_EQ(name(Select::grid), "grid");
   EXPECT_EQ(name(Select::trajectory), "trajectory");
-  EXPECT_EQ(name(Analysis::Kind::sensitivity), "sensitivity");
-  EXPECT_EQ(name(Analysis::Kind::identification), "identification");
-  EXPECT_EQ(name(Analysis::Kind::evaluate), "evaluate");
-  EXPECT_EQ(name(Analysis::Kind::monte_carlo), "monte-carlo");
-  EXPECT_EQ(name(Analysis::Kind::coupling), "coupling");
   EXPECT_EQ(name(NotConverged::exclude), "exclude");
   EXPECT_EQ(name(NotConverged::include), "include");
   EXPECT_EQ(name(SolverOptions::Method::newton), "newton");

@@ -1,4 +1,5 @@
 #include "engine/kinds/identification/identification.h"
+#include "tests/support/kinds.h"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +49,7 @@ SolveTable solver(Deformation deformation) {
 
 Analysis analysis() {
   Analysis identification;
-  identification.kind = Analysis::Kind::identification;
+  identification.kind = &kIdentificationStudy;
   for (std::size_t f = 0; f < 6; ++f) identification.factors.emplace_back(f);
   identification.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
   return identification;

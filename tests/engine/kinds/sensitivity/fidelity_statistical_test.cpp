@@ -5,6 +5,7 @@
 
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/run/runner.h"
+#include "tests/support/kinds.h"
 #include "tests/support/two_fidelities_model.h"
 
 namespace poesy {
@@ -18,6 +19,7 @@ FidelityResult compared(double sigma, std::size_t samples) {
   Study study;
   study.mechanism = {&catalog.front(), {Model::kArm}, 0, {}, 1};
   study.errors.by_factor.assign(3, Distribution::normal(sigma));
+  study.analysis.kind = &kSensitivityStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   study.analysis.samples = samples;
   study.seed = 17;
