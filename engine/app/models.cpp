@@ -59,12 +59,11 @@ Command& add_models(Command& program) {
 
 Command& add_template(Command& program) {
   const auto model = std::make_shared<std::string>();
-  const auto kind = std::make_shared<std::string>("sensitivity");
+  const auto kind = std::make_shared<std::string>(study_kinds().all.front()->name);
   const auto reference = std::make_shared<bool>(false);
   Command& command = program.add_command("template", "print a complete, commented study file");
   CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism");
-  command.add_value("kind", *kind, "KIND",
-                    "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling");
+  command.add_value("kind", *kind, "KIND", "kind of study: " + either(names(study_kinds())));
   command.add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
   command.examples = {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},

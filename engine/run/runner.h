@@ -9,9 +9,10 @@
 
 #include "engine/model/model.h"
 #include "engine/run/checkpoints.h"
+#include "engine/run/ranks/team.h"
 #include "engine/run/result.h"
 #include "engine/run/shard.h"
-#include "engine/run/ranks/team.h"
+#include "engine/study/error_table.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -58,20 +59,6 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
 /// for a longer study. Of the analysis it takes conf_level and quantiles.
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options);
-
-/// Names of rows that a user gave, so that he finds them again.
-struct RowLabels {
-  std::string column;              ///< what they name: "part"
-  std::vector<std::string> names;  ///< [S], all different
-};
-
-/// Errors that somebody else sampled: S rows of V factors.
-struct ErrorTable {
-  std::vector<FactorIndex> factors;  ///< [V]
-  std::vector<double> values;        ///< [S x V], row-major, SI
-  std::size_t rows = 0;              ///< S
-  RowLabels labels{};                ///< of the rows; empty where they have no names
-};
 
 /// How poses and rows of errors belong together.
 enum class Pairing {

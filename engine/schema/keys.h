@@ -352,6 +352,14 @@ std::string template_lines(const TemplateLines& lines, std::string_view table, c
   return lines.usual(table, row.name, row.commented ? "# " : "");
 }
 
+/// The same of all keys of a table.
+template <class Object, class Scope>
+std::string template_lines(const TemplateLines& lines, const Keys<Object, Scope>& keys, const Object& object) {
+  std::string text;
+  for (const Key<Object, Scope>& row : keys.rows) text += template_lines(lines, keys.paths.front(), row, object);
+  return text;
+}
+
 /// The resolved text of a table's keys: "KEY = VALUE" in lines, with every default filled in.
 template <class Object, class Scope>
 std::string keys_text(const Keys<Object, Scope>& keys, const Object& object) {

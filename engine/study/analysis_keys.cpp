@@ -237,7 +237,7 @@ std::vector<StudyRow> shared_rows() {
           .reader = read_kind},
       StudyRow{.name = "factors",
                .value = {.type = "text or list of texts"},
-               .usual = "in a sensitivity study deforming, where the model has that set; else all",
+               .usual = "all",
                .may_stay = true,
                .meaning = "The errors that vary or are tried: a factor set, all, or a list of factors.",
                .reader = read_studied_factors,
@@ -286,22 +286,28 @@ StudyTable response_limits_table() {
                     .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}};
 }
 
-bool has_key(const StudyKind& kind, std::string_view key) {
-  return std::ranges::find(kind.keys, key) != kind.keys.end();
-}
-
 /// For which kinds each row holds, and what is said of `kind`. Kinds whose factors a study names come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
-  std::ranges::stable_partition(listed, [](const StudyKind* kind) { return has_key(*kind, "factors"); });
+  std::ranges::stable_partition(listed, [](const StudyKind* kind) { return kind->has_key("factors"); });
   for (StudyRow& row : table.rows) {
     for (const StudyKind* kind : listed) {
-      if (has_key(*kind, row.name)) row.only_for.push_back(kind->name);
+      if (kind->has_key(row.name)) row.only_for.push_back(kind->name);
     }
   }
   StudyRow& row = table.rows.front();
   row.usual = "`" + in_quotes(kinds.front()->name) + "`";
   for (const StudyKind* kind : kinds) row.value.words.push_back({kind->name, kind->asks});
+}
+
+/// "in a sensitivity study deforming, where the model has that set; else all".
+std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
+  std::string text;
+  for (const StudyKind* kind : kinds) {
+    if (kind->usual_factors.empty()) continue;
+    text += fmt::format("in a {} study {}, where the model has that set; ", kind->name, kind->usual_factors);
+  }
+  return text + (text.empty() ? "all" : "else all");
 }
 
 }  // namespace
@@ -347,6 +353,7 @@ StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<c
     for (StudyRow& row : kind->rows()) table.rows.push_back(std::move(row));
   }
   describe_kinds(table, kinds);
+  std::ranges::find(table.rows, "factors", &StudyRow::name)->usual = usual_factors_text(kinds);
   std::ranges::stable_sort(table.rows, {}, [&](const StudyRow& row) { return std::ranges::find(order, row.name); });
   StudyTables tables{described(table), response_limits_table(), described(adaptive_keys()),
                      described(background_keys())};

@@ -114,27 +114,6 @@ Study study_from(const Reading& reading) {
 
 }  // namespace
 
-StudyKinds study_kinds_of(std::vector<const StudyKind*> all, std::span<const std::string_view> order) {
-  StudyKinds kinds{std::move(all), {described(file_keys())}};
-  for (const StudyTables& more :
-       {mechanism_tables(), poses_tables(), errors_tables(), analysis_tables(kinds.all, order),
-        StudyTables{described(solver_keys()), described(run_keys())}}) {
-    kinds.tables.insert(kinds.tables.end(), more.begin(), more.end());
-  }
-  return kinds;
-}
-
-const StudyKind* find(const StudyKinds& kinds, std::string_view name) {
-  const auto found = std::ranges::find(kinds.all, name, [](const StudyKind* kind) { return kind->name; });
-  return found == kinds.all.end() ? nullptr : *found;
-}
-
-std::vector<std::string_view> names(const StudyKinds& kinds) {
-  std::vector<std::string_view> list;
-  for (const StudyKind* kind : kinds.all) list.push_back(kind->name);
-  return list;
-}
-
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds) {
   if (begins_like_hdf5(path)) {
     throw InputError({path}, "is an HDF5 file, such as a result of poesy, and no study", "give its study, a TOML file");

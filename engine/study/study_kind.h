@@ -55,6 +55,9 @@ struct StudyKind {
   /// Throws InputError for an error of its own keys that makes no sense on this model (Model::error_bound).
   void (*check_errors)(const StudySection& analysis, const Study& study, const Model& model) = nullptr;
   AtPose (*at_pose)(const Study& study);  ///< what a study of it asks for
+
+  /// Whether a key of [analysis] holds for it; `kind` itself is none of its keys.
+  bool has_key(std::string_view key) const;
 };
 
 /// The kinds of studies that a program offers, and the study files that they make.

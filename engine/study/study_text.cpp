@@ -57,9 +57,7 @@ namespace {
 StudyRows analysis_keys_of(const Study& study) {
   const StudyKind& kind = *study.analysis.kind;
   StudyRows keys = analysis_keys(kind);
-  std::erase_if(keys.rows, [&](const StudyRow& row) {
-    return row.name != keys.chooser && std::ranges::find(kind.keys, row.name) == kind.keys.end();
-  });
+  std::erase_if(keys.rows, [&](const StudyRow& row) { return row.name != keys.chooser && !kind.has_key(row.name); });
   return keys;
 }
 

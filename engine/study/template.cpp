@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/base/contract.h"
+#include "engine/base/text.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/study_text.h"
 
@@ -51,89 +52,18 @@ std::string mechanism_section(const TemplateLines& lines, const Study& shown) {
   return text;
 }
 
-/// "count = { z = 5, beta = 5 }".
-std::string grid_example(const ModelDescription& model) {
-  std::string text;
-  for (const PoseCoordinate& coordinate : model.pose_coordinates) {
-    text += fmt::format("{}{} = 5", text.empty() ? "count = { " : ", ", coordinate.name);
-  }
-  return text + " }";
-}
-
-/// Optional ranges of joints, with an example.
-std::string limits_key(const TemplateLines& lines, const ModelDescription& model) {
-  if (model.joints.empty()) return {};
-  std::string list = "Joints:";
-  for (const JointDisplacement& joint : model.joints) {
-    list += fmt::format(" {} ({})", joint.name, name(joint.dimension));
-  }
-  const JointDisplacement& joint = model.joints.front();
-  const std::string_view range =
-      joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]";
-  return comment(list) + lines.explained("poses", "limits", fmt::format("# limits = {{ {} = {} }}", joint.name, range));
-}
-
-std::string name_list(const std::vector<PoseCoordinate>& coordinates) {
-  std::string text;
-  for (const PoseCoordinate& coordinate : coordinates) text += (text.empty() ? "" : ", ") + coordinate.name;
-  return text;
-}
-
 /// Other coordinates in which a file may give poses.
 std::string charts_comment(const ModelDescription& model) {
   std::string text;
   for (const PoseChart& chart : model.charts) {
-    text +=
-        comment(fmt::format("Chart {} in which a file may give poses: {}", chart.name, name_list(chart.coordinates)));
+    text += comment(fmt::format("Chart {} in which a file may give poses: {}", chart.name,
+                                fmt::join(names(chart.coordinates), ", ")));
   }
   return text;
 }
 
-std::string curve_example(const NamedCurve& curve, const ModelDescription& model) {
-  std::string origin;
-  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
-    const Dimension dimension = model.charts[curve.chart].coordinates[c].dimension;
-    origin += (c > 0 ? ", " : "") + readable_value(curve.origin[c], dimension);
-  }
-  return fmt::format("# trajectory = {{ curve = {}, origin = [{}], points = 201, time = [{}, {}] }}  # {}\n",
-                     in_quotes(curve.name), origin, readable_value(curve.start, Dimension::time),
-                     readable_value(curve.end, Dimension::time), curve.description);
-}
-
-std::string trajectory_key(const TemplateLines& lines, const ModelDescription& model) {
-  std::string text = lines.explanation_lines("poses", "trajectory") + lines.keys_lines("poses.trajectory");
-  for (const NamedCurve& curve : model.curves) text += curve_example(curve, model);
-  return text + "# trajectory = { file = \"curve.csv\", points = 201, time = [\"0 s\", \"2 s\"] }\n";
-}
-
-std::string workspace_key(const TemplateLines& lines, const ModelDescription& model) {
-  std::vector<Range> workspace;
-  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
-    workspace.push_back({model.pose_lower[c], model.pose_upper[c]});
-  }
-  std::string text = lines.explanation_lines("poses", "workspace");
-  for (const PoseCoordinate& coordinate : model.pose_coordinates) {
-    text += comment("  " + coordinate.name + ": " + coordinate.description);
-  }
-  if (!model.workspace_note.empty()) text += comment(model.workspace_note);
-  return text + "workspace = " + workspace_text(workspace, model, readable_value) + "\n";
-}
-
-std::string poses_section(const TemplateLines& lines, const ModelDescription& model) {
-  return "\n[poses]\n" + charts_comment(model) + lines.usual("poses", "select") + lines.usual("poses", "count") + "# " +
-         grid_example(model) + "\n" + workspace_key(lines, model) + limits_key(lines, model) +
-         lines.usual("poses", "max_condition", "# ") + lines.usual("poses", "file", "# ") +
-         trajectory_key(lines, model);
-}
-
-std::string errors_section(const TemplateLines& lines, const ModelDescription& model) {
-  std::string text = "\n" + comment(lines.meaning("errors")) + lines.keys_lines("errors.linear") + "[errors]\n" +
-                     lines.usual("errors", "linear") + lines.usual("errors", "angular");
-  if (model.factors.empty()) return text;
-  const Factor& factor = model.factors.front();
-  return text + lines.explained("errors", "override",
-                                fmt::format("# override = {{ {} = {{ distribution = \"uniform\", half_width = {} }} }}",
-                                            factor.name, example_size(factor.dimension, 0.5)));
+std::string errors_introduction(const TemplateLines& lines) {
+  return "\n" + comment(lines.meaning("errors")) + lines.keys_lines("errors.linear");
 }
 
 std::string analysis_section(const TemplateLines& lines, const Study& shown) {
@@ -142,23 +72,6 @@ std::string analysis_section(const TemplateLines& lines, const Study& shown) {
   std::string text = "\n[analysis]\n" + lines.explained("analysis", "kind", "kind = " + in_quotes(kind.name));
   for (const std::string_view key : kind.keys) text += template_lines(lines, "analysis", row_of(rows, key), shown);
   return text;
-}
-
-std::string metric_keys(const TemplateLines& lines, const CatalogEntry& entry) {
-  const ModelDescription& model = entry.description;
-  if (model.metric.empty()) return {};
-  std::vector<double> geometry;
-  for (const GeometryParameter& parameter : model.geometry) geometry.push_back(parameter.published);
-  return lines.explained("solver", "metric", "metric = " + in_quotes(model.metric)) +
-         lines.explained("solver", "points",
-                         "# points = " + points_text(entry.build(geometry, 0)->metric_points(), readable_value));
-}
-
-std::string solver_and_run_sections(const TemplateLines& lines, const CatalogEntry& entry) {
-  return "\n[solver]\n" + metric_keys(lines, entry) + lines.usual("solver", "method") +
-         lines.explained("solver", "tolerance", "tolerance = " + shortest(entry.description.tolerance)) +
-         lines.usual("solver", "max_iterations") + lines.usual("solver", "not_converged") +
-         lines.usual("solver", "max_not_converged") + "\n[run]\n" + lines.usual("run", "seed");
 }
 
 /// "`m`, `cm`".
@@ -214,11 +127,11 @@ std::string template_text(const CatalogEntry& entry, const StudyKind& kind, cons
   Study shown;
   shown.mechanism.entry = entry.by_platform ? entry.by_platform.get() : &entry;
   shown.analysis.kind = &kind;
-  const ModelDescription& model = shown.model();
-  POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(model));
-  return head(lines, shown) + mechanism_section(lines, shown) + poses_section(lines, model) +
-         errors_section(lines, model) + analysis_section(lines, shown) +
-         solver_and_run_sections(lines, *shown.mechanism.entry);
+  POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));
+  return head(lines, shown) + mechanism_section(lines, shown) + "\n[poses]\n" + charts_comment(shown.model()) +
+         template_lines(lines, poses_keys(), shown) + errors_introduction(lines) + "[errors]\n" +
+         template_lines(lines, errors_keys(), shown) + analysis_section(lines, shown) + "\n[solver]\n" +
+         template_lines(lines, solver_keys(), shown) + "\n[run]\n" + template_lines(lines, run_keys(), shown);
 }
 
 std::string study_reference(const StudyKinds& kinds) { return introduction() + tables_reference(kinds.tables); }

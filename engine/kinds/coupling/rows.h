@@ -6,7 +6,7 @@
 
 #include "engine/kinds/coupling/options.h"
 #include "engine/model/model.h"
-#include "engine/run/runner.h"
+#include "engine/study/error_table.h"
 
 namespace poesy {
 

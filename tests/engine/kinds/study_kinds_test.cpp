@@ -141,6 +141,13 @@ TEST(StudyOfAnyKind, KeepsFactorsAndSamplesOfAnother) {
   study_of("kind = \"evaluate\"\nsamples = 7\nfactors = \"all\"\ncases = [{ errors = { linear = \"1 mm\" } }]\n");
 }
 
+TEST(StudyKinds, HaveNames) {
+  EXPECT_EQ(names(study_kinds()), (std::vector<std::string_view>{"sensitivity", "identification", "evaluate",
+                                                                 "monte-carlo", "coupling"}));
+  EXPECT_EQ(find(study_kinds(), "monte-carlo"), &kMonteCarloStudy);
+  EXPECT_EQ(find(study_kinds(), "monte_carlo"), nullptr);
+}
+
 TEST(Template, RunsForEveryKind) {
   const test::TempFolder folder;
   for (const StudyKind* kind : study_kinds().all) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 
@@ -33,6 +35,19 @@ TEST(BackgroundErrors, ApplyByDimensionAndOnlyToTheirFactors) {
   EXPECT_EQ(background_errors(study.analysis.background, study.model()), (std::vector<double>{0.0, 0.0, 0.0}));
   study.analysis.background = Background{{FactorIndex(1), FactorIndex(2)}, 1e-3, 2e-2};
   EXPECT_EQ(background_errors(study.analysis.background, study.model()), (std::vector<double>{0.0, 2e-2, 1e-3}));
+}
+
+TEST(AskedOf, GivesDefaultsUntilSomethingIsAsked) {
+  struct Options {
+    int number = 3;
+  };
+  Analysis analysis;
+  EXPECT_EQ(asked_of<Options>(std::as_const(analysis)).number, 3);
+  EXPECT_FALSE(analysis.asked.has_value());
+  asked_of<Options>(analysis).number = 4;
+  const Analysis copy = analysis;
+  asked_of<Options>(analysis).number = 5;
+  EXPECT_EQ(asked_of<Options>(copy).number, 4);
 }
 
 TEST(Names, AreThoseOfTheStudyFile) {
