@@ -10,8 +10,8 @@ namespace poesy {
 /// How much of a study a command needs.
 enum class StudyUse {
   run,      ///< all sections complete
-  evaluate  ///< [mechanism] and [solver]; the others are checked where present but may be incomplete or absent, and a
-            ///< pose file is not opened
+  evaluate  ///< [mechanism] and [solver]; the others are checked where present but may be incomplete or absent, keys
+            ///< that another kind alone has are passed over, and a pose file is not opened
 };
 
 struct StudyKinds;

@@ -197,7 +197,7 @@ TEST(Rounds, BothEndsOfAnIntervalCount) {
 
 struct Case {
   const char* name;
-  Kind kind;
+  test::Kind kind;
   double relative_error;
   std::size_t max;
 };

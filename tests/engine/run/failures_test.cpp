@@ -59,7 +59,7 @@ TEST(FailedSamples, ReadBackWhatTheyWrote) {
   EXPECT_THROW(read(3, 4, 1000), BytesError);
 }
 
-Study study_of(Kind kind, std::size_t samples, std::size_t poses, double sigma = 1e-3) {
+Study study_of(test::Kind kind, std::size_t samples, std::size_t poses, double sigma = 1e-3) {
   static const Catalog catalog = test::failing_catalog();
   Study study;
   study.mechanism = {&catalog.front(), {test::FakeModel::kArm}, 0, {}};
@@ -113,7 +113,7 @@ std::optional<std::vector<Failure>> run(const Prepared& prepared, const RunOptio
   return result ? std::optional(result->failures) : std::nullopt;
 }
 
-class Failures : public testing::TestWithParam<Kind> {};
+class Failures : public testing::TestWithParam<test::Kind> {};
 
 TEST_P(Failures, AreTheFirstOfEachCellForAnyThreads) {
   const Prepared prepared(study_of(GetParam(), 3300, 3));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "engine/run/runner.h"
 #include "tests/support/fake_model.h"
 
 namespace poesy {
