@@ -9,6 +9,7 @@
 #include "bench/published_study.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/run/run_in_order.h"
 #include "engine/run/run_options.h"
@@ -95,7 +96,7 @@ void measure_both(Team& team, std::size_t units_per_cell) {
         [&](ByteReader& from) { return SensitivityUnit::read(from, responses, 0, 0); });
   }
   // As many units at few poses: what is done once for a pose does not count in long studies.
-  study.analysis.kind = Analysis::Kind::monte_carlo;
+  study.analysis.kind = &kMonteCarloStudy;
   study.analysis.samples *= kUnitsPerPose;
   const Plan plan(study, bench::every(kEveryPose, poses));
   const ResponseUnit response{Moments::of(numbers()), BucketedValues(numbers())};

@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/evaluate/stored.h"
+#include "engine/kinds/study_file.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/run/evaluation.h"

@@ -10,13 +10,14 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/files/stored_study.h"
 #include "engine/files/trial_read.h"
 #include "engine/files/version.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/registry.h"
+#include "engine/kinds/stored_study.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/replay.h"
+#include "engine/study/study_kind.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -64,7 +65,7 @@ std::size_t required_sample(const ReplayOptions& options, std::size_t count) {
 ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                             const Model& model) {
   const Analysis& analysis = stored.study.analysis;
-  if (name(analysis.kind) != result.kind || analysis.factors.size() != result.factors.size()) {
+  if (analysis.kind->name != result.kind || analysis.factors.size() != result.factors.size()) {
     throw FileError(options.result, "keeps a study that does not fit it", kDamagedRemedy);
   }
   const std::size_t slot = position_of(options, "varied error", result.varied);

@@ -13,11 +13,14 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/files/shard_file.h"
+#include "engine/kinds/evaluate/options.h"
 #include "engine/kinds/result_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/report/solves.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
+#include "models/registry.h"
 
 namespace poesy::app {
 namespace {
@@ -119,7 +122,9 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
   for (const Response& response : study.model().responses) {
     result.responses.push_back({response.name, std::string(si_unit(response.dimension))});
   }
-  for (const ErrorCase& one : study.analysis.cases) result.row_names.push_back(one.name);
+  if (study.analysis.kind == &kEvaluateStudy) {
+    for (const ErrorCase& one : asked_of<CaseOptions>(study.analysis).cases) result.row_names.push_back(one.name);
+  }
   result.verdicts = verdicts;
   return result;
 }

@@ -8,6 +8,7 @@
 #include "engine/files/sha256.h"
 #include "engine/files/version.h"
 #include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {

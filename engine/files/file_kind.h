@@ -17,7 +17,6 @@ struct StoredResult;
 
 /// How files keep what a kind of study found: a row for each kind.
 struct FileKind {
-  std::string_view name;  ///< as the attribute `kind` of the file's root has it
   /// Adds the names of errors and responses (add_names), and the kind's groups. found: of the type that the kind finds.
   void (*write)(ResultBuilder& result, const Study& study, const std::any& found);
   /// Fills in StoredResult::found, and of the header what the kind's files have. The rest of the header is there.

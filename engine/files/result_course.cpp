@@ -1,4 +1,5 @@
 #include "engine/files/result_parts.h"
+#include "engine/study/study_kind.h"
 
 /// Courses of estimates, and how adaptive samples came to their end.
 namespace poesy {

@@ -13,6 +13,7 @@
 #include "engine/files/result_parts.h"
 #include "engine/files/shard_file.h"
 #include "engine/run/evaluation.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -53,15 +54,15 @@ bool may_be_replaced(const std::string& path) {
 
 }  // namespace
 
-void write_result(const std::string& path, const FileKind& kind, const Study& study, const SelectedPoses& poses,
-                  const std::any& found, const RunFacts& facts) {
-  compose_and_write(path, kResultFile, kind.name, study, poses, facts,
+void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
+                  const SelectedPoses& poses, const std::any& found, const RunFacts& facts) {
+  compose_and_write(path, kResultFile, name, study, poses, facts,
                     [&](ResultBuilder& result) { kind.write(result, study, found); });
 }
 
 void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
                  std::span<const Bytes> stages, const RunFacts& facts) {
-  compose_and_write(path, kShardFile, name(study.analysis.kind), study, poses, facts,
+  compose_and_write(path, kShardFile, study.analysis.kind->name, study, poses, facts,
                     [&](ResultBuilder& file) { add_shard(file, shard, stages); });
 }
 

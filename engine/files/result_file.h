@@ -20,10 +20,11 @@
 
 namespace poesy {
 
-/// Writes what a study of this kind found. The file appears whole or not at all under its name: written beside it under
-/// a temporary name, synced, renamed. Throws FileError and leaves an existing file as it was.
-void write_result(const std::string& path, const FileKind& kind, const Study& study, const SelectedPoses& poses,
-                  const std::any& found, const RunFacts& facts);
+/// Writes what a study of this kind found; name: the kind's, as the file states it. The file appears whole or not at
+/// all under its name: written beside it under a temporary name, synced, renamed. Throws FileError and leaves an
+/// existing file as it was.
+void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
+                  const SelectedPoses& poses, const std::any& found, const RunFacts& facts);
 
 /// Throws when no result file can come into being at this path, before anything is computed: InputError when its
 /// folder does not exist, when the file there is one of the inputs, or neither named like a result (.h5) nor an HDF5

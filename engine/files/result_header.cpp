@@ -6,6 +6,7 @@
 #include "engine/files/result_parts.h"
 #include "engine/files/version.h"
 #include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {

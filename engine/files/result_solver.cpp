@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/files/result_parts.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {

@@ -16,6 +16,7 @@
 #include "engine/run/result.h"
 #include "engine/run/run_options.h"
 #include "engine/study/study.h"
+#include "engine/study/study_kind.h"
 
 /// What a kind of study promises. Each has a folder, with a row of this type in its kind.cpp.
 namespace poesy {
@@ -69,6 +70,7 @@ struct GivenErrors {
 
 /// A kind of study: how its studies are read, run, stored and shown.
 struct Kind {
+  const StudyKind& study;    ///< what it adds to study files
   const RunKind& run;        ///< how its studies are run
   const FileKind& file;      ///< how files keep what they found
   const ReportKind& report;  ///< how tables and reports show it

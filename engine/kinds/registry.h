@@ -11,6 +11,9 @@ namespace poesy {
 /// Every kind of study, in the order in which they are offered. The only list.
 std::span<const Kind* const> kinds();
 
+/// As study files know them.
+const StudyKinds& study_kinds();
+
 /// The kind of this name; null where there is none.
 const Kind* find_kind(std::string_view name);
 

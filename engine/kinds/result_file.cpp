@@ -1,6 +1,5 @@
 #include "engine/kinds/result_file.h"
 
-#include "engine/base/contract.h"
 #include "engine/kinds/registry.h"
 
 namespace poesy {
@@ -15,9 +14,7 @@ const FileKind* find_file_kind(std::string_view name) {
 
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const std::any& found,
                   const RunFacts& facts) {
-  const FileKind* const kind = find_file_kind(name(study.analysis.kind));
-  POESY_EXPECTS(kind != nullptr);
-  write_result(path, *kind, study, poses, found, facts);
+  write_result(path, study.analysis.kind->name, kind_of(study).file, study, poses, found, facts);
 }
 
 StoredResult read_result(const std::string& path) { return read_result(path, find_file_kind); }

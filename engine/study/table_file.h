@@ -6,6 +6,7 @@
 
 #include "engine/model/model.h"
 #include "engine/run/evaluation.h"
+#include "engine/study/error_table.h"
 #include "engine/study/poses/trajectory.h"
 
 namespace poesy {

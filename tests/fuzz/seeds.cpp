@@ -19,6 +19,7 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/fuzz/small_plans.h"
+#include "tests/support/kinds.h"
 
 namespace {
 
@@ -88,8 +89,8 @@ void write_shard_seed(const std::string& path) {
 
 void write_cases_seed(const std::string& path) {
   test::Example example;
-  example.study.analysis.kind = Analysis::Kind::evaluate;
-  example.study.analysis.cases = {
+  example.study.analysis.kind = &kEvaluateStudy;
+  asked_of<CaseOptions>(example.study.analysis).cases = {
       {"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}, {"none", {0.0, 0.0, 0.0}}};
   const CaseResult result = case_result(example.evaluation(Pairing::every_pose_with_every_row), NotConverged::include);
   write_result(path, example.study, example.poses, result, example.facts);
@@ -97,8 +98,8 @@ void write_cases_seed(const std::string& path) {
 
 void write_identification_seed(const std::string& path) {
   test::Example example;
-  example.study.analysis.kind = Analysis::Kind::identification;
-  example.study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+  example.study.analysis.kind = &kIdentificationStudy;
+  asked_of<IdentificationOptions>(example.study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
   IdentificationResult result;
   result.factors = 2;
   result.groups = 2;
@@ -179,8 +180,8 @@ void write_checkpoints(const std::string& path, const std::vector<Bytes>& states
 }
 
 void write_checkpoints(const std::string& folder) {
-  const fuzz::SmallPlan one_by_one(Analysis::Kind::sensitivity);
-  const fuzz::SmallPlan together(Analysis::Kind::monte_carlo);
+  const fuzz::SmallPlan one_by_one(&kSensitivityStudy);
+  const fuzz::SmallPlan together(&kMonteCarloStudy);
   write_checkpoints(folder + "/sensitivity", states_of([&](const RunOptions& options) {
                       run_sensitivity(one_by_one.plan, *one_by_one.model, 0.95, options);
                     }));

@@ -6,6 +6,7 @@
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/options.h"
 #include "engine/kinds/coupling/stored.h"
 #include "engine/kinds/registry.h"
 
@@ -91,7 +92,7 @@ struct Membership {
 };
 
 Membership membership(const Study& study) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
   for (std::size_t s = 0; s < coupling.sources.size(); ++s) {
     const auto blocks = error_blocks(coupling.sources[s], coupling.pattern, study.model());
@@ -115,7 +116,7 @@ void add_axes(ResultBuilder& result, const CouplingStudy& coupling) {
 
 /// The sizes, the subsets, and where each error belongs.
 void add_choices(ResultBuilder& result, const Study& study) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   StoredCoupling sizes;
   sizes.linear = or_nan(coupling.linear, coupling.sizes());
   sizes.angular = or_nan(coupling.angular, coupling.sizes());
@@ -177,7 +178,7 @@ CsvTable curve_table(const StoredResult& result) {
 void write(ResultBuilder& result, const Study& study, const std::any& any) {
   const auto& found = std::any_cast<const CouplingResult&>(any);
   add_names(result, study, study.analysis.factors);
-  add_axes(result, study.analysis.coupling);
+  add_axes(result, asked_of<CouplingStudy>(study.analysis));
   write_group(result, kCoupling, found);
   add_choices(result, study);
   add_solver(result, {"size", "pose"}, found.solves);
@@ -211,7 +212,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kCouplingFile{
-    .name = "coupling", .write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kCouplingFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

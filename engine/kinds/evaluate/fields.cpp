@@ -4,6 +4,7 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/options.h"
 #include "engine/kinds/evaluate/row_outcomes.h"
 #include "engine/kinds/evaluate/stored.h"
 #include "engine/kinds/registry.h"
@@ -352,9 +353,10 @@ void write_table(ResultBuilder& result, const Study& study, const EvaluatedTable
 }
 
 void write_cases(ResultBuilder& result, const Study& study, const CaseResult& found) {
-  const ErrorTable errors = case_table(study.analysis.cases);
+  const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
+  const ErrorTable errors = case_table(cases);
   add_names(result, study, errors.factors);
-  result.add_axis("case", texts(study.analysis.cases, &ErrorCase::name), {"1", "Name of the case"});
+  result.add_axis("case", texts(cases, &ErrorCase::name), {"1", "Name of the case"});
   add_solves(result, study.model(), transposed(found.evaluation), kCaseAxes);
   add_errors(result, errors, "case", Pairing::every_pose_with_every_row);
   add_limits(result, study.model(), found.evaluation.verdicts);
@@ -405,8 +407,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kEvaluationFile{
-    .name = "evaluate", .write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kEvaluationFile{.write = write, .read = read, .append_tables = append_tables};
 
 GivenErrors evaluated_errors(const StoredResult& result) {
   const StoredEvaluation& stored = evaluation_of(result);
@@ -428,7 +429,8 @@ std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std
 
 void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
                       Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
-  write_result(path, kEvaluationFile, study, poses, EvaluatedTable{result, errors, pairing}, facts);
+  write_result(path, kEvaluateStudy.name, kEvaluationFile, study, poses, EvaluatedTable{result, errors, pairing},
+               facts);
 }
 
 }  // namespace poesy

@@ -2,6 +2,7 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/identification/identification.h"
+#include "engine/kinds/identification/options.h"
 #include "engine/kinds/identification/stored.h"
 #include "engine/kinds/registry.h"
 
@@ -85,7 +86,7 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
   const auto& found = std::any_cast<const Identification&>(any);
   POESY_EXPECTS(found.factors == study.analysis.factors.size());
   add_names(result, study, study.analysis.factors);
-  const std::vector<ErrorSize>& groups = study.analysis.groups;
+  const std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
   result.add_axis("status", texts(kStatusNames, std::identity()), {"1", "How a solve ended"});
   result.add_axis("group", texts(groups, &ErrorSize::name), {"1", "Name of the group of sizes"});
   result.add_axis("coupling", axis_numbers(found.couplings.size()), {"1", "Number of the coupling, from 0"});
@@ -137,7 +138,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kIdentificationFile{
-    .name = "identification", .write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kIdentificationFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

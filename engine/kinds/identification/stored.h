@@ -5,6 +5,7 @@
 #include "engine/files/file_kind.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/identification/identification.h"
+#include "engine/kinds/identification/options.h"
 #include "engine/report/report_kind.h"
 #include "engine/report/tables.h"
 #include "engine/run/result.h"

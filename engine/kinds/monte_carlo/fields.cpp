@@ -2,6 +2,7 @@
 
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/monte_carlo/stored.h"
 #include "engine/kinds/registry.h"
@@ -174,7 +175,8 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
                   {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
   write_group(result, kMonteCarlo, found);
   if (!found.share_magnitude.empty()) {
-    result.file().set_attribute("/monte_carlo/share_magnitude", "share", study.analysis.share);
+    result.file().set_attribute("/monte_carlo/share_magnitude", "share",
+                                asked_of<MonteCarloOptions>(study.analysis).share);
   }
   add_limits(result, study.model(), found.verdicts);
   add_convergence(result, kConvergence, found.convergence);
@@ -218,7 +220,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kMonteCarloFile{
-    .name = "monte-carlo", .write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kMonteCarloFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

@@ -2,6 +2,7 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/registry.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/points_radius.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/stored.h"
@@ -218,7 +219,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kSensitivityFile{
-    .name = "sensitivity", .write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kSensitivityFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

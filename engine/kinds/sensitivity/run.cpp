@@ -6,13 +6,14 @@
 
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/kinds/sensitivity/fidelity.h"
-#include "engine/run/history_points.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/points_radius.h"
 #include "engine/kinds/sensitivity/separation.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
+#include "engine/run/history_points.h"
 #include "engine/run/pending_units.h"
 #include "engine/run/rounds.h"
 
@@ -134,8 +135,9 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
   const std::unique_ptr<Model> other = build_model(at_compared_fidelity(run.study.mechanism));
   const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
   if (!first || !second) return std::nullopt;
-  first->fidelity = compare_fidelities(*first, *second, response_dimensions(run.study.model()),
-                                       standard_deviations(run.study), analysis.linearity);
+  first->fidelity =
+      compare_fidelities(*first, *second, response_dimensions(run.study.model()), standard_deviations(run.study),
+                         asked_of<SensitivityOptions>(analysis).linearity);
   return first;
 }
 

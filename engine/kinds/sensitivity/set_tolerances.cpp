@@ -11,12 +11,12 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/files/stored_study.h"
 #include "engine/kinds/sensitivity/index_change.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/stored_study.h"
 #include "engine/report/text_table.h"
 
 namespace poesy {

@@ -6,6 +6,7 @@
 #include "engine/base/nan.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/stored.h"
 #include "engine/kinds/sensitivity/tolerance_files.h"
@@ -74,7 +75,7 @@ const Group<ToleranceGroup> kToleranceGroup{
 /// The study's reference, or the error of smallest effect at one unit of those in which people read it.
 std::optional<ReferenceError> reference_for(const Study& study, const SensitivityResult& found, std::size_t response) {
   const std::vector<FactorIndex>& factors = study.analysis.factors;
-  if (const auto& chosen = study.analysis.reference) {
+  if (const auto& chosen = asked_of<SensitivityOptions>(study.analysis).reference) {
     const auto at = std::ranges::find(factors, chosen->factor);
     return ReferenceError{static_cast<std::size_t>(at - factors.begin()), chosen->tolerance};
   }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
-#include "engine/files/result_file.h"
 #include "engine/report/html/figures.h"
 #include "engine/report/html/page.h"
 

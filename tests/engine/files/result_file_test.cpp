@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/version.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"

@@ -1,4 +1,4 @@
-#include "engine/kinds/report.h"
+#include "engine/report/html/report.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/html/report.h"
 #include "engine/report/tables.h"

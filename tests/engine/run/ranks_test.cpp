@@ -7,13 +7,12 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
 
 using namespace test;
-using Kind = Analysis::Kind;
-
 RunOptions options_of(Team& team, std::size_t threads = 1) {
   RunOptions options;
   options.threads = threads;
@@ -141,8 +140,8 @@ std::string kind_and_size(const testing::TestParamInfo<std::tuple<Kind, std::siz
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RanksOf,
-                         testing::Combine(testing::Values(Kind::sensitivity, Kind::monte_carlo, Kind::evaluate,
-                                                          Kind::identification),
+                         testing::Combine(testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy,
+                                                          &kIdentificationStudy),
                                           testing::Values(1, 2, 3, 4)),
                          kind_and_size);
 

@@ -5,8 +5,11 @@
 #include <fstream>
 
 #include "engine/base/error.h"
+#include "engine/files/result_file.h"
 #include "engine/kinds/result_file.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -24,6 +27,7 @@ poesy::Study small_study(const poesy::CatalogEntry& entry) {
     study.poses.workspace.push_back({entry.description.pose_lower[c], entry.description.pose_upper[c]});
   }
   study.errors.by_factor.assign(entry.description.factors.size(), poesy::Distribution::normal(1e-4));
+  study.analysis.kind = &poesy::kSensitivityStudy;
   study.analysis.factors = entry.description.factor_sets.front().factors;
   study.analysis.samples = 10;
   return study;

@@ -8,8 +8,10 @@
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -22,7 +24,7 @@ class FidelityFile : public testing::Test {
     catalog_[0].description.fidelities = {"exact", "first-order"};
     example_.study.mechanism.entry = &catalog_[0];
     example_.study.mechanism.compared = 1;
-    example_.study.analysis.linearity = 0.02;
+    asked_of<SensitivityOptions>(example_.study.analysis).linearity = 0.02;
     FidelityResult& fidelity = result_.fidelity.emplace();
     fidelity.linearity = 0.02;
     fidelity.global = {1.0, 2.0, 3.0, 4.0};

@@ -11,10 +11,11 @@
 
 #include "engine/base/error.h"
 #include "engine/files/h5.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_text.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/engine/kinds/stored.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -49,7 +50,7 @@ class ToleranceFiles : public testing::Test {
 };
 
 TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
-  example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
   const StoredResult stored = written({1.0, 2.0, 3.0, 4.0});
   EXPECT_EQ(sensitivity_of(stored).factor_limb, (std::vector<std::uint64_t>{1, 1}));
   ASSERT_EQ(sensitivity_of(stored).tolerance_reference.size(), 2U);
@@ -68,7 +69,7 @@ TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
 }
 
 TEST_F(ToleranceFiles, ReferenceWithoutEffectLeavesTolerancesUnknown) {
-  example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
   written({1.0, 0.0, 1.0, 2.0});
   const auto found = h5::File::open(path_).read<double>("/tolerances/equal_effect");
   EXPECT_TRUE(std::isnan(found[0]) && std::isnan(found[1]));
@@ -102,14 +103,14 @@ TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
 }
 
 TEST_F(ToleranceFiles, ConfirmationVariesErrorsByTheirTolerances) {
-  example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
   example_.study.analysis.background = Background{{FactorIndex(2)}, 1e-3, 0.0};
   example_.study.seed = 77;
   const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   ASSERT_EQ(paths, (std::vector<std::string>{folder_ / "out/confirm_equal_effect.toml",
                                              folder_ / "out/confirm_equal_tolerance.toml"}));
   const Study equal_effect = read_back(paths[0]);
-  EXPECT_EQ(equal_effect.analysis.kind, Analysis::Kind::monte_carlo);
+  EXPECT_EQ(equal_effect.analysis.kind, &kMonteCarloStudy);
   EXPECT_EQ(equal_effect.analysis.factors, example_.study.analysis.factors);
   EXPECT_EQ(equal_effect.analysis.samples, example_.study.analysis.samples);
   EXPECT_EQ(equal_effect.analysis.background->linear, 1e-3);
@@ -170,7 +171,7 @@ TEST_F(ToleranceFiles, StudiesCarryTheLimitThatJudgesThem) {
     ASSERT_EQ(analysis.limits.size(), 1U);
     EXPECT_EQ(analysis.limits[0].response, 0U);
     EXPECT_EQ(analysis.limits[0].most, 1e-3);
-    EXPECT_EQ(analysis.judge, Judge::rms);
+    EXPECT_EQ(asked_of<MonteCarloOptions>(analysis).judge, Judge::rms);
   }
 }
 
