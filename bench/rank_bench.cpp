@@ -88,12 +88,12 @@ void measure_both(Team& team, std::size_t units_per_cell) {
   {
     const Plan plan(study, poses);
     const std::size_t responses = model->description().responses.size();
-    const SensitivityUnit unit{{std::vector(responses, Moments::of(numbers())), counts(), {}}, {}};
+    const CellUnit unit{{std::vector(responses, Moments::of(numbers())), counts(), {}}, {}};
     SensitivityCollector collect(plan, responses, study.analysis.conf_level);
     measure(
         "sensitivity", plan, unit, team,
-        [&](const WorkUnit& of, const SensitivityUnit& found) { collect.add(of, found); },
-        [&](ByteReader& from) { return SensitivityUnit::read(from, responses, 0, 0); });
+        [&](const WorkUnit& of, const CellUnit& found) { collect.add(of, found); },
+        [&](ByteReader& from) { return CellUnit::read(from, responses, 0, 0); });
   }
   // As many units at few poses: what is done once for a pose does not count in long studies.
   study.analysis.kind = &kMonteCarloStudy;

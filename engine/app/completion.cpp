@@ -10,7 +10,6 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/kinds/registry.h"
-#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 

@@ -94,8 +94,11 @@ int evaluate(const EvaluateOptions& options) {
   if (const auto& limits = study.analysis.limits; !limits.empty()) {
     result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
   }
-  StoredResult shown = with_verdicts(study, poses, result->verdicts);
-  shown.row_names = row_names(errors.labels, pairing, errors.rows);  // the study's own cases are not what was evaluated
+  StoredResult shown = with_verdicts(study, poses,
+                                     {.solves = {},
+                                      .facts = {},
+                                      .verdicts = result->verdicts,
+                                      .row_names = row_names(errors.labels, pairing, errors.rows)});
   for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
   if (!options.result.empty()) {
     write_evaluation(options.result, study, poses, errors, pairing, *result,

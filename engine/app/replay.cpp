@@ -12,7 +12,6 @@
 #include "engine/base/error.h"
 #include "engine/files/trial_read.h"
 #include "engine/files/version.h"
-#include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/stored_study.h"
 #include "engine/run/evaluation.h"

@@ -13,7 +13,6 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/files/shard_file.h"
-#include "engine/kinds/evaluate/options.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
@@ -111,8 +110,7 @@ ExitCode judge_limits(const StoredResult& result, const std::string& study_path,
   return verdicts.passed() ? kDone : kLimitNotKept;
 }
 
-StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
-                           const std::optional<LimitVerdicts>& verdicts) {
+StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const RunOutcome& outcome) {
   StoredResult result;
   for (const PoseCoordinate& coordinate : study.model().pose_coordinates) {
     result.pose_coordinates.push_back({coordinate.name, std::string(si_unit(coordinate.dimension))});
@@ -122,10 +120,8 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
   for (const Response& response : study.model().responses) {
     result.responses.push_back({response.name, std::string(si_unit(response.dimension))});
   }
-  if (study.analysis.kind == &kEvaluateStudy) {
-    for (const ErrorCase& one : asked_of<CaseOptions>(study.analysis).cases) result.row_names.push_back(one.name);
-  }
-  result.verdicts = verdicts;
+  result.row_names = outcome.row_names;
+  result.verdicts = outcome.verdicts;
   return result;
 }
 
@@ -135,7 +131,10 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
   const bool writes = job.options.team == nullptr || job.options.team->leads();
   if (writes && result) write_result(job.path, job.study, job.poses, result->found, outcome_of(job).facts);
   RunOutcome outcome = outcome_of(job);
-  if (result) outcome.verdicts = result->verdicts;
+  if (result) {
+    outcome.verdicts = result->verdicts;
+    outcome.row_names = result->row_names;
+  }
   if (const auto& shard = job.options.shard; shard && writes) {
     write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), outcome.facts);
   }
@@ -151,7 +150,7 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
              stdout);
   if (job.options.shard) return kDone;  // the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
-  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, outcome.verdicts), study_path, remedy);
+  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, outcome), study_path, remedy);
   const ExitCode failures = judge_failures(job.study, outcome.solves, study_path, remedy);
   return failures != kDone ? failures : limits;  // with so many failures no limit can be trusted
 }

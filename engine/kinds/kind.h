@@ -25,6 +25,7 @@ namespace poesy {
 struct StudyResult {
   std::any found;                         ///< of the kind's own type: SensitivityResult, for instance
   std::optional<LimitVerdicts> verdicts;  ///< what became of the limits that the study states; empty without any
+  std::vector<std::string> row_names;     ///< of the rows of errors that a verdict may speak of
 
   /// What was found. Precondition: it is of this type.
   template <class Found>

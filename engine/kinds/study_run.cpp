@@ -22,7 +22,9 @@ std::optional<StudyResult> run_study(const Study& study, const RunOptions& optio
 void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
   const auto most_shards = kind_of(study).run.most_shards;
   if (most_shards == nullptr) {
-    throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
+    throw InputError({},
+                     "--shard divides no " + std::string(study.analysis.kind->name) +
+                         ", each step of which needs all poses of the one before",
                      "run it whole, for it is small, or with mpirun");
   }
   if (study.analysis.adaptive) {

@@ -2,8 +2,8 @@
 """Checks that a kind of study is known in its own folder and in one row of the registry, and nowhere else.
 
 The kinds are the folders that engine/kinds/registry.cpp includes. Looked for in the code of engine/, without comments:
-- the name of a kind in a room other than engine/kinds (in engine/app only as a text in quotes of its own, because help
-  may show one as an example);
+- the name of a kind in a room other than engine/kinds: in code, or as a text in quotes of its own. Sentences for people
+  may name one;
 - an include of one kind's folder in another's.
 Words that mean something else as well (WORDS_OF_OTHERS) count only as a text in quotes of their own.
 Prints one line a violation, FILE:LINE: problem; exits 1 when there are any.
@@ -17,6 +17,7 @@ from pathlib import Path
 REGISTRY = "engine/kinds/registry.cpp"
 # What a model does, and the command that solves rows of errors.
 WORDS_OF_OTHERS = {"evaluate": ("engine/app/evaluate.cpp",)}
+TEXT = re.compile(r'"(?:\\.|[^"\\])*"')
 COMMENT = re.compile(r'"(?:\\.|[^"\\])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
 
@@ -33,12 +34,14 @@ def without_comments(text):
 
 def pattern_of(kind, path):
     """What a file must not hold of this kind; None when it may hold all."""
-    quoted = '"' + kind.replace("_", "-") + '"'
     if kind in WORDS_OF_OTHERS:
-        return None if path in WORDS_OF_OTHERS[kind] else re.compile(quoted)
-    if path.startswith("engine/app/"):
-        return re.compile(quoted + f"|engine/kinds/{kind}/")
+        return None if path in WORDS_OF_OTHERS[kind] else re.compile('"' + kind.replace("_", "-") + '"')
     return re.compile(kind.replace("_", "[-_ ]?"), re.IGNORECASE)
+
+
+def without_sentences(line):
+    """The line without texts of more than one word; paths of includes stay."""
+    return TEXT.sub(lambda text: '""' if " " in text[0] else text[0], line)
 
 
 def sources(root):
@@ -50,7 +53,7 @@ def naming_problems(path, lines, kinds):
     for kind in kinds:
         pattern = pattern_of(kind, path)
         for number, line in enumerate(lines, start=1):
-            if pattern and pattern.search(line):
+            if pattern and pattern.search(without_sentences(line)):
                 yield f"{path}:{number}: names the kind of study '{kind}'; ask engine/kinds/registry.h for what it needs"
 
 

@@ -13,6 +13,7 @@ CLEAN = {
     "engine/kinds/evaluate/kind.h": '#include "engine/run/fold.h"\n',
     "engine/run/fold.h": '// as in two ways\nvoid evaluate();  /* two-ways\n two ways */ const char* web = "http://x";\n',
     "engine/app/help.cpp": 'const char* example = "poesy template MODEL two-ways";\n',
+    "engine/run/words.cpp": 'const char* remedy = "write a study of kind two-ways";\n',
     "engine/app/evaluate.cpp": 'const char* command = "evaluate";\n',
 }
 

@@ -182,7 +182,7 @@ TEST_P(EveryMechanism, HasPositionsThatExist) {
 
 TEST_P(EveryMechanism, HasSourcesThatShareNothing) {
   std::set<std::size_t> taken;
-  for (const CouplingSource& source : description().sources) {
+  for (const SourceSet& source : description().sources) {
     ASSERT_NE(description().find_set(source.set), nullptr) << source.name;
     for (const FactorIndex factor : description().find_set(source.set)->factors) {
       EXPECT_TRUE(taken.insert(factor.value).second) << source.name;

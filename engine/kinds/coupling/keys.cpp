@@ -104,7 +104,7 @@ std::vector<ErrorSource> usual_sources(const StudySection& analysis, const Model
                      std::string(kNameThem));
   }
   std::vector<ErrorSource> sources;
-  for (const CouplingSource& usual : model.sources) {
+  for (const SourceSet& usual : model.sources) {
     sources.push_back({usual.name, model.find_set(usual.set)->factors});
     const ErrorSource& source = sources.back();
     if (!error_blocks(source, pattern, model).empty()) continue;
@@ -161,7 +161,7 @@ std::string sizes_line(const Study& study) {
 
 /// Whether an error of this dimension is among the literature's sources.
 bool has_source_of(const ModelDescription& model, Dimension dimension) {
-  return std::ranges::any_of(model.sources, [&](const CouplingSource& source) {
+  return std::ranges::any_of(model.sources, [&](const SourceSet& source) {
     return std::ranges::any_of(model.find_set(source.set)->factors,
                                [&](FactorIndex factor) { return model.factors[factor.value].dimension == dimension; });
   });
@@ -181,7 +181,7 @@ std::string shown_sizes(const TemplateLines& lines, const Study& study) {
 std::string shown_sources(const TemplateLines& lines, const Study& study) {
   std::string text = "\n" + lines.explanation_lines("analysis", "sources") + lines.keys_lines("analysis.sources") +
                      "# Factor sets:\n" + sets_comment(study.model());
-  for (const CouplingSource& source : study.model().sources) {
+  for (const SourceSet& source : study.model().sources) {
     text +=
         fmt::format("[[analysis.sources]]\nname = {}\nfactors = {}\n\n", in_quotes(source.name), in_quotes(source.set));
   }

@@ -14,7 +14,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
                                          Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
   if (!evaluation || !run.makes_result()) return std::nullopt;
-  return StudyResult{coupling_result(*evaluation, coupling, model, run.study.not_converged), std::nullopt};
+  return StudyResult{coupling_result(*evaluation, coupling, model, run.study.not_converged), std::nullopt, {}};
 }
 
 Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {

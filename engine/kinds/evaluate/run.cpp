@@ -19,7 +19,8 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   if (const auto& limits = run.study.analysis.limits; !limits.empty()) {
     evaluation->verdicts = judge_rows(limits, *evaluation, kPairing, run.study.not_converged);
   }
-  StudyResult found{{}, evaluation->verdicts};
+  StudyResult found{{}, evaluation->verdicts, {}};
+  for (const ErrorCase& one : asked_of<CaseOptions>(run.study.analysis).cases) found.row_names.push_back(one.name);
   found.found = case_result(std::move(*evaluation), run.study.not_converged);
   return found;
 }

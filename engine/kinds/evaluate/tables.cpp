@@ -9,7 +9,6 @@
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/evaluate/row_outcomes.h"
 #include "engine/kinds/evaluate/stored.h"
-#include "engine/kinds/sensitivity/tolerance_table.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"

@@ -10,7 +10,7 @@ namespace {
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   auto result = run_identification(run.study, run.model, run.poses, run.options);
   if (!result || !run.makes_result()) return std::nullopt;
-  return StudyResult{*std::move(result), std::nullopt};
+  return StudyResult{*std::move(result), std::nullopt, {}};
 }
 
 Outlook identification_outlook(const Study& study, const Model& model, const PoseSet& poses) {

@@ -107,7 +107,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
   auto result = run_monte_carlo(plan, run.model, run.study.analysis, run.options);
   if (!result || !run.makes_result()) return std::nullopt;
-  StudyResult found{{}, result->verdicts};
+  StudyResult found{{}, result->verdicts, {}};
   found.found = *std::move(result);
   return found;
 }

@@ -10,7 +10,7 @@
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {

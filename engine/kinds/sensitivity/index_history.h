@@ -8,8 +8,8 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/interval.h"
-#include "engine/stats/sensitivity_index.h"
 #include "engine/study/plan.h"
 
 namespace poesy {

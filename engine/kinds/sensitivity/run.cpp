@@ -52,15 +52,15 @@ class CellWork {
     return pending_->size();
   }
   UnitEvaluator worker() const { return {plan_, model_}; }
-  SensitivityUnit solve(UnitEvaluator& evaluate, std::size_t n) const { return evaluate((*pending_)[n]); }
-  const SolveCounts& merge(std::size_t n, const SensitivityUnit& found) {
+  CellUnit solve(UnitEvaluator& evaluate, std::size_t n) const { return evaluate((*pending_)[n]); }
+  const SolveCounts& merge(std::size_t n, const CellUnit& found) {
     collect_.add((*pending_)[n], found);
     return found.solves;
   }
-  static void write(std::size_t, const SensitivityUnit& found, ByteWriter& to) { found.write(to); }
-  SensitivityUnit read(std::size_t n, ByteReader& from) const {
+  static void write(std::size_t, const CellUnit& found, ByteWriter& to) { found.write(to); }
+  CellUnit read(std::size_t n, ByteReader& from) const {
     const WorkUnit unit = (*pending_)[n];
-    return SensitivityUnit::read(from, responses_, unit.first.value, points_within(unit, points_).size());
+    return CellUnit::read(from, responses_, unit.first.value, points_within(unit, points_).size());
   }
   SolveCounts solved() const { return collect_.total(); }
   std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
@@ -158,7 +158,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   if (run.model.description().separation) {
     result->separation = separate_errors(run.model, plan.poses(), plan.factors(), standard_deviations(run.study));
   }
-  return StudyResult{*std::move(result), std::nullopt};
+  return StudyResult{*std::move(result), std::nullopt, {}};
 }
 
 std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }

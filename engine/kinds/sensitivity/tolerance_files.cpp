@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/file_writer.h"
-#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/study/error_words.h"
 
@@ -39,8 +39,8 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   if (study.analysis.factors.size() != result.factors.size()) {
     throw FileError("the study in the result", "does not fit the result's factors", "run the study again");
   }
-  study.analysis.kind = &kMonteCarloStudy;
-  study.analysis.asked = MonteCarloOptions();
+  study.analysis.kind = &find_kind("monte-carlo")->study;
+  study.analysis.asked.reset();
   const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
   if (along_file) study.poses.select = PoseSelection::Select::file;
   study.mechanism.compared.reset();

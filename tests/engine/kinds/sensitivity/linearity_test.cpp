@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "engine/run/some_poses.h"
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
 #include "tests/support/kinds.h"
