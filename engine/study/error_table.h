@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "engine/base/index.h"
-#include "engine/run/evaluation.h"
 
 namespace poesy {
 

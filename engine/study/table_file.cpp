@@ -12,7 +12,6 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/run/evaluation.h"
 #include "engine/study/csv_lines.h"
 #include "engine/study/error_words.h"
 

@@ -88,7 +88,7 @@ std::string introduction() {
       "# Study files\n\n"
       "Every key of a study file, as `poesy template --reference` prints it. Do not edit: it is made of the "
       "descriptions\n"
-      "by which the program reads studies (`engine/io/study_*.cpp`), and a test compares.\n\n"
+      "by which the program reads studies (`engine/study`, `engine/kinds`), and a test compares.\n\n"
       "A study is [TOML](https://toml.io). `poesy template MODEL KIND` writes a complete one, `poesy check "
       "STUDY.toml`\n"
       "prints it with every default filled in.\n\n"
