@@ -69,11 +69,11 @@ void write_convergence_seed(const std::string& path) {
   convergence.min = 1000;
   convergence.max = 3000;
   convergence.relative_error = 0.05;
-  convergence.conf_level = 0.95;
-  convergence.milestones = {1000, 2000};
+  convergence.course.conf_level = 0.95;
+  convergence.course.samples = {1000, 2000};
   const std::size_t indices = result.responses * result.factors;
-  convergence.quantity.assign(2 * indices, 0.5);
-  convergence.half_width.assign(2 * indices, 0.25);
+  convergence.course.value.assign(2 * indices, 0.5);
+  convergence.course.half_width.assign(2 * indices, 0.25);
   convergence.reached.assign(indices, 1);
   convergence.relative_half_width.assign(indices, 0.5);
   convergence.samples.assign(result.factors, 2000);

@@ -6,12 +6,11 @@
 #include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/sensitivity/options.h"
-#include "tests/support/kinds.h"
 
 namespace poesy::test {
 
 /// A kind of study, as a parameter of tests.
-using Kind = const StudyKind*;
+using KindOfStudy = const StudyKind*;
 
 /// For studies of any kind: Monte Carlo studies take them.
 inline void set_quantiles(Analysis& analysis, const std::vector<double>& quantiles) {

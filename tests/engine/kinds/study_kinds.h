@@ -22,7 +22,7 @@ inline const Catalog& catalog() {
   return failing;
 }
 
-inline Study study_of(Kind kind, std::size_t samples) {
+inline Study study_of(KindOfStudy kind, std::size_t samples) {
   Study study;
   study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
   study.errors.by_factor.assign(3, Distribution::normal(1e-3));
@@ -110,7 +110,7 @@ inline std::optional<Bits> run(const Prepared& prepared, const RunOptions& optio
                           options);
   };
   const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
-  const Kind kind = prepared.study.analysis.kind;
+  const KindOfStudy kind = prepared.study.analysis.kind;
   if (kind == &kSensitivityStudy) return bits(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
   if (kind == &kMonteCarloStudy) {
     return bits(run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options));
@@ -125,7 +125,7 @@ inline std::optional<Bits> run(const Prepared& prepared, const RunOptions& optio
   return bits(table(errors));
 }
 
-inline std::string kind_name(const testing::TestParamInfo<Kind>& info) {
+inline std::string kind_name(const testing::TestParamInfo<KindOfStudy>& info) {
   std::string text(info.param->name);
   std::erase(text, '-');
   return text;

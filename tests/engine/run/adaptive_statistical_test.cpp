@@ -25,7 +25,7 @@ constexpr double kAlpha = 0.001;
 const double kFoldedStd = std::sqrt(1.0 - 2.0 / std::numbers::pi);
 const double kFoldedMean = std::sqrt(2.0 / std::numbers::pi);
 
-Study study_of(test::Kind kind, std::size_t poses, double relative_error) {
+Study study_of(test::KindOfStudy kind, std::size_t poses, double relative_error) {
   Study study = test::adaptive_study(kind, relative_error, 1'000'000);
   study.errors.by_factor.assign(3, Distribution::normal(1e-3));
   study.analysis.factors = {FactorIndex(0)};

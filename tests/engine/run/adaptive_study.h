@@ -13,7 +13,7 @@ namespace poesy::test {
 
 /// An adaptive study of the fake mechanism with all three errors, of which the last has no effect. The two with an
 /// effect come to their end at different milestones, for a uniform error has less kurtosis than a normal one.
-inline Study adaptive_study(Kind kind, double relative_error, std::size_t max) {
+inline Study adaptive_study(KindOfStudy kind, double relative_error, std::size_t max) {
   static const Catalog catalog = fake_catalog();
   Study study;
   study.mechanism = {&catalog.front(), {FakeModel::kArm}, 0, {}};

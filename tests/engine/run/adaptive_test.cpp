@@ -200,7 +200,7 @@ TEST(Rounds, BothEndsOfAnIntervalCount) {
 
 struct Case {
   const char* name;
-  test::Kind kind;
+  test::KindOfStudy kind;
   double relative_error;
   std::size_t max;
 };

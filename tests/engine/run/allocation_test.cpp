@@ -133,7 +133,7 @@ TEST(Allocation, NoneInAWarmHybridMachine) {
 
 /// But for the list of failed samples, in the units that have any.
 template <class UnitOfWork>
-std::size_t allocations_per_unit(test::Kind kind, std::size_t samples) {
+std::size_t allocations_per_unit(test::KindOfStudy kind, std::size_t samples) {
   Study study = bench::published_study(4, samples);
   study.analysis.kind = kind;
   const std::unique_ptr<Model> model = build_model(study.mechanism);

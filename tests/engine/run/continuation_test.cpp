@@ -30,7 +30,7 @@ Recorded record(const Prepared& prepared, States start = {}) {
   return recorded;
 }
 
-class Continuation : public testing::TestWithParam<Kind> {};
+class Continuation : public testing::TestWithParam<KindOfStudy> {};
 
 TEST_P(Continuation, GivesTheSameBits) {
   for (const std::size_t samples : {2 * Plan::kUnitSamples, 2 * Plan::kUnitSamples + 300, std::size_t{300}}) {
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Continuation,
                          testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy, &kIdentificationStudy),
                          kind_name);
 
-class Extension : public testing::TestWithParam<Kind> {};
+class Extension : public testing::TestWithParam<KindOfStudy> {};
 
 TEST_P(Extension, GivesTheBitsOfAFreshRun) {
   const std::size_t unit = Plan::kUnitSamples;
@@ -127,7 +127,7 @@ States run_shard(const Prepared& prepared, const Shard& shard) {
   return {checkpoints.stages().begin(), checkpoints.stages().end()};
 }
 
-class Sharding : public testing::TestWithParam<Kind> {};
+class Sharding : public testing::TestWithParam<KindOfStudy> {};
 
 TEST_P(Sharding, TogetherHasTheBitsOfTheWhole) {
   for (const std::size_t samples : {2 * Plan::kUnitSamples, Plan::kUnitSamples + 300, std::size_t{300}}) {

@@ -61,7 +61,7 @@ TEST(FailedSamples, ReadBackWhatTheyWrote) {
   EXPECT_THROW(read(3, 4, 1000), BytesError);
 }
 
-Study study_of(test::Kind kind, std::size_t samples, std::size_t poses, double sigma = 1e-3) {
+Study study_of(test::KindOfStudy kind, std::size_t samples, std::size_t poses, double sigma = 1e-3) {
   static const Catalog catalog = test::failing_catalog();
   Study study;
   study.mechanism = {&catalog.front(), {test::FakeModel::kArm}, 0, {}};
@@ -115,7 +115,7 @@ std::optional<std::vector<Failure>> run(const Prepared& prepared, const RunOptio
   return result ? std::optional(result->failures) : std::nullopt;
 }
 
-class Failures : public testing::TestWithParam<test::Kind> {};
+class Failures : public testing::TestWithParam<test::KindOfStudy> {};
 
 TEST_P(Failures, AreTheFirstOfEachCellForAnyThreads) {
   const Prepared prepared(study_of(GetParam(), 3300, 3));

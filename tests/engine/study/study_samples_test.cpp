@@ -58,7 +58,7 @@ TEST(AdaptiveSamples, StandInTheResolvedText) {
 }
 
 TEST(AdaptiveSamples, StandInTheTemplate) {
-  for (const test::Kind kind : {&kSensitivityStudy, &kMonteCarloStudy}) {
+  for (const test::KindOfStudy kind : {&kSensitivityStudy, &kMonteCarloStudy}) {
     std::string text = template_text(kCatalog[0], *kind);
     const std::string_view fixed = "\nsamples = 1000";
     const std::string_view shown = "\n# samples = {";
