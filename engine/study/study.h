@@ -86,13 +86,11 @@ const Options& asked_of(const Analysis& analysis) {
   return *asked;
 }
 
-/// The same to be changed.
+/// The same to be changed; the options of another kind that the study had before are dropped.
 template <class Options>
 Options& asked_of(Analysis& analysis) {
-  if (!analysis.asked.has_value()) analysis.asked = Options{};
-  auto* asked = std::any_cast<Options>(&analysis.asked);
-  POESY_EXPECTS(asked != nullptr);
-  return *asked;
+  if (std::any_cast<Options>(&analysis.asked) == nullptr) analysis.asked = Options{};
+  return *std::any_cast<Options>(&analysis.asked);
 }
 
 /// What becomes of samples without a solution.

@@ -181,7 +181,7 @@ class Example {
     Analysis& analysis = study.analysis;
     analysis.kind = &kCouplingStudy;
     analysis.factors = {FactorIndex(0), FactorIndex(2)};
-    asked_of<CouplingStudy>(analysis) = {{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
+    analysis.asked = CouplingStudy{{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
     CouplingResult result;
     result.responses = 2;
     result.sizes = 2;
