@@ -8,7 +8,6 @@
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
 #include "engine/study/study_kind.h"
-#include "engine/study/study_text.h"
 
 namespace poesy {
 namespace {
@@ -60,10 +59,6 @@ std::string charts_comment(const ModelDescription& model) {
                                 fmt::join(names(chart.coordinates), ", ")));
   }
   return text;
-}
-
-std::string errors_introduction(const TemplateLines& lines) {
-  return "\n" + comment(lines.meaning("errors")) + lines.keys_lines("errors.linear");
 }
 
 std::string analysis_section(const TemplateLines& lines, const Study& shown) {
@@ -129,9 +124,10 @@ std::string template_text(const CatalogEntry& entry, const StudyKind& kind, cons
   shown.analysis.kind = &kind;
   POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));
   return head(lines, shown) + mechanism_section(lines, shown) + "\n[poses]\n" + charts_comment(shown.model()) +
-         template_lines(lines, poses_keys(), shown) + errors_introduction(lines) + "[errors]\n" +
-         template_lines(lines, errors_keys(), shown) + analysis_section(lines, shown) + "\n[solver]\n" +
-         template_lines(lines, solver_keys(), shown) + "\n[run]\n" + template_lines(lines, run_keys(), shown);
+         template_lines(lines, poses_keys(), shown) + "\n" + comment(lines.meaning("errors")) +
+         lines.keys_lines("errors.linear") + "[errors]\n" + template_lines(lines, errors_keys(), shown) +
+         analysis_section(lines, shown) + "\n[solver]\n" + template_lines(lines, solver_keys(), shown) + "\n[run]\n" +
+         template_lines(lines, run_keys(), shown);
 }
 
 std::string study_reference(const StudyKinds& kinds) { return introduction() + tables_reference(kinds.tables); }

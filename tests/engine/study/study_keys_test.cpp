@@ -1,5 +1,5 @@
 #include "engine/kinds/study_file.h"
-#include "engine/study/keys.h"
+#include "engine/study/study_kind.h"
 
 #include <gtest/gtest.h>
 #include <toml++/toml.h>
