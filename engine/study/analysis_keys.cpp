@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -206,8 +207,7 @@ std::string response_limits_lines(const Study& study) {
 std::string shown_limits(const TemplateLines& lines, const Study& study) {
   const std::vector<Response>& responses = study.model().responses;
   if (responses.empty()) return {};
-  std::string list = "Responses:";
-  for (const Response& response : responses) list += " " + response.name;
+  const std::string list = fmt::format("Responses: {}", fmt::join(names(responses), " "));
   const auto length = std::ranges::find(responses, Dimension::length, &Response::dimension);
   const Response& response = length == responses.end() ? responses.front() : *length;
   return comment(list) + lines.explained("analysis", "limits",

@@ -26,8 +26,6 @@ std::string_view name_among(const std::array<std::string_view, kCount>& names, E
   return names.at(static_cast<std::size_t>(value));
 }
 
-constexpr std::size_t kMostNames = 3;
-
 /// Of the background, those that neither vary nor are zero.
 std::vector<FactorIndex> held_errors(const Study& study) {
   const std::vector<double> errors = background_errors(study.analysis.background, study.model());
@@ -46,6 +44,7 @@ std::string owners_text(const std::vector<FactorIndex>& held, const Study& study
   if (const std::string set = set_name(named, study.model()); !set.empty()) {
     return fmt::format("{}{} {} of set '{}'", all, named.size(), named.size() == 1 ? "error" : "errors", set);
   }
+  constexpr std::size_t kMostNames = 3;
   if (held.size() > kMostNames) return fmt::format("{} errors", held.size());
   std::vector<std::string> names;
   for (const FactorIndex factor : held) names.push_back(study.model().factors[factor.value].name);
@@ -56,12 +55,13 @@ std::string owners_text(const std::vector<FactorIndex>& held, const Study& study
 std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study) {
   const Background& background = *study.analysis.background;
   std::vector<std::string> sizes;
-  const auto add = [&](Dimension dimension, double size) {
-    const auto has_it = [&](FactorIndex factor) { return study.model().factors[factor.value].dimension == dimension; };
-    if (std::ranges::any_of(held, has_it)) sizes.push_back(readable_text({size, dimension}, 6));
-  };
-  add(Dimension::length, background.linear);
-  add(Dimension::angle, background.angular);
+  for (const Quantity size :
+       {Quantity{background.linear, Dimension::length}, Quantity{background.angular, Dimension::angle}}) {
+    const auto has_it = [&](FactorIndex factor) {
+      return study.model().factors[factor.value].dimension == size.dimension;
+    };
+    if (std::ranges::any_of(held, has_it)) sizes.push_back(readable_text(size, 6));
+  }
   return fmt::format("{}", fmt::join(sizes, " and "));
 }
 

@@ -12,19 +12,15 @@
 namespace poesy {
 namespace {
 
-std::string title(const StudyKind& kind) {
-  std::string text(kind.name);
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text;
-}
-
 std::string head(const TemplateLines& lines, const Study& shown) {
   const ModelDescription& model = shown.model();
+  std::string title = fmt::format("{} of {}", shown.analysis.kind->name, model.name);
+  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   return comment(model.name + ": " + model.title) + "# Run this study with: poesy run STUDY.toml\n" +
          comment("Quantities are texts with a unit: " + unit_names() + ".") +
          "# A key behind a '#' shows a default or an alternative. All keys: poesy template --reference\n" +
          lines.usual("", "format") + lines.usual("", "version") +
-         lines.explained("", "title", "title = " + in_quotes(title(*shown.analysis.kind) + " of " + model.name));
+         lines.explained("", "title", "title = " + in_quotes(title));
 }
 
 std::string fidelity_keys(const TemplateLines& lines, const Study& shown) {
@@ -71,11 +67,11 @@ std::string analysis_section(const TemplateLines& lines, const Study& shown) {
 
 /// "`m`, `cm`".
 std::string units_of(Dimension dimension) {
-  std::string text;
+  std::vector<std::string_view> list;
   for (const Unit& unit : units()) {
-    if (unit.dimension == dimension) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", unit.name);
+    if (unit.dimension == dimension) list.push_back(unit.name);
   }
-  return text;
+  return fmt::format("`{}`", fmt::join(list, "`, `"));
 }
 
 std::string introduction() {

@@ -268,9 +268,7 @@ std::string shown_limits(const TemplateLines& lines, const Study& study) {
   const std::vector<JointDisplacement>& joints = study.model().joints;
   if (joints.empty()) return {};
   std::string list = "Joints:";
-  for (const JointDisplacement& joint : joints) {
-    list += fmt::format(" {} ({})", joint.name, name(joint.dimension));
-  }
+  for (const JointDisplacement& joint : joints) list += fmt::format(" {} ({})", joint.name, name(joint.dimension));
   const JointDisplacement& joint = joints.front();
   const std::string_view range =
       joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]";
