@@ -21,7 +21,7 @@
 #include "engine/kinds/study_run.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
 

@@ -21,7 +21,7 @@
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 #include "models/registry.h"
 
 namespace poesy::app {

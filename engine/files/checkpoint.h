@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/model/pose_set.h"
 #include "engine/run/shard.h"
+#include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
 namespace poesy {

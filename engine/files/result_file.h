@@ -12,10 +12,10 @@
 #include "engine/base/contract.h"
 #include "engine/base/units.h"
 #include "engine/files/file_kind.h"
-#include "engine/model/pose_set.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/stats/tolerance.h"
+#include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
 namespace poesy {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/files/result_file.h"
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 #include "engine/study/study.h"
 
 namespace poesy {

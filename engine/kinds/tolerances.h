@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/files/result_file.h"
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 
 namespace poesy {
 

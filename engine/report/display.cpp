@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {

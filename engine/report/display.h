@@ -93,7 +93,7 @@ Cell value_cell(double si, const NamedUnit& named, int digits = 4);
 Cell count_cell(std::uint64_t count);
 /// A share, for a percent_column.
 Cell percent_cell(double share);
-/// An index or an end of its interval, shown as index * scale. Below `rounding` (stats/rounding.h) it is shown as 0, or
+/// An index or an end of its interval, shown as index * scale. Below `rounding` (stats/indices.h) it is shown as 0, or
 /// as kTooSmall, without a number, where the error is too small to tell.
 Cell index_cell(double index, double scale, double rounding);
 

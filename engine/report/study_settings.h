@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-/// What a result says of its study: the resolved text (study/study_text.h), read setting by setting.
+/// What a result says of its study: the resolved text (study/study_file.h), read setting by setting.
 namespace poesy {
 
 /// A setting of a resolved study.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 

@@ -9,7 +9,7 @@
 #include "engine/model/model.h"
 #include "engine/run/result.h"
 #include "engine/run/run_options.h"
-#include "engine/study/error_table.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/model/pose_set.h"
 #include "engine/model/status.h"
 #include "engine/run/failed_samples.h"
+#include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
 namespace poesy {

@@ -8,7 +8,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/run/result.h"
-#include "engine/stats/interval.h"
+#include "engine/stats/moments.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -20,7 +20,7 @@ std::vector<std::size_t> all_positions(std::size_t count);
 std::size_t least_samples(const Plan& plan);
 
 /// The rounds of a sampled study. One with a fixed number of samples has a single round. One with adaptive samples has
-/// a round for each milestone (engine/study/milestones.h), in which every slot that goes on gets the milestone's
+/// a round for each milestone (engine/study/plan.h), in which every slot that goes on gets the milestone's
 /// samples at all poses, and then perhaps a last one up to Plan::samples(). A slot ends at the first milestone at which
 /// each response that decides is reached: half-width <= relative_error x |quantity|, see ConvergenceResult. What is
 /// decided follows from the samples up to the milestone alone, so it is the same on any machine.

@@ -7,7 +7,7 @@
 #include "engine/base/nan.h"
 #include "engine/run/counts.h"
 #include "engine/run/evaluation.h"
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {

@@ -61,7 +61,7 @@ struct CouplingResult {
 ///
 /// Summaries are over the poses where all of this is known. Sources oppose each other (opposed_share) where |sum| is
 /// below the largest |effect of a source in S| by more than rounding: together they do less than one of them.
-/// Rounding is size_rounding (stats/rounding.h) of the size of the errors.
+/// Rounding is size_rounding (stats/indices.h) of the size of the errors.
 ///
 /// evaluation: what run_evaluation found for the study's coupling_table. A solve that does not count (see counts())
 /// makes NaN of everything that rests on it, and is counted in `solves`.

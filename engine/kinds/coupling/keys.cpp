@@ -6,9 +6,8 @@
 
 #include "engine/base/text.h"
 #include "engine/kinds/coupling/rows.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 #include "engine/study/study_kind.h"
-#include "engine/study/study_text.h"
 
 namespace poesy {
 namespace {

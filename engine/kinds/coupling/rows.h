@@ -7,8 +7,8 @@
 #include "engine/kinds/coupling/options.h"
 #include "engine/model/model.h"
 #include "engine/run/evaluation.h"
-#include "engine/study/error_table.h"
 #include "engine/study/study.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 

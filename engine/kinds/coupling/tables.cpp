@@ -7,7 +7,7 @@
 #include "engine/report/display.h"
 #include "engine/report/study_settings.h"
 #include "engine/report/tables.h"
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {

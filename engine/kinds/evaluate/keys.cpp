@@ -6,7 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/kinds/evaluate/options.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {

@@ -8,8 +8,8 @@
 #include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/verdict.h"
 #include "engine/run/verdict.h"
-#include "engine/stats/histogram.h"
-#include "engine/stats/mean_interval.h"
+#include "engine/stats/buckets.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {

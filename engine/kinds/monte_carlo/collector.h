@@ -9,7 +9,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/pose_unit.h"
 #include "engine/run/result.h"
-#include "engine/stats/quantile_interval.h"
+#include "engine/stats/buckets.h"
 #include "engine/study/plan.h"
 
 namespace poesy {

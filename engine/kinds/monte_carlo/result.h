@@ -44,7 +44,7 @@ struct MonteCarloResult {
   std::vector<double> overall_rms;                ///< [R]
   std::vector<double> overall_quantiles_ci_low;   ///< [R x Q] empty in files of older versions
   std::vector<double> overall_quantiles_ci_high;  ///< [R x Q] likewise
-  /// Histograms of the samples of all poses (stats/histogram.h), B bins each; empty in files of older versions.
+  /// Histograms of the samples of all poses (stats/buckets.h), B bins each; empty in files of older versions.
   std::vector<double> histogram_edges;          ///< [R x (B + 1)]
   std::vector<std::uint64_t> histogram_counts;  ///< [R x B]
   std::vector<SolveCounts> solves;              ///< [M]

@@ -8,7 +8,7 @@
 #include "engine/run/pending_units.h"
 #include "engine/run/pose_unit.h"
 #include "engine/run/rounds.h"
-#include "engine/stats/mean_interval.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {

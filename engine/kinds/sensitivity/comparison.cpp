@@ -8,7 +8,7 @@
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/two_rankings.h"
 #include "engine/report/display.h"
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/tolerance.h"
 
 namespace poesy {

@@ -9,7 +9,7 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/indices.h"
-#include "engine/stats/interval.h"
+#include "engine/stats/moments.h"
 #include "engine/study/plan.h"
 
 namespace poesy {

@@ -8,7 +8,6 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/counts.h"
 #include "engine/stats/indices.h"
-#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {

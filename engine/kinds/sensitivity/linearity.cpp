@@ -12,7 +12,6 @@
 #include "engine/run/fold.h"
 #include "engine/run/some_poses.h"
 #include "engine/stats/indices.h"
-#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {

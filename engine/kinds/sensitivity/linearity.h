@@ -23,7 +23,7 @@ inline constexpr double kSmallerSize = 0.1;
 /// the error or the norm of something linear, -0.9 where it is quadratic. Mirror images, because without them a term of
 /// second order beside one of first order changes the index of a few draws by chance; errors are symmetric
 /// (random/distribution.h). The errors of the background keep their sizes. A draw that does not count at one size
-/// counts at neither. An index that is rounding (stats/rounding.h) is 0; NaN where both are, or one is not known.
+/// counts at neither. An index that is rounding (stats/indices.h) is 0; NaN where both are, or one is not known.
 ///
 /// On all ranks of a team, as the run functions do it, with the same result on each; the same bits for any number of
 /// threads. Keeps no state of its own: a run that was stopped here and is continued begins this again. Empty when

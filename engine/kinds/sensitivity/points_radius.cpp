@@ -11,7 +11,6 @@
 #include "engine/run/some_poses.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/rank_correlation.h"
-#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {

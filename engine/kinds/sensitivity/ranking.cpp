@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "engine/kinds/sensitivity/indices.h"
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {

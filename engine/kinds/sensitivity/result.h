@@ -37,7 +37,7 @@ struct FidelityResult {
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined. global is the
 /// published estimator; global_corrected is what tables and figures call the index, free of what sampling adds to
 /// global (stats/indices.h), and NaN where the error is too small for its effect to be told from rounding
-/// (stats/rounding.h). Files of older versions have neither this nor rounding: they are empty.
+/// (stats/indices.h). Files of older versions have neither this nor rounding: they are empty.
 struct SensitivityResult {
   std::size_t responses = 0;  ///< R
   std::size_t factors = 0;    ///< P

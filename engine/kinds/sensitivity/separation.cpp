@@ -6,7 +6,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {

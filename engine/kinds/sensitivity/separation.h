@@ -4,8 +4,8 @@
 
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/model/model.h"
-#include "engine/model/pose_set.h"
 #include "engine/run/result.h"
+#include "engine/study/poses/pose_selection.h"
 
 namespace poesy {
 

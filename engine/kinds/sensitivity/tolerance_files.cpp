@@ -9,7 +9,7 @@
 #include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 
 namespace poesy {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "engine/files/output_folder.h"
 #include "engine/kinds/sensitivity/stored.h"
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 #include "engine/stats/tolerance.h"
 
 namespace poesy {

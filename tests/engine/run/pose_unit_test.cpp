@@ -12,7 +12,7 @@
 #include "engine/kinds/sensitivity/run.h"
 #include "engine/random/stream.h"
 #include "engine/run/run_options.h"
-#include "engine/stats/quantile_interval.h"
+#include "engine/stats/buckets.h"
 #include "tests/engine/stats/plain_sort.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"

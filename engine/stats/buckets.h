@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "engine/stats/interval.h"
+#include "engine/stats/moments.h"
 #include "engine/stats/quantile_sketch.h"
 
+/// What the filled buckets of a quantile sketch say.
 namespace poesy {
 
 /// Ranks of two of n order statistics, from 1 to n; 0 and n + 1 mean that there is none.
@@ -27,5 +30,17 @@ RankInterval quantile_ranks(std::uint64_t n, double q, double conf_level);
 /// bucket, so what the sketch rounds away makes the interval wider, never narrower. It is infinite where there is no
 /// such order statistic. NaN at both ends without values.
 Interval quantile_interval(std::span<const Bucket> buckets, const RankInterval& ranks);
+
+/// Bin k holds the values from edges[k] to edges[k + 1].
+struct Histogram {
+  std::vector<double> edges;          ///< [B + 1] ascending; the first and the last are the extremes
+  std::vector<std::uint64_t> counts;  ///< [B]
+};
+
+/// A histogram of exactly `bins` bins of what a sketch holds, of which `buckets` are. All but the first and the last
+/// bin, which hold the outermost 0.05 % of the values, are about equally wide. Edges are edges of buckets, so every
+/// count is exact; where buckets are wider than bins, fewer bins are filled, and those left over have no width and
+/// come last. Precondition: bins >= 3, and there is a bucket.
+Histogram histogram(std::span<const Bucket> buckets, std::size_t bins);
 
 }  // namespace poesy
