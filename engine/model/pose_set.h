@@ -33,6 +33,8 @@ class PoseSet {
     for (std::size_t m = 0; m < values.size(); ++m) values[m] = values_[m * coordinates_ + coordinate];
     return values;
   }
+  /// Whether all numbers are equal.
+  bool operator==(const PoseSet&) const = default;
 
  private:
   std::size_t coordinates_ = 0;
