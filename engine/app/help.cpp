@@ -8,7 +8,7 @@
 #include "engine/app/ending.h"
 #include "engine/app/terminal.h"
 #include "engine/base/text.h"
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 
 namespace poesy::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/files/trial_read.h"
+#include "engine/files/poesy_file.h"
 #include "engine/files/version.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/stored_study.h"

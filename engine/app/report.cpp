@@ -8,9 +8,8 @@
 #include "engine/app/ending.h"
 #include "engine/app/results.h"
 #include "engine/files/file_writer.h"
-#include "engine/files/output_path.h"
 #include "engine/kinds/registry.h"
-#include "engine/report/html/report.h"
+#include "engine/report/report_kind.h"
 
 namespace poesy::app {
 namespace {

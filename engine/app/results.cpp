@@ -17,8 +17,8 @@
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/report/solves.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "models/registry.h"
 
 namespace poesy::app {

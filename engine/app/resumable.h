@@ -5,8 +5,7 @@
 #include <string>
 
 #include "engine/app/command_line.h"
-#include "engine/files/checkpoint_files.h"
-#include "engine/files/run_lock.h"
+#include "engine/files/checkpoint.h"
 #include "engine/run/checkpoints.h"
 
 namespace poesy::app {

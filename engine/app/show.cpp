@@ -18,9 +18,8 @@
 #include "engine/kinds/registry.h"
 #include "engine/kinds/stored_study.h"
 #include "engine/report/display.h"
-#include "engine/report/json_tables.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 

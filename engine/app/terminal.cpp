@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "engine/base/units.h"
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 
 namespace poesy::app {
 namespace {

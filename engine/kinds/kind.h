@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/file_kind.h"
+#include "engine/files/result_file.h"
 #include "engine/kinds/tolerances.h"
 #include "engine/report/report_kind.h"
 #include "engine/run/evaluation.h"

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/checkpoint.h"
-#include "engine/files/sha256.h"
+#include "engine/files/content_hash.h"
 #include "engine/kinds/monte_carlo/collector.h"
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/kinds/sensitivity/indices.h"

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/file_kind.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/report/report_kind.h"

@@ -5,7 +5,6 @@
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/coupling/stored.h"
 #include "engine/report/display.h"
-#include "engine/report/study_settings.h"
 #include "engine/report/tables.h"
 #include "engine/stats/indices.h"
 

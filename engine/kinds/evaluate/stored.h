@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/file_kind.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/kind.h"

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "engine/files/file_kind.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/report_kind.h"

@@ -17,7 +17,7 @@
 #include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/tolerance_table.h"
 #include "engine/kinds/stored_study.h"
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 
 namespace poesy {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/files/file_kind.h"
+#include "engine/files/result_file.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/report_kind.h"

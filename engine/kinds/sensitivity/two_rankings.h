@@ -1,6 +1,5 @@
 #pragma once
 
-#include "engine/report/rankings.h"
 #include "engine/report/tables.h"
 
 namespace poesy {

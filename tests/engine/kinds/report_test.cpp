@@ -1,6 +1,5 @@
-#include "engine/report/html/report.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/report/html/report.h"
+#include "engine/report/report_kind.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
 

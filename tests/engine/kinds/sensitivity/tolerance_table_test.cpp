@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {
