@@ -1,10 +1,12 @@
 #pragma once
 
 #include <any>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/kinds/kind.h"
 
 /// Result files of every kind of study.
 namespace poesy {
@@ -23,5 +25,9 @@ StoredResult read_result(const std::string& path);
 std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder);
 /// The same for a result that is still to be read.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);
+
+/// Sets the tolerances of a result, see SetTolerances. Throws InputError also for a kind that has none.
+std::string set_tolerances(const StoredResult& result, const TolerancesOptions& options, const Catalog& catalog,
+                           std::size_t width);
 
 }  // namespace poesy
