@@ -8,7 +8,7 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/kind.h"
 
-/// Result files of every kind of study.
+/// What is done with the results of every kind of study.
 namespace poesy {
 
 /// Writes the result of a study. found: of the type that its kind finds. The file appears whole or not at all under its

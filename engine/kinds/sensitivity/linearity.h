@@ -12,7 +12,7 @@
 #include "engine/run/run_options.h"
 #include "engine/study/plan.h"
 
-/// Whether the indices of a sensitivity result hold for errors of other sizes (kinds/sensitivity/linearity.h).
+/// Whether the indices of a sensitivity study hold for errors of other sizes: each run finds it, its result says it.
 namespace poesy {
 
 /// Draws of a cell that are solved at both sizes, and as many with the opposite sign: the first ones of the study,
