@@ -9,7 +9,7 @@
 #include "bench/published_study.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/kinds/monte_carlo/collector.h"
-#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/run/run_in_order.h"
 #include "engine/run/run_options.h"

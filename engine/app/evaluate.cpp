@@ -13,7 +13,7 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
-#include "engine/kinds/evaluate/stored.h"
+#include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"

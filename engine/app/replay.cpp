@@ -13,7 +13,7 @@
 #include "engine/files/poesy_file.h"
 #include "engine/files/version.h"
 #include "engine/kinds/registry.h"
-#include "engine/kinds/stored_study.h"
+#include "engine/kinds/study_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/replay.h"
 #include "engine/study/study_kind.h"

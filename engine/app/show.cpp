@@ -16,7 +16,7 @@
 #include "engine/base/text.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/registry.h"
-#include "engine/kinds/stored_study.h"
+#include "engine/kinds/study_file.h"
 #include "engine/report/display.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"

@@ -1,4 +1,4 @@
-#include "engine/kinds/tolerances.h"
+#include "engine/kinds/result_file.h"
 
 #include <cstdio>
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "engine/base/text.h"
-#include "engine/kinds/evaluate/options.h"
+#include "engine/kinds/evaluate/cases.h"
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 

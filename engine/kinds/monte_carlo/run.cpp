@@ -1,9 +1,8 @@
-#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/monte_carlo/kind.h"
 
 #include <utility>
 
 #include "engine/kinds/monte_carlo/collector.h"
-#include "engine/kinds/monte_carlo/options.h"
 #include "engine/run/fold.h"
 #include "engine/run/pending_units.h"
 #include "engine/run/pose_unit.h"
@@ -152,6 +151,9 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
   return std::move(work).result();
 }
 
-constinit const RunKind kMonteCarloRun{run_study_of_kind, monte_carlo_outlook, shards_by_pose};
+constinit const Kind kMonteCarloKind{.study = kMonteCarloStudy,
+                                     .run = {run_study_of_kind, monte_carlo_outlook, shards_by_pose},
+                                     .file = kMonteCarloFile,
+                                     .report = kMonteCarloReport};
 
 }  // namespace poesy

@@ -5,7 +5,6 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/kinds/sensitivity/result.h"
 #include "engine/run/counts.h"
 #include "engine/stats/indices.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "engine/base/text.h"
-#include "engine/kinds/sensitivity/options.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 

@@ -3,11 +3,30 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "engine/files/result_file.h"
 #include "engine/run/result.h"
+#include "engine/stats/tolerance.h"
+#include "engine/study/study.h"
 
 namespace poesy {
+
+/// The error from which equal-effect tolerances are counted, and its own tolerance.
+struct ToleranceReference {
+  FactorIndex factor;  ///< one of those that vary
+  double tolerance;    ///< SI
+};
+
+/// What a sensitivity study alone asks.
+struct SensitivityOptions {
+  std::optional<ToleranceReference> reference;  ///< empty: the error of smallest effect
+  double linearity = 0.01;                      ///< at two fidelities: up to this an error is linear
+};
+
+/// The kind of study that tells what each error does on its own.
+extern const StudyKind kSensitivityStudy;
 
 /// Which part of each error's effect the actuators can take away, to first order: P errors, M poses. Effects are those
 /// of model/model.h, in m per SI unit of the error. NaN where an error has no effect.
@@ -78,5 +97,21 @@ struct SensitivityResult {
   /// Over all cells.
   SolveCounts total() const { return total_of(solves); }
 };
+
+/// What a sensitivity result says, read back. Its failures and its convergence are those of StoredResult; its
+/// `background` is empty in files of older versions.
+struct StoredSensitivity : SensitivityResult {
+  std::vector<std::uint64_t> factor_limb;                          ///< [P] empty in files of older versions
+  std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
+  std::vector<double> mean_square_bound;                           ///< [R] Response::mean_square_bound; likewise
+  std::string separation_measure;                                  ///< what length `separation` speaks of
+  std::vector<std::string> published_class;  ///< [P] the literature's class of each error, where that is separated
+  std::vector<std::string> fidelities;       ///< the two that `fidelity` compares
+};
+
+/// Precondition: a sensitivity result.
+inline const StoredSensitivity& sensitivity_of(const StoredResult& result) {
+  return found_of<StoredSensitivity>(result);
+}
 
 }  // namespace poesy

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/kinds/identification/stored.h"
+#include "engine/kinds/identification/identification.h"
 #include "engine/report/display.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/engine/kinds/stored.h"

@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/run.h"
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/random/stream.h"
 #include "engine/run/run_options.h"
 #include "engine/stats/buckets.h"

@@ -1,5 +1,5 @@
 #include "engine/kinds/sensitivity/linearity.h"
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/run/run_options.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/kinds/sensitivity/two_rankings.h"
+#include "engine/kinds/sensitivity/ranking.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,13 @@
 #include <vector>
 
 #include "engine/files/output_folder.h"
-#include "engine/kinds/sensitivity/stored.h"
+#include "engine/files/result_parts.h"
+#include "engine/kinds/kind.h"
+#include "engine/kinds/result_file.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/model/model.h"
+#include "engine/report/display.h"
+#include "engine/report/table.h"
 #include "engine/stats/tolerance.h"
 
 namespace poesy {
@@ -19,6 +24,16 @@ struct ResponseTolerances {
   std::optional<LimitTolerances> limit;  ///< within the limit, if there is one
   std::string caveat = {};               ///< why they may not hold, for tables and studies; empty: no known reason
 };
+
+/// What a program that sets tolerances needs, without the rest: /tolerances.
+/// @{
+void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found);
+void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found);
+/// @}
+/// tolerances_RESPONSE.csv; none for a file of an older version.
+void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
+/// The section of a report, where the result has tolerances.
+void add_tolerance_section(const StoredResult& result, Page& page);
 
 /// The lists of tolerances [P] that are to be used: within the limit by either way to share it, without one those of
 /// equal effect. Refers to the tolerances.
@@ -66,5 +81,13 @@ struct Confirmation {
 /// the stored study cannot be read with this catalog.
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog);
+
+/// Tolerances of every error for one response, in mm and deg; notes say from which reference and limit, and the root
+/// mean square that the equal-effect tolerances are predicted to give.
+Table tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances);
+
+/// Tolerances from the indices of a sensitivity result; see SetTolerances.
+std::string set_sensitivity_tolerances(const StoredResult& result, const TolerancesOptions& options,
+                                       const Catalog& catalog, std::size_t width);
 
 }  // namespace poesy

@@ -1,17 +1,123 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/base/nan.h"
-#include "engine/kinds/evaluate/stored.h"
-#include "engine/kinds/registry.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/kind.h"
 #include "engine/report/display.h"
+#include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {
+
+constexpr int kDigits = 6;
+
+/// Mean and extremes of a response over the solved samples; NaN where none is.
+struct Summary {
+  double mean = kNaN;
+  double smallest = mean;
+  double largest = mean;
+};
+
+Summary summary(const EvaluationResult& found, std::size_t r) {
+  const std::size_t all = found.poses * found.samples;
+  double sum = 0.0;
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -smallest;
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < all; ++n) {
+    if (!solved(found.status[n])) continue;
+    const double value = found.response[r * all + n];
+    sum += value;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+    ++count;
+  }
+  return count == 0 ? Summary() : Summary{sum / static_cast<double>(count), smallest, largest};
+}
+
+/// "; 38 of 40 pass" where the study limits the response.
+std::string passes(const StoredResult& result, std::size_t r) {
+  const LimitVerdict* verdict = verdict_on(result, r);
+  return verdict == nullptr ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
+}
+
+/// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty where rows have no labels or none
+/// was solved.
+std::string worst_note(const StoredResult& result, std::size_t r) {
+  const RowLabels& labels = evaluation_of(result).labels;
+  if (labels.names.empty()) return {};
+  const std::vector<RowOutcome> outcomes = row_outcomes(evaluation_of(result), r);
+  const std::size_t worst = worst_row(outcomes);
+  if (worst == outcomes.size()) return {};
+  const NamedUnit& response = result.responses[r];
+  return fmt::format("{} {} is worst in {}: {} at {}{}", labels.column, labels.names[worst], response.name,
+                     response_text(response, outcomes[worst].extreme), place_text(result, outcomes[worst].pose),
+                     passes(result, r));
+}
+
+Table parts_table(const StoredResult& result) {
+  const RowLabels& labels = evaluation_of(result).labels;
+  Table table{.name = "parts",
+              .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
+              .columns = {},
+              .notes = {"poses: those that were solved"}};
+  std::vector<std::vector<RowOutcome>> outcomes;  // of each response of the headline
+  for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(evaluation_of(result), r));
+  std::vector<FilledColumn> columns{
+      {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
+      {number_column("poses", "poses"),
+       [&](std::size_t row) { return count_cell(outcomes.empty() ? 0 : outcomes.front()[row].solved); }}};
+  for (std::size_t h = 0; h < outcomes.size(); ++h) {
+    const NamedUnit& response = result.responses[result.headline[h]];
+    const std::vector<RowOutcome>& of = outcomes[h];
+    const std::string_view unit = display(response).name;
+    const int dispensable = 3 * static_cast<int>(h);  // the last response's columns go first
+    columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
+                       [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
+    columns.push_back({number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable),
+                       [&](std::size_t row) { return value_cell(of[row].extreme, response, kDigits); }});
+    columns.push_back(
+        {number_column(response.name + "_extreme_pose", "at pose", "", dispensable + 1),
+         [&](std::size_t row) { return of[row].solved == 0 ? text_cell("") : count_cell(of[row].pose); }});
+  }
+  fill(table, positions(labels.names.size()), columns);
+  return table;
+}
+
+Table cases_table(const StoredResult& result) {
+  const StoredEvaluation& found = evaluation_of(result);
+  const std::size_t cases = found.cases.size();
+  Table table{.name = "cases",
+              .caption = "Each case over its poses: mean and largest value of the responses",
+              .columns = {},
+              .notes = {"poses: those whose solve counts"}};
+  std::vector<FilledColumn> columns{
+      {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
+      {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count[c]); }}};
+  int dispensable = 0;  // of the first response's columns; the last response's go first
+  for (const std::size_t r : result.headline) {
+    const NamedUnit& response = result.responses[r];
+    const std::string_view unit = display(response).name;
+    columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable),
+                       [&, r](std::size_t c) { return value_cell(found.mean[r * cases + c], response, kDigits); }});
+    columns.push_back(
+        {number_column(response.name + "_max", response.name + " max", unit, dispensable == 0 ? 0 : dispensable + 1),
+         [&, r](std::size_t c) { return value_cell(found.max[r * cases + c], response, kDigits); }});
+    dispensable += 2;
+  }
+  fill(table, positions(cases), columns);
+  return table;
+}
 
 ShownCells cells(const StoredResult& result) {
   const std::size_t cases = evaluation_of(result).cases.size();
@@ -61,28 +167,18 @@ std::vector<double> order_statistics(const EvaluationResult& found, std::size_t 
   std::vector<double> list;
   for (const double level : levels) {
     const double at = std::round(level * (static_cast<double>(values.size()) - 1.0));
-    list.push_back(values.empty() ? std::nan("") : values[static_cast<std::size_t>(at)]);
+    list.push_back(values.empty() ? kNaN : values[static_cast<std::size_t>(at)]);
   }
   return list;
 }
 
-/// Median and outer quantiles over the rows at each pose.
-struct PoseQuantiles {
-  std::vector<double> low;
-  std::vector<double> median;
-  std::vector<double> high;
-  std::vector<double> max;
-};
-
-PoseQuantiles quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
-  constexpr double kLevels[] = {0.05, 0.5, 0.95, 1.0};
-  PoseQuantiles quantiles;
+/// Of the rows at each pose: the 5 % quantile, the median, the 95 % quantile and the largest value, each [M].
+std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
+  constexpr std::array kLevels{0.05, 0.5, 0.95, 1.0};
+  std::array<std::vector<double>, 4> quantiles;
   for (std::size_t m = 0; m < found.poses; ++m) {
     const std::vector<double> values = order_statistics(found, r, m * found.samples, found.samples, kLevels);
-    quantiles.low.push_back(values[0]);
-    quantiles.median.push_back(values[1]);
-    quantiles.high.push_back(values[2]);
-    quantiles.max.push_back(values[3]);
+    for (std::size_t q = 0; q < values.size(); ++q) quantiles[q].push_back(values[q]);
   }
   return quantiles;
 }
@@ -110,13 +206,13 @@ void add_rows(const StoredResult& result, const PoseFigures& figures, Page& page
   for (const std::size_t r : figures.responses()) {
     const NamedUnit& response = result.responses[r];
     const std::string unit = unit_text(response);
-    const PoseQuantiles found = quantiles_at_poses(evaluation_of(result).evaluation, r);
+    const auto [low, middle, high, largest] = quantiles_at_poses(evaluation_of(result).evaluation, r);
     const auto add = [&](std::string_view what, const std::vector<double>& values) {
       return figures.add(fmt::format("{}/{}", what, r), values, response);
     };
-    const ArrayName median = add("median", found.median);
-    const ArrayName max = add("max", found.max);
-    Panel panel{response.name, unit, {{"median", median, add("low", found.low), add("high", found.high)}}};
+    const ArrayName median = add("median", middle);
+    const ArrayName max = add("max", largest);
+    Panel panel{response.name, unit, {{"median", median, add("low", low), add("high", high)}}};
     panel.series.push_back({.label = "largest", .value = max, .style = "dotted"});
     lines.panels.push_back(std::move(panel));
     fields.push_back({response.name + ", median", unit, median});
@@ -205,7 +301,33 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
   return all;
 }
 
+std::vector<Table> evaluation_tables(const StoredResult& result, const TableOptions&) {
+  const StoredEvaluation& stored = evaluation_of(result);
+  std::vector<Table> tables{stored.cases.empty() ? evaluation_table(result) : cases_table(result)};
+  if (!stored.labels.names.empty()) tables.push_back(parts_table(result));
+  return tables;
+}
+
 }  // namespace
+
+Table evaluation_table(const StoredResult& result) {
+  std::vector<Summary> found;
+  for (std::size_t r = 0; r < result.responses.size(); ++r)
+    found.push_back(summary(evaluation_of(result).evaluation, r));
+  const auto number = [&](const std::string& name, double Summary::*member) {
+    return FilledColumn{number_column(name, name), [&, member](std::size_t r) {
+                          return value_cell(found[r].*member, result.responses[r], kDigits);
+                        }};
+  };
+  Table table{.name = "evaluation", .caption = "Responses over all samples that were solved", .columns = {}};
+  fill(table, result.headline,
+       {name_column(result.responses, "response"), unit_column(result.responses), number("mean", &Summary::mean),
+        number("smallest", &Summary::smallest), number("largest", &Summary::largest)});
+  for (const std::size_t r : result.headline) {
+    if (std::string note = worst_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
+  }
+  return table;
+}
 
 constinit const ReportKind kEvaluationReport{.tally = tally,
                                              .tables = evaluation_tables,
