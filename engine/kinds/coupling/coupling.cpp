@@ -5,8 +5,8 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/run/counts.h"
 #include "engine/run/evaluation.h"
+#include "engine/run/result.h"
 #include "engine/stats/rounding.h"
 
 namespace poesy {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "engine/run/counts.h"
 #include "engine/run/evaluation.h"
+#include "engine/run/result.h"
 
 namespace poesy {
 

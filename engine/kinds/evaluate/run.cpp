@@ -5,7 +5,6 @@
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/evaluate/options.h"
 #include "engine/run/evaluation.h"
-#include "engine/run/verdict.h"
 
 namespace poesy {
 namespace {

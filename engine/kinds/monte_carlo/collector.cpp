@@ -7,7 +7,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/verdict.h"
-#include "engine/run/verdict.h"
+#include "engine/run/evaluation.h"
 #include "engine/stats/histogram.h"
 #include "engine/stats/mean_interval.h"
 

@@ -7,7 +7,7 @@
 #include "engine/base/bytes.h"
 #include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/run/pose_unit.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/quantile_interval.h"
 #include "engine/study/plan.h"

@@ -6,7 +6,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/run/counts.h"
+#include "engine/run/result.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/rounding.h"
 

@@ -7,10 +7,9 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/sensitivity/indices.h"
-#include "engine/run/counts.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
-#include "engine/run/some_poses.h"
+#include "engine/run/result.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/rounding.h"
 
