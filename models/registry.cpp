@@ -1,6 +1,5 @@
 #include "models/registry.h"
 
-#include "models/three_prs/machine.h"
 #include "models/three_prs/model.h"
 #include "models/two_upr_rpu/model.h"
 

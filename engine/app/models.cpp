@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/kinds/registry.h"
@@ -25,54 +25,56 @@ const StudyKind& kind_named(const std::string& word) {
   throw InputError({}, "no template of kind '" + printable(word) + "'", suggestion(word, names(study_kinds())));
 }
 
-int print_template(const std::string& model, const std::string& kind) {
-  const CatalogEntry& entry = find_model(model);
-  const StudyKind& wanted = kind_named(kind);
+struct TemplateOptions {
+  std::string model;
+  std::string kind{study_kinds().all.front()->name};
+  bool reference = false;
+};
+
+int print_template(const TemplateOptions& options) {
+  if (options.reference) {
+    print(study_reference());
+    return kDone;
+  }
+  const CatalogEntry& entry = find_model(options.model);
+  const StudyKind& wanted = kind_named(options.kind);
   ModelDescription as_named = entry.description;
-  as_named.name = model;
+  as_named.name = options.model;
   if (const auto refusal = wanted.no_template != nullptr ? wanted.no_template(as_named) : std::nullopt) {
     throw InputError({}, refusal->problem, refusal->remedy);
   }
-  std::fputs(template_text(entry, wanted).c_str(), stdout);
+  print(template_text(entry, wanted));
   return kDone;
 }
 
-int print_reference() {
-  std::fputs(study_reference().c_str(), stdout);
+int print_models(const std::string& name) {
+  print(name.empty() ? models_text(registry()) : model_text(find_model(name)));
   return kDone;
 }
 
 }  // namespace
 
 Command& add_models(Command& program) {
-  const auto name = std::make_shared<std::string>();
-  Command& command = program.add_command("models", "list the mechanisms, or describe one");
-  command.add_value("model", *name, "MODEL", "mechanism");
+  const auto [command, name] = program.add_command("models", "list the mechanisms, or describe one", print_models);
+  command.add_value("model", name, "MODEL", "mechanism");
   command.examples = {{"which mechanisms are there?", "poesy models"},
                       {"errors, poses and responses of one", "poesy models 2upr-rpu"}};
-  command.action = [name] {
-    std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name))).c_str(), stdout);
-    return kDone;
-  };
   return command;
 }
 
 Command& add_template(Command& program) {
-  const auto model = std::make_shared<std::string>();
-  const auto kind = std::make_shared<std::string>(study_kinds().all.front()->name);
-  const auto reference = std::make_shared<bool>(false);
-  Command& command = program.add_command("template", "print a complete, commented study file");
-  CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism");
-  command.add_value("kind", *kind, "KIND", "kind of study: " + either(names(study_kinds())));
-  command.add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
+  const auto [command, options] =
+      program.add_command("template", "print a complete, commented study file", print_template);
+  CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism");
+  command.add_value("kind", options.kind, "KIND", "kind of study: " + either(names(study_kinds())));
+  command.add_flag("--reference", options.reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
   command.examples = {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
                       {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
                       {"every key of a study file, as text", "poesy template --reference"}};
-  command.callback([=] {
-    if (!*reference && named->count() == 0) throw CLI::RequiredError(named->get_type_name());
+  command.callback([&reference = options.reference, named] {
+    if (!reference && named->count() == 0) throw CLI::RequiredError(named->get_type_name());
   });
-  command.action = [=] { return *reference ? print_reference() : print_template(*model, *kind); };
   return command;
 }
 

@@ -58,7 +58,7 @@ struct ResponseLimit {
   double most;           ///< SI, above zero
 };
 
-/// By which number of its draws a study's limits are judged; see engine/run/verdict.h.
+/// By which number of its draws a study's limits are judged; see LimitVerdict.
 enum class Judge {
   rms,   ///< the response's root mean square over the draws of all poses
   share  ///< what a share of the draws stays within at the worst pose

@@ -9,7 +9,6 @@
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/run/evaluation.h"
-#include "engine/run/evaluation_state.h"
 #include "tests/fuzz/small_plans.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/kinds.h"

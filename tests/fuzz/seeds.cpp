@@ -15,7 +15,6 @@
 #include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluation.h"
-#include "engine/run/evaluation_state.h"
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/fuzz/small_plans.h"

@@ -9,8 +9,8 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/coupling/kind.h"
-#include "engine/run/counts.h"
 #include "engine/run/evaluation.h"
+#include "engine/run/result.h"
 #include "engine/stats/indices.h"
 
 namespace poesy {

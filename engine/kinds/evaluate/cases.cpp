@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "engine/kinds/evaluate/kind.h"
-#include "engine/run/counts.h"
-#include "engine/run/verdict.h"
+#include "engine/run/evaluation.h"
+#include "engine/run/result.h"
 
 namespace poesy {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/run/verdict.h"
+#include "engine/run/evaluation.h"
 #include "engine/stats/buckets.h"
 #include "engine/stats/moments.h"
 

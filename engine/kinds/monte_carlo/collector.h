@@ -6,7 +6,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/run/pose_unit.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/buckets.h"
 #include "engine/stats/quantile_sketch.h"

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
-#include "engine/run/pending_units.h"
-#include "engine/run/pose_unit.h"
 #include "engine/run/rounds.h"
 #include "engine/stats/moments.h"
 

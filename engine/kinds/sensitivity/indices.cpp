@@ -5,7 +5,8 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/run/counts.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/run/result.h"
 #include "engine/stats/indices.h"
 
 namespace poesy {

@@ -13,10 +13,9 @@
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
-#include "engine/run/counts.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
-#include "engine/run/some_poses.h"
+#include "engine/run/result.h"
 #include "engine/stats/indices.h"
 
 namespace poesy {

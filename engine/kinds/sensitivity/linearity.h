@@ -24,9 +24,9 @@ inline constexpr double kSmallerSize = 0.1;
 
 /// How the global indices of a sensitivity study change when its errors are a tenth as large, [R x P]: index at a tenth
 /// over index at the study's sizes, less 1. Both are of the same draws, the first of the study and their mirror images,
-/// over the same poses (run/some_poses.h), and by the published estimator: 0 to rounding where a response is linear in
-/// the error or the norm of something linear, -0.9 where it is quadratic. Mirror images, because without them a term of
-/// second order beside one of first order changes the index of a few draws by chance; errors are symmetric
+/// over the same poses (run/evaluate_unit.h), and by the published estimator: 0 to rounding where a response is linear
+/// in the error or the norm of something linear, -0.9 where it is quadratic. Mirror images, because without them a term
+/// of second order beside one of first order changes the index of a few draws by chance; errors are symmetric
 /// (random/distribution.h). The errors of the background keep their sizes. A draw that does not count at one size
 /// counts at neither. An index that is rounding (stats/indices.h) is 0; NaN where both are, or one is not known.
 ///

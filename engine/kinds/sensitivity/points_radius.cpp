@@ -8,7 +8,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/nan.h"
-#include "engine/run/some_poses.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/rank_correlation.h"
 

@@ -90,7 +90,7 @@ struct SensitivityResult {
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
   /// The global indices after fewer samples, where it has a fixed number of them, with intervals: each is what a study
-  /// with exactly so many samples at each pose (engine/run/history_points.h) would find, bit by bit. The
+  /// with exactly so many samples at each pose (engine/run/evaluate_unit.h) would find, bit by bit. The
   /// last is the result's. Not in files of older versions.
   std::optional<EstimateCourse> history;
 

@@ -13,8 +13,6 @@
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
-#include "engine/run/history_points.h"
-#include "engine/run/pending_units.h"
 #include "engine/run/rounds.h"
 
 namespace poesy {

@@ -1,4 +1,4 @@
-#include "engine/run/pose_unit.h"
+#include "engine/run/evaluate_unit.h"
 
 #include <gtest/gtest.h>
 

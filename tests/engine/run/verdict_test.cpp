@@ -1,4 +1,3 @@
-#include "engine/run/verdict.h"
 #include "engine/kinds/monte_carlo/collector.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluation.h"

@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 
-#include "engine/run/some_poses.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/stats/indices.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
