@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
-#include "engine/kinds/result_file.h"
 #include "engine/model/model.h"
 #include "engine/report/report_kind.h"
 #include "engine/run/evaluation.h"

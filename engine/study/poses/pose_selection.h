@@ -35,6 +35,7 @@ class PoseSet {
     for (std::size_t m = 0; m < values.size(); ++m) values[m] = values_[m * coordinates_ + coordinate];
     return values;
   }
+  bool operator==(const PoseSet&) const = default;  ///< Whether all numbers are equal.
 
  private:
   std::size_t coordinates_ = 0;
