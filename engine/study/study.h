@@ -82,17 +82,14 @@ struct Analysis {
 template <class Options>
 const Options& asked_of(const Analysis& analysis) {
   static const Options usual{};
-  if (!analysis.asked.has_value()) return usual;
-  const auto* asked = std::any_cast<Options>(&analysis.asked);
-  POESY_EXPECTS(asked != nullptr);
-  return *asked;
+  return analysis.asked.has_value() ? std::any_cast<const Options&>(analysis.asked) : usual;
 }
 
 /// The same to be changed; the options of another kind that the study had before are dropped.
 template <class Options>
 Options& asked_of(Analysis& analysis) {
   if (std::any_cast<Options>(&analysis.asked) == nullptr) analysis.asked = Options{};
-  return *std::any_cast<Options>(&analysis.asked);
+  return std::any_cast<Options&>(analysis.asked);
 }
 
 /// What becomes of samples without a solution.

@@ -36,8 +36,8 @@ TEST(ReadTrajectory, FillsInTheDefaultsOfACurve) {
   EXPECT_EQ(trajectory.curve, std::size_t{0});
   EXPECT_EQ(trajectory.origin, (std::vector{0.2, -1.0, 0.0}));
   EXPECT_EQ(trajectory.points, 201u);
-  EXPECT_EQ(trajectory.time->start, 0.0);
-  EXPECT_EQ(trajectory.time->end, 4.0);
+  EXPECT_EQ(trajectory.time->lower, 0.0);
+  EXPECT_EQ(trajectory.time->upper, 4.0);
   EXPECT_EQ(study.poses.count, 201u);
   EXPECT_EQ(study.poses.max_condition, 1e8);
 }
@@ -48,8 +48,8 @@ TEST(ReadTrajectory, TakesEveryValue) {
       "min\"] }");
   EXPECT_EQ(trajectory.origin, (std::vector{0.25, 0.5, 0.0}));
   EXPECT_EQ(trajectory.points, 7u);
-  EXPECT_EQ(trajectory.time->start, 0.5);
-  EXPECT_EQ(trajectory.time->end, 3.0);
+  EXPECT_EQ(trajectory.time->lower, 0.5);
+  EXPECT_EQ(trajectory.time->upper, 3.0);
 }
 
 TEST(ReadTrajectory, OfAFileIsAsItIsUnlessPointsOrTimeAreAsked) {
@@ -60,10 +60,10 @@ TEST(ReadTrajectory, OfAFileIsAsItIsUnlessPointsOrTimeAreAsked) {
   EXPECT_EQ(own.poses.trajectory->from_file.time, (std::vector{0.0, 1.0, 2.0}));
   const Trajectory points = trajectory_of("{ file = \"curve.csv\", points = 11 }");
   EXPECT_EQ(points.points, 11u);
-  EXPECT_EQ(points.time->end, 2.0);
+  EXPECT_EQ(points.time->upper, 2.0);
   const Trajectory time = trajectory_of("{ file = \"curve.csv\", time = [\"0.5 s\", \"2 s\"] }");
   EXPECT_EQ(time.points, 201u);
-  EXPECT_EQ(time.time->start, 0.5);
+  EXPECT_EQ(time.time->lower, 0.5);
 }
 
 TEST(ReadTrajectoryToEvaluate, OpensNoFileAndMayLackAll) {
@@ -90,7 +90,7 @@ TEST_P(ResolvedTrajectory, ReadsBackToTheSame) {
     EXPECT_EQ(a.points, b.points);
     ASSERT_EQ(a.time.has_value(), b.time.has_value());
     if (a.time) {
-      EXPECT_EQ(std::pair(a.time->start, a.time->end), std::pair(b.time->start, b.time->end));
+      EXPECT_EQ(std::pair(a.time->lower, a.time->upper), std::pair(b.time->lower, b.time->upper));
     }
     EXPECT_EQ(study.poses.count, again.poses.count);
     EXPECT_EQ(study.poses.max_condition, again.poses.max_condition);
