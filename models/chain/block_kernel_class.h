@@ -111,6 +111,8 @@ class BlockKernel {
   void solve();
   /// All samples to first order.
   void map(const KernelMap& map);
+  /// How the platform moves, for all samples.
+  void move_platform(const KernelPlatform& platform);
 
  private:
   static constexpr std::size_t kLanes = T::kLanes;
@@ -179,6 +181,8 @@ class BlockKernel {
   template <KernelPass pass>
   std::size_t run(std::size_t count, std::uint32_t rounds);
   void load_all(std::size_t first = 0);
+  void load_constant_segments();
+  void map_rows(const KernelMap& map);
   template <std::size_t errors>
   void add_mapped(const KernelMap& map, std::size_t first, std::size_t v);
   template <std::size_t known_rows>
@@ -214,6 +218,11 @@ class BlockKernel {
   void weigh();
   template <class Diagonal>
   T step_length(const T* x, Diagonal diagonal) const;
+
+  // block_kernel_platform.h: how the platform moves.
+  Screw platform_motion(const KernelPlatform& platform, std::size_t at);
+  void displace(const Screw& motion, const double* point, bool is_linear, double* rows, double* length) const;
+  void finish_platform(const KernelPlatform& platform, const Screw& motion, std::size_t at) const;
 
   // block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;

@@ -23,12 +23,14 @@ class DeformationEvaluator final : public Evaluator {
   }
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
-    POESY_EXPECTS(outcomes.responses.size() == kResponses * samples.count);
+    const std::size_t deformations = model_->deforms ? kResponses : 0;
     prepare(samples);
+    const std::size_t motions = platform_ ? platform_->rows() : 0;
+    POESY_EXPECTS(outcomes.responses.size() == (deformations + motions) * samples.count);
     solver_.solve(samples.values, samples.count, !outcomes.details.empty());
-    for (std::size_t r = 0; r < kResponses; ++r) {
-      std::ranges::copy(solver_.response(r), outcomes.responses.data() + r * samples.count);
-    }
+    double* to = outcomes.responses.data();
+    for (std::size_t r = 0; r < deformations; ++r, to += samples.count) std::ranges::copy(solver_.response(r), to);
+    for (std::size_t r = 0; r < motions; ++r, to += samples.count) std::ranges::copy(solver_.platform(r), to);
     std::ranges::copy(solver_.status(), outcomes.status.begin());
     std::ranges::copy(solver_.iterations(), outcomes.iterations.begin());
     if (outcomes.details.empty()) return;
@@ -51,13 +53,21 @@ class DeformationEvaluator final : public Evaluator {
     }
     const std::vector<double> displacements = model_->joint_displacements(samples.pose);
     metric_ = model_->metric(displacements);
-    solver_.prepare(displacements, errors_, varied_, samples.range, metric_ ? &*metric_ : nullptr);
+    platform_.reset();
+    if (model_->platform) {
+      const lie::Transform<double> at = model_->platform_pose(displacements);
+      platform_.emplace(PlatformPoints{at});
+      if (const auto& tool = model_->platform->tool) platform_->tool = at.R * *tool + at.p;
+    }
+    solver_.prepare(displacements, errors_, varied_, samples.range, metric_ ? &*metric_ : nullptr,
+                    platform_ ? &*platform_ : nullptr);
   }
 
   const DeformationModel* model_;
   BlockSolver solver_;
-  std::optional<Metric> metric_;          ///< at the last block's pose
-  std::vector<std::size_t> first_frame_;  ///< per limb
+  std::optional<Metric> metric_;            ///< at the last block's pose
+  std::optional<PlatformPoints> platform_;  ///< likewise
+  std::vector<std::size_t> first_frame_;    ///< per limb
   std::vector<FrameError<double>> errors_;
   std::vector<FrameEntry> varied_;
 };
@@ -96,6 +106,39 @@ std::vector<Response> responses_by_metric() {
            "mismatch of position at the platform's origin between pairs of limbs, root mean square over the pairs"}};
 }
 
+std::vector<Response> platform_responses(const PlatformReport& report) {
+  constexpr auto kLength = Dimension::length;
+  constexpr auto kAngle = Dimension::angle;
+  std::vector<Response> list{{"x", kLength, "displacement of the platform's origin along the base's x"},
+                             {"y", kLength, "displacement of the platform's origin along the base's y"},
+                             {"z", kLength, "displacement of the platform's origin along the base's z"},
+                             {"theta_x", kAngle, "rotation of the platform about the base's x (rotation vector)"},
+                             {"theta_y", kAngle, "rotation of the platform about the base's y (rotation vector)"},
+                             {"theta_z", kAngle, "rotation of the platform about the base's z (rotation vector)"},
+                             {"position", kLength, "length of the displacement of the platform's origin"},
+                             {"rotation", kAngle, "angle by which the platform is rotated"}};
+  if (!report.tool) return list;
+  list.insert(list.end(), {{"tip_x", kLength, "displacement of the tool's point along the base's x"},
+                           {"tip_y", kLength, "displacement of the tool's point along the base's y"},
+                           {"tip_z", kLength, "displacement of the tool's point along the base's z"},
+                           {"tip_position", kLength, "length of the displacement of the tool's point"}});
+  return list;
+}
+
+std::vector<Response> responses_of(const DeformationModel& model) {
+  std::vector<Response> list;
+  if (model.deforms) list = model.points.empty() ? deformation_responses() : responses_by_metric();
+  if (!model.platform) return list;
+  for (Response& response : platform_responses(*model.platform)) list.push_back(std::move(response));
+  return list;
+}
+
+lie::Transform<double> DeformationModel::platform_pose(std::span<const double> displacements) const {
+  const Limb& limb = chain.limbs.front();
+  return forward_kinematics<double>(limb, limb.home, displacements.first(limb.joints.size()),
+                                    [](std::size_t, const lie::Screw<double>&) {});
+}
+
 std::optional<Metric> DeformationModel::metric(std::span<const double> displacements) const {
   if (points.empty()) return std::nullopt;
   return platform_metric(chain, points, displacements);
@@ -110,7 +153,7 @@ double effect_rounding(const DeformationModel& model, std::size_t response) {
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
   const double reach = model.chain.reach();
   if (model.points.empty()) return kRounding * std::max(1.0, reach);
-  if (responses_by_metric()[response].dimension == Dimension::length) return kRounding * reach;
+  if (responses_of(model)[response].dimension == Dimension::length) return kRounding * reach;
   return kRounding * reach / radius_of(model.points);
 }
 

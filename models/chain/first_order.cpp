@@ -30,8 +30,8 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
     for (std::size_t j = 0; j < limb.joints.size(); ++j, ++joint) {
       from_error_[frame++] = lie::adjoint(g);
       g = g * limb.home[j];
-      if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j].type, g);
-      move_joint(limb.joints[j].type, displacements[joint], g);
+      if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j], g);
+      move_joint(limb.joints[j], displacements[joint], g);
     }
     // The last frame's error is inverted and multiplies from the right.
     from_error_[frame++] = -lie::adjoint(g * limb.home.back());
