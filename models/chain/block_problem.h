@@ -57,6 +57,8 @@ struct KernelChain {
   const KernelSegment* segment;  ///< [joints + limbs], limb by limb
   std::size_t segments;          ///< how many
   const KernelPiece* piece;      ///< of all segments
+  const double* idle;            ///< [idle_freedoms x joints] see NormalEquations::idle()
+  std::size_t idle_freedoms;     ///< how many
   const double* metric;          ///< [36] W by rows, see Metric; null: as published
   double origin[3];              ///< of the platform (m), by a metric
   double reach;                  ///< m, by a metric

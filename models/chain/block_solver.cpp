@@ -91,7 +91,7 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   metric_ = metric;
   platform_ = platform;
   const bool is_linear = fidelity_ == Fidelity::first_order;
-  if (metric != nullptr || is_linear) {
+  if (metric != nullptr || is_linear || chain_->idle > 0) {
     is_singular_ = !first_order_.prepare(displacements, metric == nullptr ? nullptr : &metric->W);
   }
   if (is_linear) {
@@ -404,6 +404,8 @@ KernelChain BlockSolver::kernel_chain() const {
                     segments_.data(),
                     segments_.size(),
                     pieces_.data(),
+                    first_order_.idle().data(),
+                    chain_->idle,
                     nullptr,
                     {},
                     0.0};

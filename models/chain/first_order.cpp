@@ -37,6 +37,7 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
     from_error_[frame++] = -lie::adjoint(g * limb.home.back());
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
+  equations_.hold_idle(columns_, W);
   return equations_.solve(columns_, no_mismatch_, W);
 }
 

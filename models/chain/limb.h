@@ -39,10 +39,16 @@ struct LimbPair {
   std::size_t i;  ///< the limb it is compared with, g_i
 };
 
+/// Which limbs are compared: those in turn, (2,1), (3,2), (1,3), of two or three limbs, as published; every two of
+/// more, so that the order of the limbs does not matter.
+std::vector<LimbPair> pairs_of(std::size_t limbs);
+
 /// Limbs that hold one platform, and the pairs in which their poses are compared.
 struct ParallelChain {
   std::vector<Limb> limbs;      ///< in the order in which displacements stand
   std::vector<LimbPair> pairs;  ///< in the order in which residuals stand
+  /// Freedoms of passive joints that move no platform, as the spin of a leg between two spherical joints.
+  std::size_t idle = 0;
 
   /// Of all limbs together.
   /// @{
