@@ -122,6 +122,7 @@ class BlockKernel {
   static constexpr double kRestingStep = 1e-12;
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
+  static constexpr double kMet = 1e-9;         ///< limbs meet that are closer, relative to the reach
   static constexpr double kShortLength = 1e3;  ///< times the tolerance
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
@@ -219,6 +220,21 @@ class BlockKernel {
   template <class Diagonal>
   T step_length(const T* x, Diagonal diagonal) const;
 
+  // block_kernel_meeting.h: solves of limbs that can meet.
+  struct Meeting {
+    T matrix[6][6];  ///< lower triangle of the sum of P_i
+    T pull[6];       ///< sum of P_i xi_i
+    T margin{1.0};   ///< by how much the smallest pivot is above rounding
+  };
+  void solve_meeting();
+  Verdict meeting_round();
+  void project_limb(std::size_t i, Meeting& all);
+  T solve_platform(Meeting& all, T* motion) const;
+  void step_limb(std::size_t i, const T* motion, T& left2, T& length2);
+  void carry_residual_of_pairs();
+  Screw by_metric(const Screw& screw) const;
+  T weight(int row, int column) const;
+
   // block_kernel_platform.h: how the platform moves.
   Screw platform_motion(const KernelPlatform& platform, std::size_t at);
   void displace(const Screw& motion, const double* point, bool is_linear, double* rows, double* length) const;
@@ -264,7 +280,8 @@ class BlockKernel {
   Motion* segment_;
   Motion* pose_;
   Screw* column_;
-  Screw* row_;  ///< W times each column, which as published is the column itself
+  Screw* row_;   ///< W times each column, which as published is the column itself
+  Screw* rows_;  ///< of limbs that meet: L^-1 C^T W
   Screw* mu_;
   Screw* pull_;
   T* joint_;

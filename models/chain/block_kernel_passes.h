@@ -24,6 +24,7 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
   pose_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.limbs));
   column_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
   row_ = Measure::kWeighted ? reinterpret_cast<Screw*>(take_lanes(6 * chain.joints)) : column_;
+  rows_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
   mu_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.pairs));
   pull_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.limbs));
   joint_ = reinterpret_cast<T*>(take_lanes(chain.joints));
@@ -58,7 +59,9 @@ void BlockKernel<T, Shape, Measure>::solve() {
   load_constant_segments();
   for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
   const std::uint32_t cap = options_.max_iterations;
-  if constexpr (Measure::kWeighted) {
+  if (chain_.meets) {
+    solve_meeting();
+  } else if constexpr (Measure::kWeighted) {
     solve_by_metric();
   } else if (options_.method == KernelMethod::gauss_newton) {
     run<KernelPass::published>(samples_.count, cap);

@@ -61,7 +61,8 @@ struct KernelChain {
   std::size_t idle_freedoms;     ///< how many
   const double* metric;          ///< [36] W by rows, see Metric; null: as published
   double origin[3];              ///< of the platform (m), by a metric
-  double reach;                  ///< m, by a metric
+  double reach;                  ///< m, by a metric, or where limbs meet
+  bool meets;                    ///< whether all limbs can hold the platform in one place, whatever the errors
 };
 
 /// Samples in rows: entry (v, b) at v * stride + b.
@@ -162,7 +163,7 @@ static constexpr std::size_t kernel_memory(const KernelChain& chain) {
 static constexpr std::size_t kernel_scratch(const KernelChain& chain, const KernelSamples& samples) {
   const std::size_t rows = samples.varied + chain.joints + kernel_memory(chain) + 2 + 1;
   const std::size_t motions = 12 * (chain.segments + chain.limbs);
-  const std::size_t screws = 6 * (2 * chain.joints + chain.pairs + chain.limbs);
+  const std::size_t screws = 6 * (3 * chain.joints + chain.pairs + chain.limbs);
   const std::size_t equations = 3 * chain.joints * chain.joints + 6 * chain.joints;
   return rows * kernel_capacity(samples.count) + (motions + screws + equations) * kMostLanes;
 }

@@ -91,7 +91,7 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   metric_ = metric;
   platform_ = platform;
   const bool is_linear = fidelity_ == Fidelity::first_order;
-  if (metric != nullptr || is_linear || chain_->idle > 0) {
+  if (metric != nullptr || is_linear || chain_->idle > 0 || chain_->meets) {
     is_singular_ = !first_order_.prepare(displacements, metric == nullptr ? nullptr : &metric->W);
   }
   if (is_linear) {
@@ -106,7 +106,7 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   // bound is lower, because near a singular pose a step may leave a thousand times its square.
   const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
   options_.last_step = std::max(last, 1e-10);
-  if (metric != nullptr && !is_singular_) find_slopes(errors, varied);
+  if ((metric != nullptr || chain_->meets) && !is_singular_) find_slopes(errors, varied);
   fits_.clear();
   fits_made_ = 0;
   if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) {
@@ -364,13 +364,13 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   const KernelSamples samples{values.data(), varied_, count, count};
   double* scratch = make_room(chain, samples);
   KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr};
-  if (metric_ != nullptr && !is_singular_) {
+  if ((metric_ != nullptr || chain_->meets) && !is_singular_) {
     start.slopes = slopes_.data();
     start.inverse = inverse_.data();
     start.diagonal = diagonal_.data();
   }
   kernels_.solve(chain, samples, start, options, outcome(displacements), scratch);
-  if (metric_ == nullptr || !is_singular_) return;
+  if ((metric_ == nullptr && !chain_->meets) || !is_singular_) return;
   // Errors make an equation that is singular without them regular, but not meaningful.
   std::ranges::replace_if(
       status_, [](SolveStatus status) { return status != SolveStatus::non_finite; }, SolveStatus::singular);
@@ -408,7 +408,8 @@ KernelChain BlockSolver::kernel_chain() const {
                     chain_->idle,
                     nullptr,
                     {},
-                    0.0};
+                    chain_->reach(),
+                    chain_->meets};
   if (metric_ == nullptr) return chain;
   chain.metric = metric_->W.data();  // symmetric: by columns is by rows
   std::copy_n(metric_->origin.data(), 3, chain.origin);

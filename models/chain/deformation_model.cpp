@@ -23,7 +23,7 @@ class DeformationEvaluator final : public Evaluator {
   }
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
-    const std::size_t deformations = model_->deforms ? kResponses : 0;
+    const std::size_t deformations = model_->chain.meets ? 0 : kResponses;
     prepare(samples);
     const std::size_t motions = platform_ ? platform_->rows() : 0;
     POESY_EXPECTS(outcomes.responses.size() == (deformations + motions) * samples.count);
@@ -127,7 +127,7 @@ std::vector<Response> platform_responses(const PlatformReport& report) {
 
 std::vector<Response> responses_of(const DeformationModel& model) {
   std::vector<Response> list;
-  if (model.deforms) list = model.points.empty() ? deformation_responses() : responses_by_metric();
+  if (!model.chain.meets) list = model.points.empty() ? deformation_responses() : responses_by_metric();
   if (!model.platform) return list;
   for (Response& response : platform_responses(*model.platform)) list.push_back(std::move(response));
   return list;

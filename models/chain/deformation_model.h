@@ -34,7 +34,6 @@ struct DeformationModel {
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
   /// Points of the platform, in its frame (m), by whose displacement mismatch is judged; none: as published.
   std::vector<lie::Vector3<double>> points = {};
-  bool deforms = true;                          ///< whether it is over-constrained, so that errors deform it
   std::optional<PlatformReport> platform = {};  ///< none: only its deformation is a response
 
   /// Where its perfect limbs hold the platform at nominal displacements [all joints].

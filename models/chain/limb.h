@@ -49,6 +49,9 @@ struct ParallelChain {
   std::vector<LimbPair> pairs;  ///< in the order in which residuals stand
   /// Freedoms of passive joints that move no platform, as the spin of a leg between two spherical joints.
   std::size_t idle = 0;
+  /// Whether errors move the platform and deform nothing: as many passive joints, but for idle freedoms, as the limbs
+  /// have ways to disagree.
+  bool meets = false;
 
   /// Of all limbs together.
   /// @{
