@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "models/chain/first_order.h"
 #include "models/chain/limb.h"
 #include "models/chain/metric.h"
+#include "models/chain/platform_motion.h"
 #include "models/chain/residual_space.h"
 
 namespace poesy::chain {
@@ -17,15 +17,6 @@ namespace poesy::chain {
 enum class Fidelity : std::size_t {
   exact,       ///< solved
   first_order  ///< linear in the errors, in closed form; see FirstOrder
-};
-
-/// What is reported of the platform's own motion, in the base frame at a nominal pose; see KernelPlatform.
-struct PlatformPoints {
-  lie::Transform<double> platform;                ///< its frame
-  std::optional<lie::Vector3<double>> tool = {};  ///< a second point (m)
-
-  /// Numbers that are reported.
-  std::size_t rows() const { return platform_rows(tool.has_value()); }
 };
 
 /// Solves blocks of samples with the fastest kernel this machine has. Owns the scratch of one thread.

@@ -13,11 +13,12 @@
 
 namespace poesy::chain {
 
-/// Which entry of which fixed frame's error a factor is.
+/// Which entry of which fixed frame's error a factor adds to: entry += scale x error.
 struct ErrorSlot {
   std::size_t limb;       ///< counts from 0
   std::size_t frame;      ///< 0 .. joints of the limb
   std::size_t component;  ///< of [omega; v]: 0-2 angular, 3-5 linear
+  double scale = 1.0;     ///< without unit
 };
 
 /// What of the platform's own displacement is a response.
@@ -36,8 +37,8 @@ struct DeformationModel {
   std::vector<lie::Vector3<double>> points = {};
   std::optional<PlatformReport> platform = {};  ///< none: only its deformation is a response
 
-  /// Where its perfect limbs hold the platform at nominal displacements [all joints].
-  lie::Transform<double> platform_pose(std::span<const double> displacements) const;
+  /// What is reported of the platform there; none: only the deformation.
+  std::optional<PlatformPoints> platform_points(std::span<const double> displacements) const;
   /// At nominal displacements [all joints]; none: as published.
   std::optional<Metric> metric(std::span<const double> displacements) const;
 };

@@ -71,6 +71,9 @@ using FrameError = lie::Screw<T>;
 struct FrameEntry {
   std::size_t frame;      ///< among all frames, limb by limb
   std::size_t component;  ///< of [omega; v]
+
+  /// Whether they are the same entry.
+  bool operator==(const FrameEntry&) const = default;
 };
 
 /// Delta g of Eq. 26: rotation exp(omega) and translation v as they stand, which is not the exponential of a screw.

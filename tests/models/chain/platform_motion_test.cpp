@@ -61,7 +61,7 @@ std::vector<double> truth_of(const Example& one, std::span<const double> errors)
   std::vector<double> delta_mu(6 * chain.pairs.size());
   const std::optional<Metric> metric = one.model.metric(one.q);
   DeformationSolver({chain}, {.tolerance = 1e-15, .max_iterations = 200}).solve(frames, q, delta_mu, &*metric);
-  const lie::Transform<double> nominal = one.model.platform_pose(one.q);
+  const lie::Transform<double> nominal = one.model.platform_points(one.q)->platform;
   lie::Screw<double> mean = lie::Screw<double>::Zero();
   std::size_t frame = 0, joint = 0;
   for (const Limb& limb : chain.limbs) {
