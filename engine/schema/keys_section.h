@@ -28,12 +28,16 @@ class StudyValue {
   /// `name` is the value's full name for messages: "errors.linear.sigma".
   StudyValue(const toml::node& node, std::string name, const Place& section, const StudyTables& tables);
 
+  /// Its full name, for messages.
+  const std::string& full_name() const { return name_; }
   /// Where it stands.
   const Place& place() const { return place_; }
   /// Whether it is a text in quotes.
   bool is_text() const { return node_->is_string(); }
   /// Whether it is a table.
   bool is_section() const { return node_->is_table(); }
+  /// Whether it is true or false; empty for any other value.
+  std::optional<bool> boolean() const { return node_->value_exact<bool>(); }
 
   /// A text in quotes.
   std::string text() const;
