@@ -439,14 +439,10 @@ Transform limb_transform(const Limb& limb, std::span<const double> displacements
     const Joint& joint = limb.joints[j];
     if (joint.moves()) {
       const bool turns = joint.motion != Motion::prismatic;
-      const double slide = turns ? joint.pitch : 1.0;
-      if (columns != nullptr) {
-        const Vector3 z = g.R.col(2);
-        columns->col(static_cast<Eigen::Index>(k)) << (turns ? z : Vector3(Vector3::Zero())),
-            (turns ? Vector3(g.p.cross(z)) : Vector3(Vector3::Zero())) + slide * z;
-      }
-      if (turns) chain::move_joint(chain::JointType::revolute, displacements[k], g);
-      chain::move_joint(chain::JointType::prismatic, slide * displacements[k], g);
+      const chain::Joint moving{turns ? chain::JointType::revolute : chain::JointType::prismatic, joint.actuated,
+                                turns ? joint.pitch : 0.0};
+      if (columns != nullptr) columns->col(static_cast<Eigen::Index>(k)) = chain::spatial_column(moving, g);
+      chain::move_joint(moving, displacements[k], g);
       ++k;
     }
     g = g * limb.home[j + 1];
