@@ -222,7 +222,9 @@ void check_mobility(const Mechanism& mechanism, const Mobility& home) {
     throw InputError(home.loose_place,
                      "the drives do not hold the platform, which has " + count_text(home.platform_freedoms, "freedom") +
                          " and " + count_text(home.actuated, "drive") + ": " + home.loose_text,
-                     "write actuated = true at one more joint, or correct the axes");
+                     home.actuated < home.platform_freedoms
+                         ? "write actuated = true at one more joint, or correct the axes"
+                         : "correct the axes, drive another joint, or draw it at a pose that is not singular");
   }
   const std::size_t named = mechanism.coordinates.size();
   if (home.coordinates_rank < named) {

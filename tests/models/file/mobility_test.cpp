@@ -78,5 +78,54 @@ TEST(Mobility, MoreDrivesThanFreedomsAreOverConstraints) {
   EXPECT_NO_THROW(check_mobility(mechanism, found));
 }
 
+/// What the checks say of rrr3 with something else in the place of a part of its file.
+std::string problem_of(const std::string& from, const std::string& to) {
+  std::string text = text_of("rrr3");
+  text.replace(text.find(from), from.size(), to);
+  const MechanismFile file = read_mechanism_file(text, "m.toml");
+  const Mechanism made = mechanism(file, default_geometry(file));
+  const Mobility home = home_mobility(made);
+  try {
+    check_mobility(made, home);
+    check_mobility(made, home, workspace_mobility(made));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Mobility, DrivesMustHoldThePlatform) {
+  EXPECT_EQ(
+      problem_of("actuated = true }", "actuated = false }"),
+      "m.toml:24:3: the drives do not hold the platform, which has 3 freedoms and 0 drives: joint 'C' of limb 1 is "
+      "loose, and the platform turns about (0, 0, 1); write actuated = true at one more joint, or correct the axes");
+}
+
+/// All arms are stretched.
+TEST(Mobility, HomeMustNotBeSingular) {
+  EXPECT_EQ(
+      problem_of("\"220 mm\", \"120 mm\", 0", "\"190 mm\", 0, 0"),
+      "m.toml:24:3: the drives do not hold the platform, which has 1 freedom and 3 drives: joint 'C' of limb 3 is "
+      "loose, and the platform turns about (0, 0, 1); correct the axes, drive another joint, or draw it at a pose "
+      "that is not singular");
+}
+
+TEST(Mobility, HomeMustBeLikeOtherPoses) {
+  const Mechanism mechanism = from_file("rrr3");
+  const Mobility home = home_mobility(mechanism);
+  std::vector<PoseMobility> poses = workspace_mobility(mechanism, 3);
+  EXPECT_NO_THROW(check_mobility(mechanism, home, poses));
+  poses[1].mobility.rank += 1;
+  EXPECT_THROW(check_mobility(mechanism, home, poses), InputError);
+}
+
+TEST(Mobility, SomeOfTheWorkspaceMustBeInReach) {
+  const std::string problem = problem_of("x = [\"-40 mm\", \"40 mm\"]", "x = [\"400 mm\", \"500 mm\"]");
+  EXPECT_TRUE(
+      problem.starts_with("m.toml:13:15: no pose that was tried in the workspace is reached from home: the way "
+                          "there from home ends after 33.9 %: "))
+      << problem;
+}
+
 }  // namespace
 }  // namespace poesy::file

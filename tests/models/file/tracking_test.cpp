@@ -53,10 +53,11 @@ TEST_P(Everywhere, LoopsAreClosedAndCoordinatesReached) {
   }
 }
 
+/// To rounding: a screw of 5 mm turns it into a thousand times as much.
 TEST_P(Everywhere, HomeIsZero) {
   std::vector<double> pose;
   for (const Coordinate& c : mechanism_.coordinates) pose.push_back(home_pose(mechanism_)[c.component]);
-  for (const double q : tracker_.track(pose).displacements) EXPECT_NEAR(q, 0.0, 1e-14);
+  for (const double q : tracker_.track(pose).displacements) EXPECT_NEAR(q, 0.0, 1e-12);
 }
 
 TEST_P(Everywhere, ResultsDoNotDependOnTheOrderOfPoses) {
