@@ -14,7 +14,7 @@ const Joint& joint(const Mechanism& mechanism, std::size_t limb, std::size_t j) 
 Vector3 axis(const Joint& joint, Eigen::Index column) { return joint.at_home.R.col(column); }
 
 TEST(Frames, AreRightHanded) {
-  for (const char* name : {"rps3", "ups6", "upr2-rpu", "tripteron", "rrr3", "sps6", "mixed6", "press"}) {
+  for (const char* name : {"rps3", "ups6", "upr2-rpu", "tripteron", "rrr3", "sps6", "mixed6", "odd6", "press"}) {
     for (const Limb& limb : from_file(name).limbs) {
       for (const Joint& joint : limb.joints) {
         const lie::Matrix3<double>& R = joint.at_home.R;
@@ -75,6 +75,26 @@ TEST(Frames, PlatformHasItsOwnAxes) {
   EXPECT_LE((m.platform.R.col(0) - Vector3::UnitY()).norm(), 1e-15);
   EXPECT_NEAR(m.platform.p.z(), 0.52, 1e-15);
   EXPECT_NEAR(m.points[0].z(), -0.02, 1e-15);
+}
+
+/// S that is first points to the next other point; a frame without motion counts; fallback axes are turned with copies.
+TEST(Frames, OfOddLimbs) {
+  const Mechanism m = from_file("odd6");
+  const Vector3 ball(0.0, 0.2, 0.04), plate(0.1, 0.15, 0.06), top(0.4, 0.0, 0.09);
+  EXPECT_LE((axis(joint(m, 0, 0), 2) - (plate - ball).normalized()).norm(), 1e-15);
+  EXPECT_EQ(joint(m, 0, 3).name, "plate");
+  EXPECT_EQ(joint(m, 0, 3).motion, Motion::fixed);
+  EXPECT_EQ(m.limbs[0].home.size(), 9u);
+  EXPECT_LE((axis(joint(m, 0, 4), 2) - (top - ball).normalized()).norm(), 1e-15);
+  EXPECT_LE((joint(m, 0, 4).at_home.p - ball).norm(), 1e-15);
+  EXPECT_LE((axis(joint(m, 0, 6), 2) - Vector3::UnitY()).norm(), 1e-15);
+  EXPECT_LE((axis(joint(m, 0, 7), 2) - Vector3(0, 1, 2).normalized()).norm(), 1e-15);
+  EXPECT_EQ(displacement_names(m)[3].name, "q_1_5");
+  const Transform turn = lie::rotation<double>(lie::Axis::x, 2.0 * std::numbers::pi / 3.0);
+  const Vector3 turned = turn.R * axis(joint(m, 3, 0), 0);
+  EXPECT_LE((axis(joint(m, 3, 0), 0) - Vector3::UnitY()).norm(), 1e-15);
+  EXPECT_LE((axis(joint(m, 4, 0), 0) - turned).norm(), 1e-15);
+  EXPECT_EQ(m.factors.size(), 12u);
 }
 
 TEST(Geometry, OfAStudyMovesTheFrames) {

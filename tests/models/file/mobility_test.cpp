@@ -78,9 +78,9 @@ TEST(Mobility, MoreDrivesThanFreedomsAreOverConstraints) {
   EXPECT_NO_THROW(check_mobility(mechanism, found));
 }
 
-/// What the checks say of rrr3 with something else in the place of a part of its file.
-std::string problem_of(const std::string& from, const std::string& to) {
-  std::string text = text_of("rrr3");
+/// What the checks say of a mechanism with something else in the place of a part of its file.
+std::string problem_of(const std::string& from, const std::string& to, const std::string& name = "rrr3") {
+  std::string text = text_of(name);
   text.replace(text.find(from), from.size(), to);
   const MechanismFile file = read_mechanism_file(text, "m.toml");
   const Mechanism made = mechanism(file, default_geometry(file));
@@ -117,6 +117,15 @@ TEST(Mobility, HomeMustBeLikeOtherPoses) {
   EXPECT_NO_THROW(check_mobility(mechanism, home, poses));
   poses[1].mobility.rank += 1;
   EXPECT_THROW(check_mobility(mechanism, home, poses), InputError);
+}
+
+/// The axis on which a leg spins beside its own line: away from home its drive must move when it spins.
+TEST(Mobility, DrivesMustHoldThePlatformElsewhere) {
+  const std::string problem = problem_of("at = \"top\"", "at = [\"d / 2\", \"b\", 0]", "odd6");
+  EXPECT_TRUE(
+      problem.starts_with("m.toml:23:3: the drives do not hold the platform at some poses, which has 6 freedoms "
+                          "and 6 drives: joint '"))
+      << problem;
 }
 
 TEST(Mobility, SomeOfTheWorkspaceMustBeInReach) {
