@@ -526,7 +526,7 @@ const Keys<MechanismFile, Nothing>& file_keys() {
 StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, std::string type,
                     std::string_view meaning, std::string missing = {}, std::string example = {}) {
   return {.paths = std::move(paths),
-          .meaning = std::string(meaning),
+          .meaning = meaning,
           .keys = {{.name = name,
                     .type = std::move(type),
                     .missing = std::move(missing),
