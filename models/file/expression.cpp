@@ -26,10 +26,6 @@ const Unit* unit_of(std::string_view name) {
   return unit != nullptr && unit->dimension != Dimension::time ? unit : nullptr;
 }
 
-Value of_dimension(double si, Dimension dimension) {
-  return {si, dimension == Dimension::length ? 1 : 0, dimension == Dimension::angle ? 1 : 0};
-}
-
 /// Reads from left to right; each function takes what its name says off the front.
 class Parser {
  public:
@@ -197,6 +193,10 @@ class Parser {
 };
 
 }  // namespace
+
+Value of_dimension(double si, Dimension dimension) {
+  return {si, dimension == Dimension::length ? 1 : 0, dimension == Dimension::angle ? 1 : 0};
+}
 
 bool Value::like(const Value& other) const {
   return any || other.any || (length == other.length && angle == other.angle);

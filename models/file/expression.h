@@ -35,6 +35,9 @@ struct Value {
   bool like(const Value& other) const;
 };
 
+/// A length, angle or number.
+Value of_dimension(double si, Dimension dimension);
+
 /// "a length", "an angle", "a number", "length^2 angle^-1".
 std::string dimension_text(const Value& value);
 

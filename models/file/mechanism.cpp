@@ -132,7 +132,7 @@ class Builder {
   /// `at`, or for P, H and C `from`. depth: of references that stand on references.
   Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
     if (depth > limb.joints.size()) {
-      throw InputError(joint.place, joint.key + " '" + joint.name + "' stands where joints stand that stand at it",
+      throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",
                        "write at = [x, y, z] for one of them");
     }
     if (joint.at) return point(*joint.at);

@@ -13,7 +13,9 @@
 /// A mechanism of a file in numbers: SI, in the base frame, at home.
 namespace poesy::file {
 
+/// A point or a direction.
 using Vector3 = lie::Vector3<double>;
+/// A rigid motion.
 using Transform = lie::Transform<double>;
 
 /// What an elementary joint does, about or along its own z axis.

@@ -21,8 +21,8 @@ constexpr std::array<std::string_view, 6> kComponents{"epsilon_x", "epsilon_y", 
 /// The scope of tables whose rows need the value alone.
 struct Nothing {};
 
-template <class Object, class Scope = Nothing>
-using Row = Key<Object, Scope>;
+template <class Object>
+using Row = Key<Object, Nothing>;
 
 /// A value that `read` makes of a StudyValue, in the member at this path.
 template <class Read, class... Path>
@@ -31,6 +31,31 @@ auto kept(std::string type, Read read, Path... path) {
   return KeyValue<Object>{.type = std::move(type), .read = [=](const StudyValue& value, Object& object) {
                             detail::at(object, path...) = read(value);
                           }};
+}
+
+/// A value that `read` makes of a StudyValue and of what the object has already.
+template <class Object>
+KeyValue<Object> read_by(std::string type, void (*read)(const StudyValue&, Object&)) {
+  return {.type = std::move(type), .read = read};
+}
+
+/// A row that must be there where it holds: for all words of the table's chooser, or for these.
+template <class Object>
+Row<Object> needed(std::string_view name, KeyValue<Object> value, std::string example, std::string_view meaning,
+                   std::vector<std::string_view> only_for = {}) {
+  Row<Object> row{.name = name, .value = std::move(value), .missing = "write {}", .meaning = meaning};
+  row.example = std::move(example);
+  row.only_for = std::move(only_for);
+  return row;
+}
+
+/// A row that may be left out. usual: what holds then.
+template <class Object>
+Row<Object> optional(std::string_view name, KeyValue<Object> value, std::string usual, std::string_view meaning,
+                     std::vector<std::string_view> only_for = {}) {
+  Row<Object> row{.name = name, .value = std::move(value), .usual = std::move(usual), .meaning = meaning};
+  row.only_for = std::move(only_for);
+  return row;
 }
 
 Expression expression(const StudyValue& value) {
@@ -99,10 +124,9 @@ std::string read_name(const StudyValue& value) {
 std::vector<Reference> keys_in_order(const StudySection& section) {
   std::vector<Reference> list;
   for (const std::string& key : section.keys()) {
-    const Reference found{key, "", section.place()};
-    check_name(found);
     const StudyValue value = *section.find(key);
     list.push_back({key, value.full_name(), value.place()});
+    check_name(list.back());
   }
   std::ranges::sort(list, {}, [](const Reference& at) { return std::tuple(at.place.line, at.place.column); });
   return list;
@@ -117,7 +141,7 @@ std::vector<NamedPoint> points(const StudyValue& value) {
 
 // ---- joints and limbs
 
-void read_at(const StudyValue& value, JointLines& joint, const Nothing&) {
+void read_at(const StudyValue& value, JointLines& joint) {
   if (value.is_text()) {
     joint.at_point = reference(value);
   } else {
@@ -126,7 +150,7 @@ void read_at(const StudyValue& value, JointLines& joint, const Nothing&) {
 }
 
 /// true for joints with one axis and for both of C; 1 or 2 for one of C or U.
-void read_actuated(const StudyValue& value, JointLines& joint, const Nothing&) {
+void read_actuated(const StudyValue& value, JointLines& joint) {
   const std::size_t axes = elements(joint.kind);
   if (const std::optional<bool> all = value.boolean()) {
     if (*all && joint.kind == JointKind::universal) value.fail("is true", "write 1 or 2, for its first or second axis");
@@ -139,75 +163,44 @@ void read_actuated(const StudyValue& value, JointLines& joint, const Nothing&) {
 
 const Keys<JointLines, Nothing>& joint_keys() {
   using J = JointLines;
+  const std::vector<std::string_view> directed{"R", "P", "H", "C", "U", "fixed"};
+  const auto kinds = word_at<JointKind>({{JointKind::revolute, "revolute"},
+                                         {JointKind::prismatic, "prismatic"},
+                                         {JointKind::helical, "helical: slides as it turns"},
+                                         {JointKind::cylindrical, "cylindrical: R, then P on the same axis"},
+                                         {JointKind::universal, "universal: two axes through one point"},
+                                         {JointKind::spherical,
+                                          "spherical: three revolutes, the first along the line "
+                                          "from the joint before"},
+                                         {JointKind::fixed, "no motion: a frame that has errors"}},
+                                        &J::kind);
   static const Keys<J, Nothing> keys{
       .paths = {"limb.joints"},
       .meaning =
           "A joint, at home and in the base frame. Inside, every joint becomes revolute, prismatic and helical "
           "ones about or along their own z axes.",
       .chooser = "type",
-      .rows = {Row<JointLines>{
-                   .name = "type",
-                   .value = word_at<JointKind>({{JointKind::revolute, "revolute"},
-                                                {JointKind::prismatic, "prismatic"},
-                                                {JointKind::helical, "helical: slides as it turns"},
-                                                {JointKind::cylindrical, "cylindrical: R, then P on the same axis"},
-                                                {JointKind::universal, "universal: two axes through one point"},
-                                                {JointKind::spherical,
-                                                 "spherical: three revolutes, the first along the "
-                                                 "line from the joint before"},
-                                                {JointKind::fixed, "no motion: a frame that has errors"}},
-                                               &J::kind),
-                   .missing = "write {}",
-                   .example = "\"R\"",
-                   .meaning = "What the joint does."},
-               Row<JointLines>{.name = "name",
-                               .value = kept("text", read_name, &J::name),
-                               .missing = "write {}",
-                               .example = "\"A\"",
-                               .meaning = "Its name, once in a limb."},
-               Row<JointLines>{.name = "at",
-                               .value = {.type = "point"},
-                               .usual = "the point `from` of P, H and C",
-                               .meaning = "Where it stands: [x, y, z], or the name of a point of [points].",
-                               .reader = read_at},
-               Row<JointLines>{.name = "from",
-                               .value = kept("text", reference, &J::from),
-                               .only_for = {"R", "P", "H", "C", "U", "fixed"},
-                               .meaning = "With `to`, its direction: from this joint or point."},
-               Row<JointLines>{.name = "to",
-                               .value = kept("text", reference, &J::to),
-                               .only_for = {"R", "P", "H", "C", "U", "fixed"},
-                               .meaning = "With `from`, its direction: to this joint or point."},
-               Row<JointLines>{
-                   .name = "axis",
-                   .value = kept("direction", direction, &J::axis),
-                   .only_for = {"R", "P", "H", "C", "U", "fixed"},
-                   .meaning = "Its direction, without `from` and `to`: \"x\", \"-z\", or [x, y, z] of any length."},
-               Row<JointLines>{.name = "axis2",
-                               .value = kept("direction", direction, &J::axis2),
-                               .missing = "write {}",
-                               .example = "\"y\"",
-                               .only_for = {"U"},
-                               .meaning = "Its second axis, in the order from the base."},
-               Row<JointLines>{.name = "x",
-                               .value = kept("direction", direction, &J::x),
-                               .usual = "towards the next joint's point",
-                               .meaning = "The x axis of its first frame, made perpendicular to z."},
-               Row<JointLines>{.name = "pitch",
-                               .value = kept("length", expression, &J::pitch),
-                               .missing = "write {}",
-                               .example = "\"5 mm\"",
-                               .only_for = {"H"},
-                               .meaning = "By how much it slides in one turn; positive for a right-handed thread."},
-               Row<JointLines>{
-                   .name = "actuated",
-                   .value = {.type = "true, 1 or 2"},
-                   .usual = "`false`",
-                   .only_for = {"R", "P", "H", "C", "U"},
-                   .meaning =
-                       "Whether a drive holds it; of U the axis that is held, of C the turn (1), the slide (2) or both "
-                       "(true).",
-                   .reader = read_actuated}}};
+      .rows = {
+          needed("type", kinds, "\"R\"", "What the joint does."),
+          needed("name", kept("text", read_name, &J::name), "\"A\"", "Its name, once in a limb."),
+          optional("at", read_by("point", read_at), "the point `from` of P, H and C",
+                   "Where it stands: [x, y, z], or the name of a point."),
+          optional("from", kept("text", reference, &J::from), "", "With `to`, its direction: from this joint or point.",
+                   directed),
+          optional("to", kept("text", reference, &J::to), "", "With `from`, its direction: to this joint or point.",
+                   directed),
+          optional("axis", kept("direction", direction, &J::axis), "",
+                   "Its direction, without `from` and `to`: \"x\", \"-z\", or [x, y, z] of any length.", directed),
+          needed("axis2", kept("direction", direction, &J::axis2), "\"y\"",
+                 "Its second axis, in the order from the base.", {"U"}),
+          optional("x", kept("direction", direction, &J::x), "towards the next joint's point",
+                   "The x axis of its first frame, made perpendicular to z."),
+          needed("pitch", kept("length", expression, &J::pitch), "\"5 mm\"",
+                 "By how much it slides in one turn; positive for a right-handed thread.", {"H"}),
+          optional(
+              "actuated", read_by("true, 1 or 2", read_actuated), "`false`",
+              "Whether a drive holds it; of U the axis that is held, of C the turn (1), the slide (2) or both (true).",
+              {"R", "P", "H", "C", "U"})}};
   return keys;
 }
 
@@ -228,21 +221,18 @@ std::vector<JointLines> joints(const StudyValue& value) {
 }
 
 const Keys<LimbLines, Nothing>& copies_keys() {
+  const auto axis = [](const StudyValue& value) { return value.word(kAxes); };
   static const Keys<LimbLines, Nothing> keys{
       .paths = {"limb.copies"},
       .meaning = "Limbs alike: limb k of them is the first turned by (k - 1) 360 deg / count.",
-      .rows = {Row<LimbLines>{.name = "count",
-                              .value = whole_at(1, kMostCopies, &LimbLines::copies),
-                              .missing = "write {}",
-                              .example = "3",
-                              .meaning = "How many there are."},
-               Row<LimbLines>{.name = "about",
-                              .value = kept(
-                                  "text", [](const StudyValue& value) { return value.word(kAxes); }, &LimbLines::about),
-                              .missing = "write {}",
-                              .example = "\"z\"",
-                              .meaning = "About which axis of the base they are turned: x, y or z."}}};
+      .rows = {needed("count", whole_at(1, kMostCopies, &LimbLines::copies), "3", "How many there are."),
+               needed("about", kept("text", axis, &LimbLines::about), "\"z\"",
+                      "About which axis of the base they are turned: x, y or z.")}};
   return keys;
+}
+
+void read_copies(const StudyValue& value, LimbLines& limb) {
+  read_keys(copies_keys(), value.section(), limb, Nothing{});
 }
 
 const Keys<LimbLines, Nothing>& limb_keys() {
@@ -250,21 +240,12 @@ const Keys<LimbLines, Nothing>& limb_keys() {
       .paths = {"limb"},
       .meaning = "A limb, [[limb]], between base and platform.",
       .rows = {
-          Row<LimbLines>{
-              .name = "copies",
-              .value = {.type = "table"},
-              .usual = "one",
-              .meaning = "Limbs alike, turned about an axis of the base.",
-              .reader = [](const StudyValue& value, LimbLines& limb,
-                           const Nothing& nothing) { read_keys(copies_keys(), value.section(), limb, nothing); }},
-          Row<LimbLines>{.name = "points",
-                         .value = kept("table", points, &LimbLines::points),
-                         .usual = "none",
-                         .meaning = "Points of this limb alone, as in [points]."},
-          Row<LimbLines>{.name = "joints",
-                         .value = kept("list of tables", joints, &LimbLines::joints),
-                         .missing = "write joints = [ { name = \"A\", type = \"R\", at = [0, 0, 0], axis = \"y\" } ]",
-                         .meaning = "Its joints, from base to platform."}}};
+          optional("copies", read_by("table", read_copies), "one", "Limbs alike, turned about an axis of the base."),
+          optional("points", kept("table", points, &LimbLines::points), "none",
+                   "Points of this limb alone, as in [points]."),
+          needed("joints", kept("list of tables", joints, &LimbLines::joints),
+                 "[ { name = \"A\", type = \"R\", at = [0, 0, 0], axis = \"y\" } ]",
+                 "Its joints, from base to platform.")}};
   return keys;
 }
 
@@ -291,7 +272,7 @@ std::vector<LimbLines> limbs(const StudyValue& value) {
 
 // ---- platform
 
-void read_coordinates(const StudyValue& value, PlatformLines& platform, const Nothing&) {
+void read_coordinates(const StudyValue& value, PlatformLines& platform) {
   platform.coordinates_place = value.place();
   for (const StudyValue& element : value.list()) {
     CoordinateLines line;
@@ -316,7 +297,7 @@ void read_coordinates(const StudyValue& value, PlatformLines& platform, const No
   if (platform.coordinates.empty()) value.fail("is empty", "name as many as the platform has freedoms");
 }
 
-void read_workspace(const StudyValue& value, PlatformLines& platform, const Nothing&) {
+void read_workspace(const StudyValue& value, PlatformLines& platform) {
   const StudySection section = value.section();
   section.allow(names(platform.coordinates), "coordinate");
   for (CoordinateLines& coordinate : platform.coordinates) {
@@ -328,7 +309,7 @@ void read_workspace(const StudyValue& value, PlatformLines& platform, const Noth
   }
 }
 
-void read_metric_points(const StudyValue& value, PlatformLines& platform, const Nothing&) {
+void read_metric_points(const StudyValue& value, PlatformLines& platform) {
   platform.place = value.place();
   for (const StudyValue& element : value.list()) platform.points.push_back(point(element));
   if (platform.points.size() < 3) value.fail("has fewer than three points", "give three that are on no line");
@@ -345,44 +326,23 @@ const Keys<PlatformLines, Nothing>& platform_keys() {
       .paths = {"platform"},
       .meaning = "What the limbs hold.",
       .rows = {
-          Row<PlatformLines>{.name = "origin",
-                             .value = kept("point", point, &P::origin),
-                             .missing = "write {}",
-                             .example = "[0, 0, \"600 mm\"]",
-                             .meaning = "Its origin P at home, in the base frame."},
-          Row<PlatformLines>{.name = "x",
-                             .value = kept("direction", direction, &P::x),
-                             .usual = "the base's",
-                             .meaning = "Its x axis at home; with `z`, to which it is made perpendicular."},
-          Row<PlatformLines>{.name = "z",
-                             .value = kept("direction", direction, &P::z),
-                             .usual = "the base's",
-                             .meaning = "Its z axis at home; with `x`."},
-          Row<PlatformLines>{
-              .name = "rotation", .value = word_at(rotations, &P::rotation), .meaning = "What rx, ry and rz mean."},
-          Row<PlatformLines>{
-              .name = "coordinates",
-              .value = {.type = "list"},
-              .missing = "write {}",
-              .example = "[\"x\", \"y\", \"z\"]",
-              .meaning =
-                  "The independent ones among x, y, z (P in the base frame) and rx, ry, rz (from home), as many as "
-                  "it has freedoms; { alpha = \"rx\" } renames one.",
-              .reader = read_coordinates},
-          Row<PlatformLines>{.name = "workspace",
-                             .value = {.type = "table"},
-                             .missing = "write workspace = { z = [\"500 mm\", \"700 mm\"] } with every coordinate",
-                             .meaning = "The default workspace.",
-                             .reader = read_workspace},
-          Row<PlatformLines>{.name = "tool",
-                             .value = kept("point", point, &P::tool),
-                             .usual = "none",
-                             .meaning = "A point of the platform frame whose displacement is reported in addition."},
-          Row<PlatformLines>{.name = "points",
-                             .value = {.type = "list of points"},
-                             .usual = "the point of each limb's last joint that moves",
-                             .meaning = "Points of the platform frame by which mismatch of limbs is weighed.",
-                             .reader = read_metric_points}}};
+          needed("origin", kept("point", point, &P::origin), "[0, 0, \"600 mm\"]",
+                 "Its origin P at home, in the base frame."),
+          optional("x", kept("direction", direction, &P::x), "the base's",
+                   "Its x axis at home; with `z`, to which it is made perpendicular."),
+          optional("z", kept("direction", direction, &P::z), "the base's", "Its z axis at home; with `x`."),
+          optional("rotation", word_at(rotations, &P::rotation), "`\"vector\"`", "What rx, ry and rz mean."),
+          needed(
+              "coordinates", read_by("list", read_coordinates), "[\"x\", \"y\", \"z\"]",
+              "The independent ones among x, y, z (P in the base frame) and rx, ry, rz (from home), as many as it has "
+              "freedoms; { alpha = \"rx\" } renames one."),
+          needed("workspace", read_by("table", read_workspace), "{ z = [\"500 mm\", \"700 mm\"] }",
+                 "The default workspace, with every coordinate."),
+          optional("tool", kept("point", point, &P::tool), "none",
+                   "A point of the platform frame whose displacement is reported in addition."),
+          optional("points", read_by("list of points", read_metric_points),
+                   "the point of each limb's last joint that moves",
+                   "Points of the platform frame by which mismatch of limbs is weighed.")}};
   return keys;
 }
 
@@ -396,111 +356,87 @@ PlatformLines platform(const StudyValue& value) {
 
 // ---- errors
 
-using ErrorRow = Row<ErrorLines, MechanismFile>;
-
-void read_error_limb(const StudyValue& value, ErrorLines& error, const MechanismFile& file) {
-  if (!value.is_text()) {
-    const auto limbs = static_cast<std::int64_t>(frame_counts(file).size());
-    error.limb = static_cast<std::size_t>(value.whole_number(1, limbs) - 1);
-  } else if (value.text() != "each") {
-    value.fail("is '" + printable(value.text()) + "'", "write a limb's number, or \"each\"");
-  }
-}
-
-void read_error_frame(const StudyValue& value, ErrorLines& error, const MechanismFile& file) {
-  const std::vector<std::size_t> counts = frame_counts(file);
-  const std::size_t count = error.limb ? counts[*error.limb] : std::ranges::min(counts);
-  error.frame = static_cast<std::size_t>(value.whole_number(0, static_cast<std::int64_t>(count) - 1));
-}
-
-void read_components(const StudyValue& value, ErrorLines& error, const MechanismFile&) {
-  const bool one = value.is_text();
-  for (const StudyValue& element : one ? std::vector{value} : value.list()) {
+std::vector<std::size_t> components(const StudyValue& value) {
+  std::vector<std::size_t> list;
+  for (const StudyValue& element : value.is_text() ? std::vector{value} : value.list()) {
     const std::size_t component = element.word(kComponents);
-    if (std::ranges::find(error.components, component) != error.components.end()) {
-      element.fail("names a component a second time", "remove it");
-    }
-    if (!error.components.empty() && error.components.front() / 3 != component / 3) {
+    if (std::ranges::find(list, component) != list.end()) element.fail("is a component a second time", "remove it");
+    if (!list.empty() && list.front() / 3 != component / 3) {
       element.fail("mixes lengths and angles in one vector", "write two [[error]]");
     }
-    error.components.push_back(component);
+    list.push_back(component);
   }
-  if (error.components.empty()) value.fail("is empty", "write \"delta_z\", for instance");
+  if (list.empty()) value.fail("is empty", "write \"delta_z\", for instance");
+  return list;
 }
 
-const Keys<ErrorLines, MechanismFile>& error_keys() {
+const Keys<ErrorLines, Nothing>& error_keys() {
   using E = ErrorLines;
-  static const Keys<E, MechanismFile> keys{
+  static const Keys<E, Nothing> keys{
       .paths = {"error"},
       .meaning = "An error with a name of its own, [[error]].",
-      .rows = {ErrorRow{.name = "name",
-                        .value = kept("text", reference, &E::name),
-                        .missing = "write {}",
-                        .example = "\"l\"",
-                        .meaning = "Its name; \"each\" limb appends _1, _2, ..., and components of a vector _x, _y, _z "
-                                   "before."},
-               ErrorRow{.name = "limb",
-                        .value = {.type = "integer or text"},
-                        .missing = "write {}",
-                        .example = "\"each\"",
-                        .meaning = "The limb, counted from 1, or \"each\".",
-                        .reader = read_error_limb},
-               ErrorRow{.name = "frame",
-                        .value = {.type = "integer", .bounds = "at least 0"},
-                        .missing = "write {}",
-                        .example = "0",
-                        .meaning = "The fixed frame: 0 before the first joint, the last one to the platform.",
-                        .reader = read_error_frame},
-               ErrorRow{.name = "component",
-                        .value = {.type = "text or list"},
-                        .missing = "write {}",
-                        .example = "\"delta_z\"",
-                        .meaning = "delta_x, delta_y, delta_z (lengths) or epsilon_x, epsilon_y, epsilon_z (angles) of "
-                                   "the frame; several make a vector.",
-                        .reader = read_components},
-               ErrorRow{.name = "scale",
-                        .value = kept("number", expression, &E::scale),
-                        .usual = "`1`",
-                        .meaning = "The component is the error times this."},
-               ErrorRow{.name = "description",
-                        .value = text_at(&E::description),
-                        .usual = "what the frame's own error says",
-                        .meaning = "For people."}}};
+      .rows = {
+          needed("name", kept("text", reference, &E::name), "\"l\"",
+                 "Its name; components of a vector append _x, _y, _z, and \"each\" limb _1, _2, ... behind that."),
+          needed<E>("limb", {.type = "integer or text"}, "\"each\"", "The limb, counted from 1, or \"each\"."),
+          needed<E>("frame", {.type = "integer", .bounds = "at least 0"}, "0",
+                    "The fixed frame: 0 before the first joint, the last one to the platform."),
+          needed(
+              "component", kept("text or list", components, &E::components), "\"delta_z\"",
+              "delta_x, delta_y, delta_z (lengths) or epsilon_x, epsilon_y, epsilon_z (angles) of the frame; several "
+              "make a vector."),
+          optional("scale", kept("number", expression, &E::scale), "`1`", "The component is the error times this."),
+          optional("description", text_at(&E::description), "what the frame's own error says", "For people.")}};
   return keys;
 }
 
-void read_errors(const StudyValue& value, MechanismFile& file, const Nothing&) {
+/// Which limb, and a frame that it has. frames: of each limb.
+void read_slot(const StudySection& section, const std::vector<std::size_t>& frames, ErrorLines& error) {
+  const StudyValue limb = section.require("limb");
+  if (!limb.is_text()) {
+    error.limb = static_cast<std::size_t>(limb.whole_number(1, static_cast<std::int64_t>(frames.size())) - 1);
+  } else if (limb.text() != "each") {
+    limb.fail("is '" + printable(limb.text()) + "'", "write a limb's number, or \"each\"");
+  }
+  const std::size_t count = error.limb ? frames[*error.limb] : std::ranges::min(frames);
+  const StudyValue frame = section.require("frame");
+  error.frame = static_cast<std::size_t>(frame.whole_number(0, static_cast<std::int64_t>(count) - 1));
+}
+
+void read_named_errors(const StudyValue& value, MechanismFile& file) {
+  const std::vector<std::size_t> frames = frame_counts(file);
   for (const StudyValue& element : tables(value)) {
     ErrorLines error;
-    read_keys(error_keys(), element.section(), error, file);
+    read_keys(error_keys(), element.section(), error, Nothing{});
     check_name(error.name);
+    read_slot(element.section(), frames, error);
     file.errors.push_back(std::move(error));
   }
 }
 
-void read_frames(const StudyValue& value, MechanismFile& file, const Nothing&) {
-  if (!value.is_text()) {
-    file.frames = references(value);
-  } else if (value.text() == "all") {
-    file.all = true;
-  } else {
+void read_frames(const StudyValue& value, MechanismFile& file) {
+  file.all = value.is_text() && value.text() == "all";
+  if (file.all) return;
+  if (value.is_text())
     value.fail("is '" + printable(value.text()) + "'", "write \"all\", or a list of names and patterns");
-  }
+  file.frames = references(value);
 }
 
 const Keys<MechanismFile, Nothing>& errors_keys() {
   static const Keys<MechanismFile, Nothing> keys{
       .paths = {"errors"},
       .meaning = "Errors of fixed frames: epsilon_i_j_x (an angle) and delta_i_j_x (a length) of frame j of limb i.",
-      .rows = {Row<MechanismFile>{.name = "frames",
-                                  .value = {.type = "\"all\" or list"},
-                                  .usual = "`\"all\"`, or none where there is an [[error]]",
-                                  .meaning = "All, or a list of names and patterns: \"delta_*_0_?\".",
-                                  .reader = read_frames}}};
+      .rows = {optional("frames", read_by("\"all\" or list", read_frames),
+                        "`\"all\"`, or none where there is an [[error]]",
+                        "All, or a list of names and patterns: \"delta_*_0_?\".")}};
   return keys;
 }
 
-void read_sets(const StudyValue& value, MechanismFile& file, const Nothing&) {
+void read_errors(const StudyValue& value, MechanismFile& file) {
+  read_keys(errors_keys(), value.section(), file, Nothing{});
+}
+
+void read_sets(const StudyValue& value, MechanismFile& file) {
   const StudySection section = value.section();
   for (const Reference& name : keys_in_order(section)) {
     const StudyValue patterns = *section.find(name.name);
@@ -518,51 +454,46 @@ struct ParameterLines {
 };
 
 const Keys<ParameterLines, Nothing>& parameter_keys() {
-  static const Keys<ParameterLines, Nothing> keys{
+  using P = ParameterLines;
+  static const Keys<P, Nothing> keys{
       .paths = {"geometry.PARAMETER"},
       .meaning = "A parameter with a description.",
-      .rows = {Row<ParameterLines>{.name = "value",
-                                   .value = kept("length or angle", expression, &ParameterLines::value),
-                                   .missing = "write {}",
-                                   .example = "\"250 mm\"",
-                                   .meaning = "Its default."},
-               Row<ParameterLines>{.name = "description",
-                                   .value = text_at(&ParameterLines::description),
-                                   .usual = "none",
-                                   .meaning = "For people."}}};
+      .rows = {needed("value", kept("length or angle", expression, &P::value), "\"250 mm\"", "Its default."),
+               optional("description", text_at(&P::description), "none", "For people.")}};
   return keys;
 }
 
-void read_geometry(const StudyValue& value, MechanismFile& file, const Nothing& nothing) {
-  const StudySection section = value.section();
-  for (const std::string& key : section.keys()) {
-    const std::string why = why_no_parameter(key);
-    if (why.empty()) continue;
-    throw InputError(section.place(), "geometry: '" + printable(key) + "' " + why, "give the parameter another name");
+GeometryParameter parameter(const std::string& name, const StudyValue& written) {
+  ParameterLines lines;
+  if (written.is_section()) {
+    read_keys(parameter_keys(), written.section(), lines, Nothing{});
+  } else {
+    lines.value = expression(written);
   }
+  const Value found = evaluate(*lines.value, {}, {});
+  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+    if (found.any || !found.like(of_dimension(0.0, dimension))) continue;
+    return {name, dimension, found.si, lines.description};
+  }
+  written.fail("is " + dimension_text(found), "a parameter is a length or an angle: give it a unit, e.g. \"1 mm\"");
+}
+
+void read_geometry(const StudyValue& value, MechanismFile& file) {
+  const StudySection section = value.section();
   for (const Reference& key : keys_in_order(section)) {
     const StudyValue written = *section.find(key.name);
-    ParameterLines lines;
-    if (written.is_section()) {
-      read_keys(parameter_keys(), written.section(), lines, nothing);
-    } else {
-      lines.value = expression(written);
-    }
-    const Value found = evaluate(*lines.value, {}, {});
-    const bool is_length = found.length == 1 && found.angle == 0;
-    if (!is_length && !(found.length == 0 && found.angle == 1)) {
-      written.fail("is " + dimension_text(found), "a parameter is a length or an angle: give it a unit, e.g. \"1 mm\"");
-    }
-    file.geometry.push_back({key.name, is_length ? Dimension::length : Dimension::angle, found.si, lines.description});
+    const std::string why = why_no_parameter(key.name);
+    if (!why.empty()) written.fail(why, "give the parameter another name");
+    file.geometry.push_back(parameter(key.name, written));
   }
 }
 
-void read_format(const StudyValue& value, MechanismFile&, const Nothing&) {
+void read_format(const StudyValue& value, MechanismFile&) {
   if (value.text() == "poesy-mechanism") return;
   value.fail("is '" + printable(value.text()) + "'", "a mechanism has format = \"poesy-mechanism\"");
 }
 
-void read_version(const StudyValue& value, MechanismFile&, const Nothing&) {
+void read_version(const StudyValue& value, MechanismFile&) {
   const std::int64_t number = value.whole_number(1);
   if (number > 1)
     value.fail("is " + std::to_string(number) + ", but this poesy knows version 1 only", "use a newer poesy");
@@ -573,57 +504,21 @@ const Keys<MechanismFile, Nothing>& file_keys() {
   static const Keys<F, Nothing> keys{
       .paths = {""},
       .meaning = "A mechanism: everything stands in one base frame, at the home pose, as on a drawing.",
-      .rows = {Row<MechanismFile>{.name = "format",
-                                  .value = {.type = "text"},
-                                  .missing = "write format = \"poesy-mechanism\"",
-                                  .meaning = "\"poesy-mechanism\".",
-                                  .reader = read_format},
-               Row<MechanismFile>{.name = "version",
-                                  .value = {.type = "integer"},
-                                  .missing = "write version = 1",
-                                  .meaning = "1.",
-                                  .reader = read_version},
-               Row<MechanismFile>{.name = "name",
-                                  .value = kept("text", read_name, &F::name),
-                                  .missing = "write {}",
-                                  .example = "\"rps3\"",
-                                  .meaning = "Its name: letters, digits, _ and -."},
-               Row<MechanismFile>{
-                   .name = "title", .value = text_at(&F::title), .usual = "the name", .meaning = "For people."},
-               Row<MechanismFile>{.name = "geometry",
-                                  .value = {.type = "table"},
-                                  .usual = "none",
-                                  .meaning = "Lengths and angles that expressions name; a study may change each.",
-                                  .reader = read_geometry},
-               Row<MechanismFile>{.name = "points",
-                                  .value = kept("table", points, &F::points),
-                                  .usual = "none",
-                                  .meaning = "Points of the base frame, at home, that joints may name."},
-               Row<MechanismFile>{.name = "platform",
-                                  .value = kept("table", platform, &F::platform),
-                                  .missing = "write [platform] with origin, coordinates and workspace",
-                                  .meaning = "What the limbs hold."},
-               Row<MechanismFile>{.name = "limb",
-                                  .value = kept("tables", limbs, &F::limbs),
-                                  .missing = "write [[limb]] with its joints, for each limb",
-                                  .meaning = "The limbs."},
-               Row<MechanismFile>{.name = "error",
-                                  .value = {.type = "tables"},
-                                  .usual = "none",
-                                  .meaning = "Errors with names of their own.",
-                                  .reader = read_errors},
-               Row<MechanismFile>{
-                   .name = "errors",
-                   .value = {.type = "table"},
-                   .usual = "`{}`",
-                   .meaning = "Errors of fixed frames.",
-                   .reader = [](const StudyValue& value, F& file,
-                                const Nothing& nothing) { read_keys(errors_keys(), value.section(), file, nothing); }},
-               Row<MechanismFile>{.name = "sets",
-                                  .value = {.type = "table"},
-                                  .usual = "none besides `all`",
-                                  .meaning = "Sets of errors that a study may name.",
-                                  .reader = read_sets}}};
+      .rows = {needed("format", read_by("text", read_format), "\"poesy-mechanism\"", "\"poesy-mechanism\"."),
+               needed("version", read_by("integer", read_version), "1", "1."),
+               needed("name", kept("text", read_name, &F::name), "\"rps3\"", "Its name: letters, digits, _ and -."),
+               optional("title", text_at(&F::title), "the name", "For people."),
+               optional("geometry", read_by("table", read_geometry), "none",
+                        "Lengths and angles that expressions name; a study may change each."),
+               optional("points", kept("table", points, &F::points), "none",
+                        "Points of the base frame, at home, that joints may name; those of a limb go before."),
+               needed("platform", kept("table", platform, &F::platform), "{ origin =, coordinates =, workspace = }",
+                      "What the limbs hold."),
+               needed("limb", kept("tables", limbs, &F::limbs), "[{ joints = }], or [[limb]] for each", "The limbs."),
+               optional("error", read_by("tables", read_named_errors), "none", "Errors with names of their own."),
+               optional("errors", read_by("table", read_errors), "`{}`", "Errors of fixed frames."),
+               optional("sets", read_by("table", read_sets), "none besides `all`",
+                        "Sets of errors that a study may name.")}};
   return keys;
 }
 
@@ -631,7 +526,7 @@ const Keys<MechanismFile, Nothing>& file_keys() {
 StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, std::string type,
                     std::string_view meaning, std::string missing = {}, std::string example = {}) {
   return {.paths = std::move(paths),
-          .meaning = std::string(meaning),
+          .meaning = meaning,
           .keys = {{.name = name,
                     .type = std::move(type),
                     .missing = std::move(missing),

@@ -213,17 +213,28 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
   return list;
 }
 
+namespace {
+
+/// Throws where the platform moves although all drives are held. where: "" at home, or " at some poses".
+void check_held(const Mobility& found, const std::string& where) {
+  if (found.loose == 0) return;
+  throw InputError(found.loose_place,
+                   "the drives do not hold the platform" + where + ", which has " +
+                       count_text(found.platform_freedoms, "freedom") + " and " + count_text(found.actuated, "drive") +
+                       ": " + found.loose_text,
+                   found.actuated < found.platform_freedoms
+                       ? "write actuated = true at one more joint, or correct the axes"
+                       : "correct the axes, drive another joint, or draw it at a pose that is not singular");
+}
+
+}  // namespace
+
 void check_mobility(const Mechanism& mechanism, const Mobility& home) {
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
     throw InputError(mechanism.coordinates_place, problem, remedy);
   };
   if (home.platform_freedoms == 0) fail("the platform cannot move", "look at the axes of the joints at home");
-  if (home.loose > 0) {
-    throw InputError(home.loose_place,
-                     "the drives do not hold the platform, which has " + count_text(home.platform_freedoms, "freedom") +
-                         " and " + count_text(home.actuated, "drive") + ": " + home.loose_text,
-                     "write actuated = true at one more joint, or correct the axes");
-  }
+  check_held(home, "");
   const std::size_t named = mechanism.coordinates.size();
   if (home.coordinates_rank < named) {
     fail("platform.coordinates are not independent: " + home.dependent +
@@ -248,10 +259,13 @@ void check_mobility(const Mechanism& mechanism, const Mobility& home, std::span<
          "correct the workspace, or the home pose if the mechanism moves there by an instant only");
   }
   for (const PoseMobility& pose : poses) {
-    if (!reached(pose) || pose.mobility.rank == home.rank) continue;
-    fail("home is a singular pose: the mechanism has " + count_text(home.freedoms, "freedom") + " there, and " +
-             std::to_string(pose.mobility.freedoms) + " elsewhere",
-         "draw it at another pose");
+    if (!reached(pose)) continue;
+    if (pose.mobility.rank != home.rank) {
+      fail("home is a singular pose: the mechanism has " + count_text(home.freedoms, "freedom") + " there, and " +
+               std::to_string(pose.mobility.freedoms) + " elsewhere",
+           "draw it at another pose");
+    }
+    check_held(pose.mobility, " at some poses");
   }
 }
 

@@ -61,8 +61,8 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
 /// over-constraints, not mistakes.
 void check_mobility(const Mechanism& mechanism, const Mobility& home);
 
-/// Throws InputError where home is a special configuration: no pose of the workspace is reached, or home has another
-/// number of freedoms than they have.
+/// Throws InputError where home is a special configuration: no pose of the workspace is reached, home has another
+/// number of freedoms than they have, or drives hold the platform at home alone.
 void check_mobility(const Mechanism& mechanism, const Mobility& home, std::span<const PoseMobility> poses);
 
 }  // namespace poesy::file

@@ -1,6 +1,7 @@
 #include "models/file/tracking.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,7 @@ constexpr double kSmallestStep = 1.0 / 2048;  ///< of the way
 constexpr double kLargestMove = 0.5;          ///< of a joint in Newton's first step, rad or reaches
 constexpr double kContraction = 0.25;         ///< of each later step against the one before
 constexpr double kRest = 1e-12;               ///< a step this small ends the iteration
+constexpr double kRounding = 1e-13;           ///< a residual this small does so too, rad or reaches
 constexpr int kMostSteps = 12;
 constexpr int kMostSettlings = 60;
 
@@ -50,13 +52,6 @@ struct Tracker::System {
   Vector residual;  ///< [6 limbs]
 };
 
-/// Newton's step of least norm.
-struct Tracker::Step {
-  Vector change;    ///< [moving + free]
-  Vector weakest;   ///< [moving + free]: the motion that the equations hold least
-  double smallest;  ///< singular value that counts, over the largest
-};
-
 std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<const double> displacements,
                                          double factor) {
   std::vector<double> scaled(displacements.begin(), displacements.end());
@@ -70,7 +65,7 @@ std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<c
   return scaled;
 }
 
-Tracker::Tracker(const Mechanism& mechanism) : unit_(in_reaches(mechanism)), reach_(mechanism.reach), rank_(-1) {
+Tracker::Tracker(const Mechanism& mechanism) : unit_(in_reaches(mechanism)), reach_(mechanism.reach) {
   for (std::size_t component = 0; component < 6; ++component) {
     if (std::ranges::find(unit_.coordinates, component, &Coordinate::component) == unit_.coordinates.end()) {
       free_.push_back(component);
@@ -81,8 +76,6 @@ Tracker::Tracker(const Mechanism& mechanism) : unit_(in_reaches(mechanism)), rea
     limb_transform(limb, std::vector<double>(limb.moving(), 0.0), &columns);
     limb_ranks_.push_back(static_cast<std::size_t>(rank_of(Eigen::JacobiSVD<Matrix>(columns).singularValues())));
   }
-  const State home{Vector::Zero(index(unit_.moving())), home_pose(unit_)};
-  rank_ = rank_of(Eigen::BDCSVD<Matrix>(system(home).matrix).singularValues());
 }
 
 Tracker::System Tracker::system(const State& state) const {
@@ -107,25 +100,19 @@ Tracker::System Tracker::system(const State& state) const {
   return made;
 }
 
-Tracker::Step Tracker::step(const State& state) const {
-  const System equations = system(state);
-  const Eigen::BDCSVD<Matrix> svd(equations.matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Vector values = svd.singularValues().head(rank_);
-  const Vector along = svd.matrixU().leftCols(rank_).transpose() * equations.residual;
-  return {svd.matrixV().leftCols(rank_) * along.cwiseQuotient(values), svd.matrixV().col(rank_ - 1),
-          values[rank_ - 1] / values[0]};
-}
-
 /// Newton's method, as long as every step is a fraction of the one before: then the root is the one on the way.
 Tracker::Ending Tracker::close(State& state) const {
   double most = kLargestMove;
   for (int n = 0; n < kMostSteps; ++n) {
-    const Step next = step(state);
-    const double size = next.change.lpNorm<Eigen::Infinity>();
+    const System equations = system(state);
+    Eigen::CompleteOrthogonalDecomposition<Matrix> least_norm;
+    least_norm.setThreshold(kRankThreshold);
+    const Vector change = least_norm.compute(equations.matrix).solve(equations.residual);
+    const double size = change.lpNorm<Eigen::Infinity>();
     if (!(size <= most)) return Ending::slow;
-    state.q += next.change.head(state.q.size());
-    for (std::size_t f = 0; f < free_.size(); ++f) state.pose[free_[f]] += next.change[state.q.size() + index(f)];
-    if (size <= kRest) {
+    state.q += change.head(state.q.size());
+    for (std::size_t f = 0; f < free_.size(); ++f) state.pose[free_[f]] += change[state.q.size() + index(f)];
+    if (size <= kRest || equations.residual.lpNorm<Eigen::Infinity>() <= kRounding) {
       const bool closed = system(state).residual.lpNorm<Eigen::Infinity>() <= kClosed;
       return closed ? Ending::closed : Ending::open;
     }
@@ -186,14 +173,18 @@ bool Tracker::settle(State& state) const {
 }
 
 std::string Tracker::why(const State& state, Ending ending, double share) const {
+  Index idle = 0;
+  for (std::size_t i = 0; i < unit_.limbs.size(); ++i) idle += index(unit_.limbs[i].moving() - limb_ranks_[i]);
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";
   if (ending == Ending::open) {
     return where + "beyond, the loops stay open by more than rounding, because the limbs do not fit each other there";
   }
-  const Step here = step(state);
+  const Matrix matrix = system(state).matrix;
+  const Eigen::JacobiSVD<Matrix> svd(matrix, Eigen::ComputeFullV);
+  const Vector weakest = svd.matrixV().col(matrix.cols() - 1 - idle);
   Index column = 0;
-  here.weakest.head(state.q.size()).cwiseAbs().maxCoeff(&column);
+  weakest.head(state.q.size()).cwiseAbs().maxCoeff(&column);
   std::string blamed;
   for (std::size_t i = 0; i < unit_.limbs.size() && blamed.empty(); ++i) {
     for (const Joint& joint : unit_.limbs[i].joints) {

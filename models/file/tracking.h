@@ -41,11 +41,9 @@ class Tracker {
  private:
   struct State;
   struct System;
-  struct Step;
   enum class Ending { closed, slow, open, restless };
 
   System system(const State& state) const;
-  Step step(const State& state) const;
   Ending close(State& state) const;
   bool settle(State& state) const;
   std::string why(const State& state, Ending ending, double share) const;
@@ -54,7 +52,6 @@ class Tracker {
   double reach_;                         ///< m
   std::vector<std::size_t> free_;        ///< components of the platform's pose that are no coordinates
   std::vector<std::size_t> limb_ranks_;  ///< of each limb's own columns at home
-  Eigen::Index rank_;                    ///< of the whole system at home
 };
 
 }  // namespace poesy::file
