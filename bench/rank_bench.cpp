@@ -9,6 +9,7 @@
 #include "bench/published_study.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/run/run_in_order.h"
 #include "engine/run/run_options.h"
@@ -87,15 +88,15 @@ void measure_both(Team& team, std::size_t units_per_cell) {
   {
     const Plan plan(study, poses);
     const std::size_t responses = model->description().responses.size();
-    const SensitivityUnit unit{{std::vector(responses, Moments::of(numbers())), counts(), {}}, {}};
+    const CellUnit unit{{std::vector(responses, Moments::of(numbers())), counts(), {}}, {}};
     SensitivityCollector collect(plan, responses, study.analysis.conf_level);
     measure(
         "sensitivity", plan, unit, team,
-        [&](const WorkUnit& of, const SensitivityUnit& found) { collect.add(of, found); },
-        [&](ByteReader& from) { return SensitivityUnit::read(from, responses, 0, 0); });
+        [&](const WorkUnit& of, const CellUnit& found) { collect.add(of, found); },
+        [&](ByteReader& from) { return CellUnit::read(from, responses, 0, 0); });
   }
   // As many units at few poses: what is done once for a pose does not count in long studies.
-  study.analysis.kind = Analysis::Kind::monte_carlo;
+  study.analysis.kind = &kMonteCarloStudy;
   study.analysis.samples *= kUnitsPerPose;
   const Plan plan(study, bench::every(kEveryPose, poses));
   const ResponseUnit response{Moments::of(numbers()), BucketedValues(numbers())};

@@ -11,6 +11,7 @@
 #include "engine/app/progress.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/h5.h"
+#include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/run_options.h"
 #include "engine/study/error_words.h"

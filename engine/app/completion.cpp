@@ -9,7 +9,7 @@
 #include "engine/app/ending.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/registry.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 
@@ -47,7 +47,7 @@ std::vector<std::string> words_for(const std::string& value, const Command& prog
   } else if (value == "RESPONSE") {
     words = known_responses();
   } else if (value == "KIND") {
-    for (const Analysis::Kind kind : kKinds) words.emplace_back(name(kind));
+    for (const std::string_view kind : names(study_kinds())) words.emplace_back(kind);
   } else if (value == "SHELL") {
     words.assign(kShells.begin(), kShells.end());
   } else if (value == "KEY") {

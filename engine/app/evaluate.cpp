@@ -13,6 +13,8 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/evaluate/stored.h"
+#include "engine/kinds/study_file.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
 #include "engine/run/evaluation.h"
@@ -92,16 +94,21 @@ int evaluate(const EvaluateOptions& options) {
   if (const auto& limits = study.analysis.limits; !limits.empty()) {
     result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
   }
-  StoredResult shown = with_verdicts(study, poses, result->verdicts);
-  shown.cases.clear();  // the study's own are not what was evaluated
-  shown.pairing = pairing;
-  shown.labels = errors.labels;
+  StoredResult shown = with_verdicts(study, poses,
+                                     {.solves = {},
+                                      .facts = {},
+                                      .verdicts = result->verdicts,
+                                      .row_names = row_names(errors.labels, pairing, errors.rows)});
   for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
   if (!options.result.empty()) {
     write_evaluation(options.result, study, poses, errors, pairing, *result,
                      run_facts(seconds, threads, total.total()));
   }
-  shown.evaluation = std::move(*result);
+  StoredEvaluation found;
+  found.evaluation = std::move(*result);
+  found.pairing = pairing;
+  found.labels = errors.labels;
+  shown.found = std::move(found);
   std::fputs(fmt::format("{} solves, {} not converged\n\n{}", total.total(), total.not_converged(),
                          text_of(evaluation_table(shown), output_width()))
                  .c_str(),

@@ -3,6 +3,7 @@
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
 #include "engine/base/error.h"
+#include "engine/kinds/result_file.h"
 
 namespace poesy::app {
 namespace {

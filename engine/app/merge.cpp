@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
 #include "engine/files/shard_file.h"
-#include "engine/files/stored_study.h"
+#include "engine/kinds/stored_study.h"
 #include "models/registry.h"
 
 namespace poesy::app {

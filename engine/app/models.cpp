@@ -4,7 +4,8 @@
 #include "engine/app/ending.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/registry.h"
+#include "engine/kinds/study_file.h"
 #include "engine/report/tables.h"
 #include "models/registry.h"
 
@@ -19,25 +20,18 @@ const CatalogEntry& find_model(const std::string& name) {
   throw InputError({}, "no model '" + printable(name) + "'", suggestion(lower_case(name), known));
 }
 
-Analysis::Kind kind_named(const std::string& word) {
-  std::vector<std::string_view> known;
-  for (const Analysis::Kind kind : kKinds) {
-    if (name(kind) == word) return kind;
-    known.push_back(name(kind));
-  }
-  throw InputError({}, "no template of kind '" + printable(word) + "'", suggestion(word, known));
+const StudyKind& kind_named(const std::string& word) {
+  if (const StudyKind* kind = find(study_kinds(), word)) return *kind;
+  throw InputError({}, "no template of kind '" + printable(word) + "'", suggestion(word, names(study_kinds())));
 }
 
 int print_template(const std::string& model, const std::string& kind) {
   const CatalogEntry& entry = find_model(model);
-  const Analysis::Kind wanted = kind_named(kind);
-  if (wanted == Analysis::Kind::identification && !entry.description.deformation) {
-    throw InputError({}, "nothing deforms in model '" + model + "', so it has no identification",
-                     "choose another kind");
-  }
-  if (wanted == Analysis::Kind::coupling && entry.description.sources.empty()) {
-    throw InputError({}, "model '" + model + "' suggests no sources of errors, so its coupling has no template",
-                     "choose another kind, or write [[analysis.sources]] in a study of this kind");
+  const StudyKind& wanted = kind_named(kind);
+  ModelDescription as_named = entry.description;
+  as_named.name = model;
+  if (const auto refusal = wanted.no_template != nullptr ? wanted.no_template(as_named) : std::nullopt) {
+    throw InputError({}, refusal->problem, refusal->remedy);
   }
   std::fputs(template_text(entry, wanted).c_str(), stdout);
   return kDone;
@@ -65,12 +59,11 @@ Command& add_models(Command& program) {
 
 Command& add_template(Command& program) {
   const auto model = std::make_shared<std::string>();
-  const auto kind = std::make_shared<std::string>("sensitivity");
+  const auto kind = std::make_shared<std::string>(study_kinds().all.front()->name);
   const auto reference = std::make_shared<bool>(false);
   Command& command = program.add_command("template", "print a complete, commented study file");
   CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism");
-  command.add_value("kind", *kind, "KIND",
-                    "kind of study: sensitivity, identification, evaluate, monte-carlo or coupling");
+  command.add_value("kind", *kind, "KIND", "kind of study: " + either(names(study_kinds())));
   command.add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
   command.examples = {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},

@@ -10,12 +10,13 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/files/stored_study.h"
 #include "engine/files/trial_read.h"
 #include "engine/files/version.h"
-#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/registry.h"
+#include "engine/kinds/stored_study.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/replay.h"
+#include "engine/study/study_kind.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -63,50 +64,48 @@ std::size_t required_sample(const ReplayOptions& options, std::size_t count) {
 ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                             const Model& model) {
   const Analysis& analysis = stored.study.analysis;
-  if (name(analysis.kind) != result.kind || analysis.factors.size() != result.factors.size()) {
+  if (analysis.kind->name != result.kind || analysis.factors.size() != result.factors.size()) {
     throw FileError(options.result, "keeps a study that does not fit it", kDamagedRemedy);
   }
-  std::vector<std::string> names;
-  const bool together = analysis.kind == Analysis::Kind::monte_carlo;
-  for (std::size_t p = 0; p < (together ? 1 : result.factors.size()); ++p) names.push_back(varied_name(result, p));
-  const std::size_t slot = position_of(options, "varied error", names);
-  const auto& adaptive = together ? result.monte_carlo.convergence : result.sensitivity.convergence;
-  const SampleIndex sample(required_sample(options, adaptive ? adaptive->samples[slot] : analysis.samples));
+  const std::size_t slot = position_of(options, "varied error", result.varied);
+  const std::size_t samples = result.convergence ? result.convergence->samples[slot] : analysis.samples;
+  const SampleIndex sample(required_sample(options, samples));
   return replay_sample(stored.study, model, stored.poses.poses, slot, PoseIndex(options.pose), sample);
 }
 
+/// The row of given errors that the command line names.
+std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
+  if (given.samples == 0) refuse_sample(options, fmt::format("a {} has no samples", given.word));
+  const std::size_t position = position_of(options, std::string(given.word), given.names);
+  if (given.samples == 0) return position;
+  const std::size_t sample = required_sample(options, given.samples);
+  return given.pairing == Pairing::row_by_row ? options.pose : sample;
+}
+
 /// A named case, or one of the errors that 'poesy evaluate' was given.
-ReplayedSample replay_given(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
-                            const Model& model) {
-  std::size_t row = 0;
-  if (!result.cases.empty()) {
-    refuse_sample(options, "a case has no samples");
-    row = position_of(options, "case", result.cases);
-  } else {
-    position_of(options, "varied error", {std::string(kAllFactors)});
-    const std::size_t sample = required_sample(options, result.evaluation.samples);
-    row = result.pairing == Pairing::row_by_row ? options.pose : sample;
-  }
+ReplayedSample replay_given(const ReplayOptions& options, const StoredResult& result, const GivenErrors& given,
+                            const StoredStudy& stored, const Model& model) {
+  const std::size_t row = row_of(options, given);
   ErrorTable errors{.factors = {}, .values = {}, .rows = 1};
   for (const NamedUnit& factor : result.factors) {
     const auto known = model.description().find_factor(factor.name);
     if (!known) throw FileError(options.result, "names an unknown error", "use the poesy that wrote it");
     errors.factors.push_back(*known);
   }
-  const auto begin = result.errors.begin() + static_cast<std::ptrdiff_t>(row * errors.factors.size());
-  errors.values.assign(begin, begin + static_cast<std::ptrdiff_t>(errors.factors.size()));
+  const auto values = given.values.subspan(row * errors.factors.size(), errors.factors.size());
+  errors.values.assign(values.begin(), values.end());
   const auto pose = result.poses[PoseIndex(options.pose)];
   return replay_row(stored.study.solver, model, PoseSet(pose.size(), {pose.begin(), pose.end()}), errors);
 }
 
 ReplayedSample replay_of(const ReplayOptions& options, const StoredResult& result, const StoredStudy& stored,
                          const Model& model) {
-  if (result.kind == "sensitivity" || result.kind == "monte-carlo") {
-    return replay_drawn(options, result, stored, model);
+  if (!result.varied.empty()) return replay_drawn(options, result, stored, model);
+  if (const auto given_errors = kind_of(result).given_errors) {
+    return replay_given(options, result, given_errors(result), stored, model);
   }
-  if (result.kind == "evaluate") return replay_given(options, result, stored, model);
   refuse(options, "a result of kind " + result.kind + " keeps no addresses of single solves",
-         "replay one of a sensitivity, Monte Carlo or evaluate result");
+         fmt::format("replay one of a {} result", replayable_kinds()));
 }
 
 void warn_of_other_program(const ReplayOptions& options, const StoredResult& result) {
@@ -119,8 +118,8 @@ void warn_of_other_program(const ReplayOptions& options, const StoredResult& res
 
 /// Where the result lists this sample as a failure of another kind, or solved where it was not.
 void warn_of_difference(const ReplayOptions& options, const StoredResult& result, const ReplayedSample& replayed) {
-  for (const Failure& failure : listed_failures(result)) {
-    if (varied_name(result, failure.slot) != options.factor || failure.pose.value != options.pose ||
+  for (const Failure& failure : result.failures) {
+    if (result.varied[failure.slot] != options.factor || failure.pose.value != options.pose ||
         failure.failed.sample.value != options.sample || failure.failed.status == replayed.status) {
       continue;
     }

@@ -9,7 +9,8 @@
 #include "engine/app/results.h"
 #include "engine/files/file_writer.h"
 #include "engine/files/output_path.h"
-#include "engine/kinds/report.h"
+#include "engine/kinds/registry.h"
+#include "engine/report/html/report.h"
 
 namespace poesy::app {
 namespace {
@@ -50,7 +51,7 @@ int report(const ReportOptions& options) {
   check_output_path(path, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back({read_result_with_warning(result), result});
-  write_whole(path, html_report(results));
+  write_whole(path, html_report(kind_of(results.front().stored).report, results));
   std::puts(path.c_str());
   return kDone;
 }

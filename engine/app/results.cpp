@@ -13,11 +13,12 @@
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/files/shard_file.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/result_file.h"
+#include "engine/kinds/study_file.h"
+#include "engine/kinds/study_run.h"
 #include "engine/report/solves.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
-#include "engine/kinds/study_run.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -97,7 +98,7 @@ ExitCode judge_limits(const StoredResult& result, const std::string& study_path,
   const std::optional<Table> table = limits_table(result);
   if (!table) return kDone;
   std::fputs(("\n" + text_of(*table, output_width())).c_str(), stdout);
-  const LimitVerdicts& verdicts = *verdicts_of(result);
+  const LimitVerdicts& verdicts = *result.verdicts;
   for (const LimitVerdict& one : verdicts.limits) {
     if (one.passed) continue;
     const NamedUnit& response = result.responses[one.response];
@@ -109,8 +110,7 @@ ExitCode judge_limits(const StoredResult& result, const std::string& study_path,
   return verdicts.passed() ? kDone : kLimitNotKept;
 }
 
-StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
-                           const std::optional<LimitVerdicts>& verdicts) {
+StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const RunOutcome& outcome) {
   StoredResult result;
   for (const PoseCoordinate& coordinate : study.model().pose_coordinates) {
     result.pose_coordinates.push_back({coordinate.name, std::string(si_unit(coordinate.dimension))});
@@ -120,8 +120,8 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
   for (const Response& response : study.model().responses) {
     result.responses.push_back({response.name, std::string(si_unit(response.dimension))});
   }
-  for (const ErrorCase& one : study.analysis.cases) result.cases.push_back(one.name);
-  result.evaluation.verdicts = verdicts;
+  result.row_names = outcome.row_names;
+  result.verdicts = outcome.verdicts;
   return result;
 }
 
@@ -129,9 +129,12 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
   const std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
   if (!job.checkpoints().complete()) return std::nullopt;
   const bool writes = job.options.team == nullptr || job.options.team->leads();
-  if (writes && result) write_result(job.path, job.study, job.poses, *result, outcome_of(job).facts);
+  if (writes && result) write_result(job.path, job.study, job.poses, result->found, outcome_of(job).facts);
   RunOutcome outcome = outcome_of(job);
-  if (result) outcome.verdicts = result->verdicts;
+  if (result) {
+    outcome.verdicts = result->verdicts;
+    outcome.row_names = result->row_names;
+  }
   if (const auto& shard = job.options.shard; shard && writes) {
     write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), outcome.facts);
   }
@@ -147,17 +150,9 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
              stdout);
   if (job.options.shard) return kDone;  // the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
-  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, outcome.verdicts), study_path, remedy);
+  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, outcome), study_path, remedy);
   const ExitCode failures = judge_failures(job.study, outcome.solves, study_path, remedy);
   return failures != kDone ? failures : limits;  // with so many failures no limit can be trusted
-}
-
-std::optional<Study> study_in(const StoredResult& result) {
-  try {
-    return study_of_text(result.study_text, "the study in the result", registry(), StudyUse::evaluate);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
 }
 
 StoredResult read_result_with_warning(const std::string& path) {

@@ -36,6 +36,7 @@ struct RunOutcome {
   SolveCounts solves;
   RunFacts facts;
   std::optional<LimitVerdicts> verdicts = std::nullopt;
+  std::vector<std::string> row_names = {};  ///< of which a verdict may speak
 };
 
 /// Runs a study of any kind, or a shard of it, and writes its result, on rank 0 if there are several. Empty when it was
@@ -55,11 +56,7 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
 ExitCode judge_limits(const StoredResult& result, const std::string& study_path, const std::string& remedy);
 
 /// As much of a study's result as judge_limits needs.
-StoredResult with_verdicts(const Study& study, const SelectedPoses& poses,
-                           const std::optional<LimitVerdicts>& verdicts);
-
-/// The study that a result holds; none where this program cannot read it.
-std::optional<Study> study_in(const StoredResult& result);
+StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const RunOutcome& outcome);
 
 /// Reads a result, and warns on stderr where it was changed since it was written. Throws FileError.
 StoredResult read_result_with_warning(const std::string& path);

@@ -17,6 +17,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"

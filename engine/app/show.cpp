@@ -14,13 +14,15 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/study/error_words.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/registry.h"
+#include "engine/kinds/stored_study.h"
 #include "engine/report/display.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
-#include "engine/kinds/sensitivity/two_rankings.h"
+#include "engine/study/error_words.h"
+#include "models/registry.h"
 
 namespace poesy::app {
 namespace {
@@ -55,15 +57,17 @@ RowOrder order_of(const ShowOptions& options) {
                    suggestion(*options.sort, kRowOrders));
 }
 
+bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
+
 /// ShowOptions that speak of ranked errors need some.
 void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result) {
-  if (result.kind == "sensitivity") return;
+  if (ranks_errors(result)) return;
   for (const auto& [given, option] :
        {std::pair(options.sort.has_value(), "--sort"), {options.top.has_value(), "--top"}}) {
     if (!given) continue;
     throw InputError({path},
-                     fmt::format("{}: this is a result of kind '{}', and only those of kind 'sensitivity' rank errors",
-                                 option, result.kind),
+                     fmt::format("{}: this is a result of kind '{}', and only those of kind {} rank errors", option,
+                                 result.kind, kinds_that_rank()),
                      fmt::format("leave out {}", option));
   }
 }
@@ -77,8 +81,8 @@ void show_alone(const std::string& response, StoredResult& result) {
 /// What the study held constant; empty where it held nothing, where a table of errors was solved instead of the study,
 /// and where this program cannot read the study.
 std::string held_errors_line(const StoredResult& result, std::size_t width) {
-  if (result.kind == "evaluate" && result.cases.empty()) return {};
-  const std::optional<Study> study = study_in(result);
+  if (kind_of(result).report.words(result).from_tables) return {};
+  const std::optional<Study> study = study_in(result, registry());
   const std::string held = study ? held_errors_text(*study) : std::string();
   return held.empty() ? held : prose_of(held, width);
 }
@@ -93,20 +97,23 @@ int show_one(const ShowOptions& options) {
   StoredResult result = read_result_with_warning(path);
   check_ranks(options, path, result);
   const std::string response = response_of(options.response, path, result);
-  if (!options.response.empty() && result.kind != "sensitivity") show_alone(response, result);
-  std::vector<Table> tables = result_tables(result, response, order);
+  if (!options.response.empty() && !ranks_errors(result)) show_alone(response, result);
+  const ReportKind& kind = kind_of(result).report;
+  std::vector<Table> tables = result_tables(kind, result, {response, order});
+  const SolveTally tally = kind.tally(result);
   if (options.top) keep_first(*options.top, tables);
   const std::size_t width = width_of(options);
-  print(options.json ? json_of(result, tables)
-                     : summary_text(result, width) + held_errors_line(result, width) +
-                           failures_text(result, path, width) + "\n" + text_of(tables, width, kRemedy));
+  print(options.json ? json_of(result, tally.total(), tables)
+                     : summary_text(result, tally, width) + held_errors_line(result, width) +
+                           failures_text(result, tally, path, width) + "\n" + text_of(tables, width, kRemedy));
   return kDone;
 }
 
-void check_sensitivity(const std::string& path, const StoredResult& result) {
-  if (result.kind == "sensitivity") return;
+void check_ranked(const std::string& path, const StoredResult& result) {
+  if (ranks_errors(result)) return;
   throw InputError(
-      {path}, fmt::format("is a result of kind '{}', and only those of kind 'sensitivity' rank errors", result.kind),
+      {path},
+      fmt::format("is a result of kind '{}', and only those of kind {} rank errors", result.kind, kinds_that_rank()),
       "show each result alone, or compare both with poesy report");
 }
 
@@ -117,14 +124,15 @@ int show_both(const ShowOptions& options) {
   const std::string& path_b = options.results.back();
   const StoredResult a = read_result_with_warning(path_a);
   const StoredResult b = read_result_with_warning(path_b);
-  check_sensitivity(path_a, a);
-  check_sensitivity(path_b, b);
+  check_ranked(path_a, a);
+  check_ranked(path_b, b);
   const std::size_t comma = options.response.find(',');
   const std::string of_a = options.response.substr(0, comma);
   const std::string of_b = comma == std::string::npos ? of_a : options.response.substr(comma + 1);
-  const RankedResult ranked_a{a, path_a, response_of(of_a, path_a, a)};
-  const RankedResult ranked_b{b, path_b, response_of(of_b, path_b, b)};
-  TwoRankings rankings = two_rankings(ranked_a, ranked_b, order);
+  const ReportKind& kind = kind_of(a).report;
+  const RankedResult ranked_a{a, path_a, response_of(of_a, path_a, a), kind.tally(a).total()};
+  const RankedResult ranked_b{b, path_b, response_of(of_b, path_b, b), kind_of(b).report.tally(b).total()};
+  TwoRankings rankings = kind.two_rankings(ranked_a, ranked_b, order);
   if (options.top) keep_first(*options.top, {&rankings.table, 1});
   if (options.json) {
     print(json_of(ranked_a, ranked_b, rankings));

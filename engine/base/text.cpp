@@ -168,6 +168,14 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
   return known.size() > kMostWords ? list + ", ... (" + std::to_string(known.size()) + " in all)" : list;
 }
 
+std::string either(std::span<const std::string_view> words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    text += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + std::string(words[k]);
+  }
+  return text;
+}
+
 std::pair<std::string, std::string> first_difference(const std::string& one, const std::string& other) {
   std::istringstream lines(one);
   std::istringstream other_lines(other);

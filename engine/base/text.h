@@ -37,6 +37,9 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 /// "did you mean 'sigma'?" when a known word is close to this one, else the known words: "known: sigma, half_width".
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);
 
+/// One of these words: "a, b or c".
+std::string either(std::span<const std::string_view> words);
+
 /// The names of named things, for suggestion().
 template <class Named>
 std::vector<std::string_view> names(const std::vector<Named>& things) {

@@ -6,18 +6,15 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/sha256.h"
-#include "engine/study/study_file.h"
 #include "engine/files/version.h"
+#include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
 constexpr std::uint64_t kVersion = 2;
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
-
-bool draws_samples(const Study& study) {
-  return study.analysis.kind == Analysis::Kind::sensitivity || study.analysis.kind == Analysis::Kind::monte_carlo;
-}
 
 std::string hash_of(const PoseSet& poses) {
   ByteWriter bytes;
@@ -76,12 +73,12 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
   rest.title.clear();
   rest.max_not_converged = 1.0;  // judges the run when it is done
   rest.analysis.limits.clear();  // likewise
-  if (draws_samples(study)) rest.analysis.samples = 0;
+  rest.analysis.samples = 0;
   return {.poesy_version = poesy_version(),
           .git_commit = git_commit(),
           .model = study.model().name,
           .seed = study.seed,
-          .samples = draws_samples(study) ? study.analysis.samples : 0,
+          .samples = study.analysis.samples,
           .study = resolved_text(rest),
           .poses = hash_of(poses),
           .shard = shard ? to_string(*shard) : ""};

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/file_writer.h"
@@ -13,36 +12,11 @@
 #include "engine/files/poesy_file.h"
 #include "engine/files/result_parts.h"
 #include "engine/files/shard_file.h"
-#include "engine/kinds/coupling/coupling.h"
-#include "engine/kinds/evaluate/cases.h"
-#include "engine/kinds/identification/identification.h"
-#include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluation.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
-
-/// What reads the groups of a kind of study, and what shows them as CSV.
-struct KindOfResult {
-  Analysis::Kind kind;
-  void (*read)(const h5::File& file, StoredResult& result);
-  void (*append_tables)(CsvTables& tables, const StoredResult& result);
-};
-
-constexpr std::array kKindsOfResult{
-    KindOfResult{Analysis::Kind::sensitivity, read_sensitivity, append_sensitivity_tables},
-    KindOfResult{Analysis::Kind::identification, read_identification, append_identification_tables},
-    KindOfResult{Analysis::Kind::evaluate, read_evaluation, append_evaluation_tables},
-    KindOfResult{Analysis::Kind::monte_carlo, read_monte_carlo, append_monte_carlo_tables},
-    KindOfResult{Analysis::Kind::coupling, read_coupling, append_coupling_tables}};
-
-const KindOfResult& kind_named(const std::string& name) {
-  for (const KindOfResult& each : kKindsOfResult) {
-    if (poesy::name(each.kind) == name) return each;
-  }
-  throw h5::Error("its kind '" + name + "' is unknown");
-}
 
 void write_file(const std::string& path, h5::File& file) {
   file.set_attribute("/", "content_sha256", content_sha256(file));
@@ -55,7 +29,7 @@ void write_file(const std::string& path, h5::File& file) {
 
 /// Composes what every file has, with compose(file) for the rest, and writes it.
 template <class Compose>
-void compose_and_write(const std::string& path, std::string_view filetype, Analysis::Kind kind, const Study& study,
+void compose_and_write(const std::string& path, std::string_view filetype, std::string_view kind, const Study& study,
                        const SelectedPoses& poses, const RunFacts& facts, const Compose& compose) {
   try {
     ResultBuilder result;
@@ -66,16 +40,6 @@ void compose_and_write(const std::string& path, std::string_view filetype, Analy
   } catch (const h5::Error& error) {
     throw FileError(path, std::string("cannot be composed: ") + error.what(), "report this as a bug of poesy");
   }
-}
-
-/// The same for a result, which has factors and responses.
-template <class Compose>
-void compose_result(const std::string& path, Analysis::Kind kind, const Study& study, const SelectedPoses& poses,
-                    std::span<const FactorIndex> factors, const RunFacts& facts, const Compose& compose) {
-  compose_and_write(path, kResultFile, kind, study, poses, facts, [&](ResultBuilder& result) {
-    add_names(result, study, factors);
-    compose(result);
-  });
 }
 
 /// Whether a file is named like a result, or is one: then a newer result may replace it. An empty file holds nothing.
@@ -90,64 +54,15 @@ bool may_be_replaced(const std::string& path) {
 
 }  // namespace
 
-void write_sensitivity(const std::string& path, const Study& study, const SelectedPoses& poses,
-                       const SensitivityResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::sensitivity, study, poses, study.analysis.factors, facts,
-                 [&](ResultBuilder& file) { add_sensitivity(file, study, result); });
-}
-
-void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
-                      Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::evaluate, study, poses, errors.factors, facts,
-                 [&](ResultBuilder& file) { add_evaluation(file, study.model(), result, errors, pairing); });
-}
-
-void write_cases(const std::string& path, const Study& study, const SelectedPoses& poses, const CaseResult& result,
-                 const RunFacts& facts) {
-  POESY_EXPECTS(result.evaluation.poses == poses.poses.size());
-  const ErrorTable errors = case_table(study.analysis.cases);
-  compose_result(path, Analysis::Kind::evaluate, study, poses, errors.factors, facts,
-                 [&](ResultBuilder& file) { add_cases(file, study, errors, result); });
-}
-
-void write_identification(const std::string& path, const Study& study, const SelectedPoses& poses,
-                          const IdentificationResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.factors == study.analysis.factors.size() && result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::identification, study, poses, study.analysis.factors, facts,
-                 [&](ResultBuilder& file) { add_identification(file, study, result); });
-}
-
-void write_monte_carlo(const std::string& path, const Study& study, const SelectedPoses& poses,
-                       const MonteCarloResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::monte_carlo, study, poses, study.analysis.factors, facts,
-                 [&](ResultBuilder& file) { add_monte_carlo(file, study, result); });
-}
-
-void write_coupling(const std::string& path, const Study& study, const SelectedPoses& poses,
-                    const CouplingResult& result, const RunFacts& facts) {
-  POESY_EXPECTS(result.poses == poses.poses.size());
-  compose_result(path, Analysis::Kind::coupling, study, poses, study.analysis.factors, facts,
-                 [&](ResultBuilder& file) { add_coupling(file, study, result); });
-}
-
-void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const StudyResult& result,
-                  const RunFacts& facts) {
-  if (const auto* one = std::any_cast<SensitivityResult>(&result.found))
-    write_sensitivity(path, study, poses, *one, facts);
-  if (const auto* one = std::any_cast<IdentificationResult>(&result.found))
-    write_identification(path, study, poses, *one, facts);
-  if (const auto* one = std::any_cast<CaseResult>(&result.found)) write_cases(path, study, poses, *one, facts);
-  if (const auto* one = std::any_cast<MonteCarloResult>(&result.found))
-    write_monte_carlo(path, study, poses, *one, facts);
-  if (const auto* one = std::any_cast<CouplingResult>(&result.found)) write_coupling(path, study, poses, *one, facts);
+void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
+                  const SelectedPoses& poses, const std::any& found, const RunFacts& facts) {
+  compose_and_write(path, kResultFile, name, study, poses, facts,
+                    [&](ResultBuilder& result) { kind.write(result, study, found); });
 }
 
 void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
                  std::span<const Bytes> stages, const RunFacts& facts) {
-  compose_and_write(path, kShardFile, study.analysis.kind, study, poses, facts,
+  compose_and_write(path, kShardFile, study.analysis.kind->name, study, poses, facts,
                     [&](ResultBuilder& file) { add_shard(file, shard, stages); });
 }
 
@@ -155,12 +70,14 @@ void check_result_path(const std::string& path, std::span<const std::string> inp
   check_output_path(path, {"result", may_be_replaced}, inputs);
 }
 
-StoredResult read_result(const std::string& path) {
+StoredResult read_result(const std::string& path, FindFileKind find_kind) {
   return with_poesy_file(path, [&](const h5::File& file) {
     expect_filetype(path, file, kResultFile);
     StoredResult result;
     read_header(file, result);
-    kind_named(result.kind).read(file, result);
+    const FileKind* kind = find_kind(result.kind);
+    if (kind == nullptr) throw h5::Error("its kind '" + result.kind + "' is unknown");
+    kind->read(file, result);
     return result;
   });
 }
@@ -171,9 +88,9 @@ Verification verify_result(const std::string& path) {
   });
 }
 
-std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder) {
+std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder) {
   CsvTables tables{pose_table(result)};
-  kind_named(result.kind).append_tables(tables, result);
+  kind.append_tables(tables, result);
   OutputFolder output(folder);
   for (const CsvTable& table : tables) output.claim(table.name + ".csv");
   output.open();
@@ -181,10 +98,6 @@ std::vector<std::string> export_tables(const StoredResult& result, const std::st
   for (const CsvTable& table : tables) paths.push_back(write_csv(folder, table));
   output.close();
   return paths;
-}
-
-std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder) {
-  return export_tables(read_result(result_path), folder);
 }
 
 }  // namespace poesy

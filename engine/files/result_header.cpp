@@ -4,9 +4,9 @@
 #include "engine/files/content_hash.h"
 #include "engine/files/poesy_file.h"
 #include "engine/files/result_parts.h"
-#include "engine/study/study_file.h"
 #include "engine/files/version.h"
-#include "engine/kinds/sensitivity/points_radius.h"
+#include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -162,13 +162,13 @@ void check_names(const std::vector<std::string>& names, const std::string& path)
   }
 }
 
-void add_header(ResultBuilder& result, std::string_view filetype, Analysis::Kind kind, const Study& study,
+void add_header(ResultBuilder& result, std::string_view filetype, std::string_view kind, const Study& study,
                 const SelectedPoses& poses) {
   h5::File& file = result.file();
   const std::vector<std::int64_t> version{kMajorVersion, kMinorVersion};
   file.set_attribute("/", "filetype", std::string(filetype));
   file.set_attribute("/", "version", std::span(version));
-  file.set_attribute("/", "kind", std::string(name(kind)));
+  file.set_attribute("/", "kind", std::string(kind));
   file.set_attribute("/", "title", study.title);
   file.set_attribute("/", "model", study.model().name);
   file.set_attribute("/", "poesy_version", poesy_version());
@@ -254,22 +254,6 @@ CsvTable pose_table(const StoredResult& result) {
   }
   if (!result.condition.empty()) table.columns.push_back(list_column("condition", result.condition));
   return table;
-}
-
-void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau) {
-  result.add_axis("radius_multiple", std::vector<double>(kPointsRadii.begin(), kPointsRadii.end()),
-                  {"1", "Distance of the metric's points from their middle, over that in /metric/points"});
-  result.add("/metric/radius_tau", {"radius_multiple", "response"}, tau,
-             {"1",
-              "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, "
-              "to first order, without the background's errors, at up to 32 of the poses"});
-}
-
-std::vector<double> read_radius_tau(const h5::File& file) {
-  if (!file.exists("/metric/radius_tau")) return {};
-  if (axis_length(file, "radius_multiple") != kPointsRadii.size())
-    throw h5::Error("/radius_multiple is of other radii");
-  return read_along<double>(file, "/metric/radius_tau", {"radius_multiple", "response"});
 }
 
 const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }

@@ -76,9 +76,9 @@ std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResul
   return verdicts;
 }
 
-void append_limit_table(CsvTables& tables, const StoredResult& result, const std::optional<LimitVerdicts>& verdicts) {
-  if (!verdicts) return;
-  const std::vector<LimitVerdict>& limits = verdicts->limits;
+void append_limit_table(CsvTables& tables, const StoredResult& result) {
+  if (!result.verdicts) return;
+  const std::vector<LimitVerdict>& limits = result.verdicts->limits;
   const auto response = [&](std::size_t line) -> const NamedUnit& { return result.responses[limits[line].response]; };
   CsvTable table{"limits",
                  {"response", [response](std::size_t line) { return response(line).name; }},

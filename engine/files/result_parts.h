@@ -10,14 +10,11 @@
 #include "engine/files/csv_table.h"
 #include "engine/files/fields.h"
 #include "engine/files/result_file.h"
-#include "engine/kinds/coupling/coupling.h"
-#include "engine/kinds/evaluate/cases.h"
-#include "engine/kinds/identification/identification.h"
-#include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluation.h"
+#include "engine/run/shard.h"
 
-/// The parts of result files: for each how it is written, read back, and shown as CSV.
+/// The parts that result files of all or of several kinds have: for each how it is written, read back, and shown as
+/// CSV.
 namespace poesy {
 
 /// 0 .. count - 1, the values of an axis that has no names.
@@ -45,7 +42,7 @@ std::string unit_of(const Thing& thing) {
 void check_names(const std::vector<std::string>& names, const std::string& path);
 
 /// What every file has: what the file is, /study and /poses. filetype, kind: attributes of the root.
-void add_header(ResultBuilder& result, std::string_view filetype, Analysis::Kind kind, const Study& study,
+void add_header(ResultBuilder& result, std::string_view filetype, std::string_view kind, const Study& study,
                 const SelectedPoses& poses);
 /// What every result has: /factors, /responses, and /metric where the mechanism weighs angles against lengths.
 void add_names(ResultBuilder& result, const Study& study, std::span<const FactorIndex> factors);
@@ -62,15 +59,10 @@ std::string stored_hash(const h5::File& file);
 /// poses.csv.
 CsvTable pose_table(const StoredResult& result);
 
-/// What the ranking owes to the metric's points, [2 x R]: /metric/radius_tau. After add_names.
-void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau);
-/// Likewise; empty where the file has none.
-std::vector<double> read_radius_tau(const h5::File& file);
-
 /// The standard deviations of the errors that the study varies, as /factors/sigma, and what their distributions are
 /// called, as /factors/distribution.
 void add_sigma(ResultBuilder& result, const Study& study);
-/// Fills in `factor_sigma`.
+/// Fills in `factor_sigma` and `factor_distribution`.
 void read_sigma(const h5::File& file, StoredResult& result);
 /// factors.csv: the standard deviation of each error.
 CsvTable sigma_table(const StoredResult& result);
@@ -92,9 +84,9 @@ void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solve
 /// The first failures, as addresses, `total` in all; slots: the name of each. Follows add_solver.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
                   std::uint64_t total);
-/// None in files of older versions. Reads `kind`, `poses` and `factors` of the result.
+/// None in files of older versions. Reads `varied` and `poses` of the result.
 std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result);
-/// failures.csv, of a sensitivity or Monte Carlo result.
+/// failures.csv, of a sampled result.
 CsvTable failure_table(const StoredResult& result);
 
 /// How the study's limits were kept: /limits; nothing where it states none.
@@ -102,80 +94,40 @@ void add_limits(ResultBuilder& result, const ModelDescription& model, const std:
 /// None where the study states none. Reads `responses` of the result.
 std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResult& result);
 /// limits.csv; nothing where the study states none.
-void append_limit_table(CsvTables& tables, const StoredResult& result, const std::optional<LimitVerdicts>& verdicts);
+void append_limit_table(CsvTables& tables, const StoredResult& result);
+
+/// The level of the intervals of a course, beside its group or a dataset.
+inline const std::vector<Attribute<EstimateCourse>> kCourseLevel{{"conf_level", &EstimateCourse::conf_level}};
+
+/// A course of estimates in the words of its group.
+struct CourseWords {
+  Group<EstimateCourse> group;           ///< its datasets, along the axes of a quantity and samples_axis
+  std::string samples_axis;              ///< of the numbers of samples
+  std::string samples_description;       ///< of that axis
+  std::string csv;                       ///< names of files begin so
+  std::string csv_slot;                  ///< heading of what the samples were of
+  std::vector<std::string> csv_columns;  ///< of the rows
+};
+
+/// The words of /convergence. axes: of the quantities, the responses first. name: of the dataset of the quantities.
+CourseWords convergence_words(Axes axes, const std::string& name, const std::string& unit, const std::string& quantity,
+                              const std::string& rule, const std::string& csv_slot);
+
+/// Adds the group of a course.
+void add_course(ResultBuilder& result, const CourseWords& words, const EstimateCourse& found);
+/// What add_course wrote.
+EstimateCourse read_course(const h5::File& file, const CourseWords& words);
+/// A table for each response with a line for each slot and number of samples. ends: [slots] samples at each pose at
+/// the end; empty where all went through the whole course. Refers to all.
+void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
+                          const EstimateCourse& found, std::span<const std::uint64_t> ends);
 
 /// How adaptive samples came to their end: /convergence; nothing where the number of samples was fixed.
-void add_convergence(ResultBuilder& result, Analysis::Kind kind, const std::optional<ConvergenceResult>& found);
-/// Of a result of this kind.
-std::optional<ConvergenceResult> read_convergence(const h5::File& file, Analysis::Kind kind);
+void add_convergence(ResultBuilder& result, const CourseWords& words, const std::optional<ConvergenceResult>& found);
+/// None where the number of samples was fixed.
+std::optional<ConvergenceResult> read_convergence(const h5::File& file, const CourseWords& words);
 /// convergence.csv and convergence_RESPONSE.csv.
-void append_convergence_tables(CsvTables& tables, const StoredResult& result, Analysis::Kind kind,
-                               const std::optional<ConvergenceResult>& found);
-/// What the indices were after fewer samples: /sensitivity/history; nothing where there is none.
-void add_history(ResultBuilder& result, const std::optional<EstimateCourse>& found);
-/// None in files of older versions.
-std::optional<EstimateCourse> read_history(const h5::File& file);
-/// history_RESPONSE.csv.
-void append_history_tables(CsvTables& tables, const StoredResult& result);
-
-/// What a program that sets tolerances needs of a sensitivity result, without the rest: /tolerances.
-void add_tolerances(ResultBuilder& result, const Study& study, const SensitivityResult& found);
-/// Fills in `factor_limb`, `tolerance_reference` and `mean_square_bound`.
-void read_tolerances(const h5::File& file, StoredResult& result);
-/// tolerances_RESPONSE.csv; none for a file of an older version.
-void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
-
-/// What calibration can remove of each error's effect: /separation.
-void add_separation(ResultBuilder& result, const Study& study, const std::optional<SeparationResult>& found);
-/// Fills in `sensitivity.separation`, `separation_measure` and `published_class`.
-void read_separation(const h5::File& file, StoredResult& result);
-/// separation.csv and its tables by pose.
-void append_separation_tables(CsvTables& tables, const StoredResult& result);
-
-/// A second fidelity beside the first: /fidelity.
-void add_fidelity(ResultBuilder& result, const Study& study, const std::optional<FidelityResult>& found);
-/// Fills in `sensitivity.fidelity` and `fidelities`.
-void read_fidelity(const h5::File& file, StoredResult& result);
-/// fidelity.csv and fidelity_not_converged.csv.
-void append_fidelity_tables(CsvTables& tables, const StoredResult& result);
-
-/// /sensitivity and the groups that belong to it: indices and what is behind them.
-/// @{
-void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found);
-void read_sensitivity(const h5::File& file, StoredResult& result);
-void append_sensitivity_tables(CsvTables& tables, const StoredResult& result);
-/// @}
-
-/// /evaluate and /errors: what the model gives for each pose and row of errors.
-/// @{
-void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found,
-                    const ErrorTable& errors, Pairing pairing);
-void read_evaluation(const h5::File& file, StoredResult& result);
-void append_evaluation_tables(CsvTables& tables, const StoredResult& result);
-/// @}
-/// As add_evaluation, with axes [case x pose] for [pose x sample], and the sums over the poses.
-void add_cases(ResultBuilder& result, const Study& study, const ErrorTable& errors, const CaseResult& found);
-
-/// /identification: verdicts and the numbers behind them.
-/// @{
-void add_identification(ResultBuilder& result, const Study& study, const IdentificationResult& found);
-void read_identification(const h5::File& file, StoredResult& result);
-void append_identification_tables(CsvTables& tables, const StoredResult& result);
-/// @}
-
-/// /monte_carlo: moments and quantiles, at each pose and over all poses.
-/// @{
-void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarloResult& found);
-void read_monte_carlo(const h5::File& file, StoredResult& result);
-void append_monte_carlo_tables(CsvTables& tables, const StoredResult& result);
-/// @}
-
-/// /coupling: what sources do one by one and together.
-/// @{
-void add_coupling(ResultBuilder& result, const Study& study, const CouplingResult& found);
-void read_coupling(const h5::File& file, StoredResult& result);
-void append_coupling_tables(CsvTables& tables, const StoredResult& result);
-/// @}
+void append_convergence_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words);
 
 /// What a shard found, of a file that is one: /shard.
 void add_shard(ResultBuilder& result, const Shard& shard, std::span<const Bytes> stages);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/files/result_parts.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -49,15 +50,10 @@ const Fields<FailureRow> kFailureFields{
      "1",
      "How these solves ended: a position in status_names, from 0"}};
 
-bool all_errors_vary(const StoredResult& result) { return result.kind == name(Analysis::Kind::monte_carlo); }
-
-std::size_t slot_named(const std::string& factor, const StoredResult& result) {
-  if (all_errors_vary(result) && factor == kAllFactors) return 0;
-  const auto found = std::ranges::find(result.factors, factor, &NamedUnit::name);
-  if (found == result.factors.end() || all_errors_vary(result)) {
-    throw h5::Error("/solver/failed_factor names an unknown error");
-  }
-  return static_cast<std::size_t>(found - result.factors.begin());
+std::size_t slot_named(const std::string& name, const StoredResult& result) {
+  const auto found = std::ranges::find(result.varied, name);
+  if (found == result.varied.end()) throw h5::Error("/solver/failed_factor names an unknown error");
+  return static_cast<std::size_t>(found - result.varied.begin());
 }
 
 }  // namespace
@@ -72,6 +68,9 @@ void add_sigma(ResultBuilder& result, const Study& study) {
 
 void read_sigma(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_along<double>(file, "/factors/sigma", {"factor"});
+  if (!file.exists("/factors/distribution")) return;
+  result.factor_distribution = read_along<std::string>(file, "/factors/distribution", {"factor"});
+  check_names(result.factor_distribution, "/factors/distribution");
 }
 
 CsvTable sigma_table(const StoredResult& result) {
@@ -171,18 +170,10 @@ std::vector<Failure> read_failures(const h5::File& file, const StoredResult& res
   return failures;
 }
 
-std::string varied_name(const StoredResult& result, std::size_t slot) {
-  return all_errors_vary(result) ? std::string(kAllFactors) : result.factors[slot].name;
-}
-
-const std::vector<Failure>& listed_failures(const StoredResult& result) {
-  return all_errors_vary(result) ? result.monte_carlo.failures : result.sensitivity.failures;
-}
-
 CsvTable failure_table(const StoredResult& result) {
-  const std::vector<Failure>& list = listed_failures(result);
+  const std::vector<Failure>& list = result.failures;
   return {"failures",
-          {"factor", [&](std::size_t line) { return varied_name(result, list[line].slot); }},
+          {"factor", [&](std::size_t line) { return result.varied[list[line].slot]; }},
           list.size(),
           {list_column("pose", list, 0, 1, [](const Failure& failure) { return failure.pose.value; }),
            list_column("sample", list, 0, 1, [](const Failure& failure) { return failure.failed.sample.value; }),

@@ -3,39 +3,15 @@
 #include <string>
 
 #include "engine/base/error.h"
-#include "engine/kinds/coupling/run.h"
-#include "engine/kinds/evaluate/run.h"
-#include "engine/kinds/identification/run.h"
-#include "engine/kinds/monte_carlo/run.h"
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/registry.h"
 
 namespace poesy {
-namespace {
-
-const RunKind& run_kind_of(const Study& study) {
-  switch (study.analysis.kind) {
-    case Analysis::Kind::sensitivity:
-      return kSensitivityRun;
-    case Analysis::Kind::identification:
-      return kIdentificationRun;
-    case Analysis::Kind::evaluate:
-      return kCasesRun;
-    case Analysis::Kind::monte_carlo:
-      return kMonteCarloRun;
-    case Analysis::Kind::coupling:
-      break;
-  }
-  return kCouplingRun;
-}
-
-}  // namespace
-
 std::optional<StudyResult> run_study(const Study& study, const Model& model, const PoseSet& poses,
                                      const RunOptions& options) {
   Checkpoints not_kept([] { return false; }, [](std::span<const Bytes>) {});
   RunOptions with_checkpoints = options;
   if (options.checkpoints == nullptr) with_checkpoints.checkpoints = &not_kept;
-  return run_kind_of(study).run({.study = study, .model = model, .poses = poses, .options = with_checkpoints});
+  return kind_of(study).run.run({.study = study, .model = model, .poses = poses, .options = with_checkpoints});
 }
 
 std::optional<StudyResult> run_study(const Study& study, const RunOptions& options) {
@@ -44,9 +20,11 @@ std::optional<StudyResult> run_study(const Study& study, const RunOptions& optio
 }
 
 void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
-  const auto most_shards = run_kind_of(study).most_shards;
+  const auto most_shards = kind_of(study).run.most_shards;
   if (most_shards == nullptr) {
-    throw InputError({}, "--shard divides no identification, each step of which needs all poses of the one before",
+    throw InputError({},
+                     "--shard divides no " + std::string(study.analysis.kind->name) +
+                         ", each step of which needs all poses of the one before",
                      "run it whole, for it is small, or with mpirun");
   }
   if (study.analysis.adaptive) {
@@ -63,7 +41,7 @@ void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
 }
 
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  return run_kind_of(study).outlook(study, model, poses);
+  return kind_of(study).run.outlook(study, model, poses);
 }
 
 }  // namespace poesy

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "engine/kinds/run_kind.h"
+#include "engine/kinds/kind.h"
 #include "engine/model/model.h"
 #include "engine/run/outlook.h"
 #include "engine/run/run_options.h"

@@ -143,7 +143,7 @@ struct SolverOptions {
 };
 
 /// A factor set that the literature judges as one source of errors.
-struct CouplingSource {
+struct SourceSet {
   std::string name;  ///< short, for it is joined to others: "FS"
   std::string set;   ///< name of the factor set
 };
@@ -172,7 +172,7 @@ struct ModelDescription {
   std::vector<PoseChart> charts;                    ///< other coordinates of poses
   std::vector<NamedCurve> curves;                   ///< trajectories of the literature
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
-  std::vector<CouplingSource> sources;  ///< those of a coupling study that names none; no factor in two of them
+  std::vector<SourceSet> sources;  ///< those of a coupling study that names none; no factor in two of them
   std::vector<std::size_t> headline;    ///< positions of the responses that a summary shows; empty: all of them
   /// Those that a summary of coupled sources shows, with signs, for a norm cannot tell what cancels; empty: the
   /// headline.

@@ -6,7 +6,6 @@
 #include "engine/base/units.h"
 #include "engine/report/display.h"
 #include "engine/report/study_settings.h"
-#include "engine/report/tables.h"
 
 namespace poesy {
 namespace {
@@ -74,7 +73,7 @@ Json tables_json(std::span<const Table> tables) {
 }
 
 /// A result without its tables.
-Json summary_json(const StoredResult& result) {
+Json summary_json(const StoredResult& result, const SolveCounts& solves) {
   return {{"kind", result.kind},
           {"model", result.model},
           {"metric", result.metric.empty() ? Json(nullptr) : Json(result.metric)},
@@ -87,7 +86,7 @@ Json summary_json(const StoredResult& result) {
           {"poses", result.poses.size()},
           {"errors", named_json(result.factors)},
           {"responses", named_json(result.responses)},
-          {"solves", solves_json(tally_of(result).total())},
+          {"solves", solves_json(solves)},
           {"run",
            {{"created", result.facts.created},
             {"threads", result.facts.threads},
@@ -96,7 +95,7 @@ Json summary_json(const StoredResult& result) {
 
 Json ranked_json(const RankedResult& ranked) {
   Json all{{"path", ranked.path}, {"response", ranked.response}};
-  all.update(summary_json(ranked.result));
+  all.update(summary_json(ranked.result, ranked.solves));
   return all;
 }
 
@@ -104,8 +103,8 @@ std::string text_of(const Json& all) { return all.dump(2, ' ', false, Json::erro
 
 }  // namespace
 
-std::string json_of(const StoredResult& result, std::span<const Table> tables) {
-  Json all = summary_json(result);
+std::string json_of(const StoredResult& result, const SolveCounts& solves, std::span<const Table> tables) {
+  Json all = summary_json(result, solves);
   all["tables"] = tables_json(tables);
   return text_of(all);
 }

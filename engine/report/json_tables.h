@@ -4,8 +4,8 @@
 #include <string>
 
 #include "engine/files/result_file.h"
+#include "engine/report/rankings.h"
 #include "engine/report/table.h"
-#include "engine/kinds/sensitivity/two_rankings.h"
 
 namespace poesy {
 
@@ -21,8 +21,8 @@ namespace poesy {
 ///
 /// A row of `rows` has the values by the names of the columns: numbers so that they read back as the same double, in
 /// the column's unit, null where there is none; text as it is. `shown` has the texts of the same cells, as a list for
-/// each row. Text that is not UTF-8 is made so.
-std::string json_of(const StoredResult& result, std::span<const Table> tables);
+/// each row. Text that is not UTF-8 is made so. solves: all of the result.
+std::string json_of(const StoredResult& result, const SolveCounts& solves, std::span<const Table> tables);
 
 /// Two rankings beside each other as one JSON object:
 ///

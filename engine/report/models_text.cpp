@@ -73,7 +73,7 @@ std::string model_text(const CatalogEntry& entry) {
     text += fmt::format("  {:<16} {:>8} {}\n", set.name, set.factors.size(), set.description);
   }
   if (!model.sources.empty()) text += "\nsources of errors (of a coupling study that names none)\n";
-  for (const CouplingSource& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
+  for (const SourceSet& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
   text += "\nerror factors\n";
   for (const Factor& factor : model.factors) {
     text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);

@@ -10,7 +10,6 @@
 
 #include "engine/base/text.h"
 #include "engine/report/display.h"
-#include "engine/kinds/report_kind.h"
 #include "engine/report/study_settings.h"
 #include "engine/report/text_table.h"
 
@@ -52,17 +51,16 @@ std::string count_line(std::uint64_t failed, std::uint64_t solves) {
 }
 
 /// What is known one by one are the failures of the first fidelity.
-std::string line_of_both(const StoredResult& result, const SolveCounts& first, const SecondFidelity& second) {
+std::string line_of_both(const SolveCounts& first, const SecondFidelity& second) {
   return fmt::format("{}: {} at fidelity \"{}\", {} at \"{}\"",
                      count_line(first.not_converged() + second.not_converged, first.total() + second.total),
-                     count_text(first.not_converged()), result.fidelities[0], count_text(second.not_converged),
-                     result.fidelities[1]);
+                     count_text(first.not_converged()), second.first, count_text(second.not_converged), second.second);
 }
 
 /// Which of the failures the result lists.
 std::string listed_text(const StoredResult& result, const SolveTally& tally, std::uint64_t failed) {
-  const std::size_t listed = listed_failures(result).size();
-  const std::string of = tally.second ? fmt::format(" at \"{}\"", result.fidelities[0]) : "";
+  const std::size_t listed = result.failures.size();
+  const std::string of = tally.second ? fmt::format(" at \"{}\"", tally.second->first) : "";
   if (listed == failed) return fmt::format("lists {}{}", failed == 1 ? "it" : "all " + count_text(failed), of);
   return fmt::format("lists {} of the {}{} (at most {} of each {}pose, and {} in all)", count_text(listed),
                      count_text(failed), of, FailedSamples::kMost,
@@ -104,34 +102,31 @@ std::vector<double> SolveTally::shares_by_pose() const {
   return shares_of(sums);
 }
 
-SolveTally tally_of(const StoredResult& result) { return kind_of(result).tally(result); }
-
 double share_not_converged(const SolveCounts& solves) {
   if (solves.total() == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
 }
 
-std::string at_first_fidelity(const StoredResult& result) {
-  return result.fidelities.empty() ? std::string() : fmt::format(" at fidelity \"{}\"", result.fidelities[0]);
+std::string at_first_fidelity(const SolveTally& tally) {
+  return tally.second ? fmt::format(" at fidelity \"{}\"", tally.second->first) : std::string();
 }
 
 std::string unsolved_text(const StoredResult& result, const SolveTally& tally) {
   const SolveCounts total = tally.total();
   const double share = share_not_converged(total);
   return fmt::format("{} of {} solves{} ({}) did not converge.{}{}", count_text(total.not_converged()),
-                     count_text(total.total()), at_first_fidelity(result), percent_text(share), doubt_text(share),
+                     count_text(total.total()), at_first_fidelity(tally), percent_text(share), doubt_text(share),
                      largest_shares_text(result, tally));
 }
 
-std::string failures_text(const StoredResult& result, const std::string& path, std::size_t width) {
-  const SolveTally tally = tally_of(result);
+std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,
+                          std::size_t width) {
   const SolveCounts solves = tally.total();
   std::string text = prose_of(
-      tally.second ? line_of_both(result, solves, *tally.second) : count_line(solves.not_converged(), solves.total()),
-      width);
-  if (listed_failures(result).empty()) return text;
-  const Failure& first = listed_failures(result).front();
-  const std::string name = printable(varied_name(result, first.slot), std::string::npos);
+      tally.second ? line_of_both(solves, *tally.second) : count_line(solves.not_converged(), solves.total()), width);
+  if (result.failures.empty()) return text;
+  const Failure& first = result.failures.front();
+  const std::string name = printable(result.varied[first.slot], std::string::npos);
   const std::string pose = std::to_string(first.pose.value);
   const std::string sample = std::to_string(first.failed.sample.value);
   text +=

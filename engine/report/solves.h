@@ -24,8 +24,10 @@ constexpr double unremarkable_failure_share(double allowed) {
 /// Whether so many solves of a result did not converge that a reader is warned: more than unremarkable_failure_share.
 bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves);
 
-/// What the second of two fidelities made of the same draws as the first (kinds/sensitivity/fidelity.h).
+/// What the second of two fidelities made of the same draws as the first.
 struct SecondFidelity {
+  std::string first;                ///< the name of the first
+  std::string second;               ///< its own name
   std::uint64_t not_converged = 0;  ///< of its solves
   std::uint64_t total = 0;          ///< its solves
   std::size_t not_linear = 0;       ///< errors that are not
@@ -47,14 +49,11 @@ struct SolveTally {
   std::vector<double> shares_by_pose() const;  ///< [M] likewise
 };
 
-/// Of all solves of the result.
-SolveTally tally_of(const StoredResult& result);
-
 /// The share of solves that did not converge; NaN where there is none.
 double share_not_converged(const SolveCounts& solves);
 
 /// " at fidelity \"full\"", the first of two; empty where the result does not compare two.
-std::string at_first_fidelity(const StoredResult& result);
+std::string at_first_fidelity(const SolveTally& tally);
 
 /// How many solves did not converge, why numbers cannot be trusted where they are more than kManyNotConverged, and the
 /// rows and poses with the largest shares.
@@ -63,6 +62,7 @@ std::string unsolved_text(const StoredResult& result, const SolveTally& tally);
 /// How many solves did not converge, at both fidelities where there are two; of a sampled result also the first one's
 /// address, and how to replay it. path: of the result. Broken at `width` as by prose_of, but for the command to replay
 /// it.
-std::string failures_text(const StoredResult& result, const std::string& path, std::size_t width);
+std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,
+                          std::size_t width);
 
 }  // namespace poesy

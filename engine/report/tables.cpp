@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/kinds/report_kind.h"
 #include "engine/report/display.h"
+#include "engine/report/report_kind.h"
 #include "engine/report/text_table.h"
 #include "engine/run/evaluation.h"
 
@@ -42,28 +42,15 @@ std::string rule(const LimitVerdicts& verdicts) {
 
 /// Where the value was found; empty where it is of all poses.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
-  std::string text;
-  if (verdict.row && !result.labels.names.empty()) {
-    text = fmt::format("{} {}, ", result.labels.column, result.labels.names[*verdict.row]);
-  } else if (verdict.row && result.pairing != Pairing::row_by_row) {
-    text = result.cases.empty() ? fmt::format("sample {}, ", *verdict.row) : result.cases[*verdict.row] + ", ";
-  }
-  return verdict.pose ? text + place_text(result, *verdict.pose) : std::string();
+  if (!verdict.pose) return {};
+  const bool named = verdict.row && !result.row_names.empty();
+  return (named ? result.row_names[*verdict.row] + ", " : "") + place_text(result, *verdict.pose);
 }
 
 constexpr std::size_t kMostShown = 5;
 
-/// None where the result has no adaptive samples.
-std::optional<Settling> adaptive_settling(const StoredResult& result) {
-  const auto settling_of = kind_of(result).settling;
-  if (settling_of == nullptr) return std::nullopt;
-  Settling settling = settling_of(result);
-  return settling.adaptive == nullptr ? std::nullopt : std::optional(std::move(settling));
-}
-
 /// Positions among [R x P] of the quantities that count for the end and did not reach it, the widest first.
-std::vector<std::size_t> not_reached(const Settling& settling) {
-  const ConvergenceResult& found = *settling.adaptive;
+std::vector<std::size_t> not_reached(const ConvergenceResult& found, const Settling& settling) {
   const std::size_t slots = found.samples.size();
   std::vector<std::size_t> list;
   for (const std::size_t r : settling.responses) {
@@ -96,12 +83,12 @@ Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
 
 }  // namespace
 
-std::string summary_text(const StoredResult& result, std::size_t width) {
+std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width) {
   const RunFacts& facts = result.facts;
   const double per_second =
       static_cast<double>(facts.solves) / std::max(facts.wall_seconds, std::numeric_limits<double>::min());
-  const bool two = !result.fidelities.empty();
-  const std::string each = two ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
+  const std::string each =
+      tally.second ? fmt::format(", {} at each of two fidelities,", count_text(facts.solves / 2)) : "";
   std::string text = prose_of(result.title, width);
   text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
                                counted(result.poses.size(), "pose", "poses"), result.poesy_version),
@@ -121,8 +108,12 @@ std::string default_ranking(const StoredResult& result) {
   return result.headline.empty() ? std::string() : result.responses[result.headline.front()].name;
 }
 
-std::vector<Table> result_tables(const StoredResult& result, std::string_view ranked_by, RowOrder order) {
-  return kind_of(result).tables(result, {std::string(ranked_by), order});
+std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {
+  std::vector<Table> tables = kind.tables(result, options);
+  if (auto limits = limits_table(result)) tables.insert(tables.begin(), *std::move(limits));
+  if (kind.settling == nullptr) return tables;
+  if (auto convergence = convergence_table(result, kind.settling(result))) tables.push_back(*std::move(convergence));
+  return tables;
 }
 
 void keep_first(std::size_t most, std::span<Table> tables) {
@@ -133,19 +124,15 @@ void keep_first(std::size_t most, std::span<Table> tables) {
   }
 }
 
-const std::optional<LimitVerdicts>& verdicts_of(const StoredResult& result) {
-  return result.monte_carlo.verdicts ? result.monte_carlo.verdicts : result.evaluation.verdicts;
-}
-
 const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response) {
-  const std::optional<LimitVerdicts>& verdicts = verdicts_of(result);
+  const std::optional<LimitVerdicts>& verdicts = result.verdicts;
   if (!verdicts) return nullptr;
   const auto found = std::ranges::find(verdicts->limits, response, &LimitVerdict::response);
   return found == verdicts->limits.end() ? nullptr : &*found;
 }
 
 std::optional<Table> limits_table(const StoredResult& result) {
-  const std::optional<LimitVerdicts>& verdicts = verdicts_of(result);
+  const std::optional<LimitVerdicts>& verdicts = result.verdicts;
   if (!verdicts) return std::nullopt;
   std::size_t kept = 0;
   Table table{.name = "limits",
@@ -170,23 +157,22 @@ std::optional<Table> limits_table(const StoredResult& result) {
   return table;
 }
 
-std::optional<Table> convergence_table(const StoredResult& result) {
-  const std::optional<Settling> settling = adaptive_settling(result);
-  if (!settling) return std::nullopt;
-  const ConvergenceResult& found = *settling->adaptive;
+std::optional<Table> convergence_table(const StoredResult& result, const Settling& settling) {
+  if (!result.convergence) return std::nullopt;
+  const ConvergenceResult& found = *result.convergence;
   const std::size_t slots = found.samples.size();
-  const std::vector<std::size_t> missing = not_reached(*settling);
-  const std::size_t all = settling->responses.size() * slots;
+  const std::vector<std::size_t> missing = not_reached(found, settling);
+  const std::size_t all = settling.responses.size() * slots;
   Table table{
       .name = "convergence",
       .caption = fmt::format("Convergence: {} of {} {} have a {:.3g} % interval within +-{:.3g} % of their value, {}",
-                             all - missing.size(), all, settling->quantities, 100.0 * found.course.conf_level,
+                             all - missing.size(), all, settling.quantities, 100.0 * found.course.conf_level,
                              100.0 * found.relative_error, samples_text(found)),
       .columns = {text_column("error", "error"), text_column("response", "response"),
                   percent_column("half_width", "half the interval"),
                   number_column("samples_needed", "samples that would do, about")}};
   for (const std::size_t at : std::span(missing).first(std::min(missing.size(), kMostShown))) {
-    table.rows.push_back({text_cell(settling->slots[at % slots]), text_cell(result.responses[at / slots].name),
+    table.rows.push_back({text_cell(settling.slots[at % slots]), text_cell(result.responses[at / slots].name),
                           percent_cell(found.relative_half_width[at]), needed_cell(found, at)});
   }
   if (missing.size() > kMostShown) table.notes.push_back(fmt::format("and {} more", missing.size() - kMostShown));
@@ -197,14 +183,14 @@ std::optional<Table> convergence_table(const StoredResult& result) {
   return table;
 }
 
-std::string not_settled_text(const StoredResult& result) {
-  const std::optional<Settling> settling = adaptive_settling(result);
-  const std::size_t missing = settling ? not_reached(*settling).size() : 0;
+std::string not_settled_text(const StoredResult& result, const Settling& settling) {
+  if (!result.convergence) return {};
+  const ConvergenceResult& found = *result.convergence;
+  const std::size_t missing = not_reached(found, settling).size();
   if (missing == 0) return {};
-  const ConvergenceResult& found = *settling->adaptive;
   return fmt::format(
       "{} of {} {} did not reach the interval of +-{} that the study asks for, with at most {} samples at each pose.",
-      missing, settling->responses.size() * found.samples.size(), settling->quantities,
+      missing, settling.responses.size() * found.samples.size(), settling.quantities,
       percent_text(found.relative_error), count_text(found.max));
 }
 

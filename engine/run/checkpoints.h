@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/run/result.h"
 #include "engine/run/ranks/team.h"
+#include "engine/run/result.h"
 
 namespace poesy {
 

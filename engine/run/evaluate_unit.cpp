@@ -1,12 +1,13 @@
 #include "engine/run/evaluate_unit.h"
 
+#include "engine/run/history_points.h"
+
 #include <algorithm>
 #include <array>
 
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
 #include "engine/run/counts.h"
-#include "engine/kinds/sensitivity/history_points.h"
 
 namespace poesy {
 namespace {
@@ -39,14 +40,13 @@ UnitStats UnitStats::read(ByteReader& from, std::size_t responses, std::uint64_t
   return stats;
 }
 
-void SensitivityUnit::write(ByteWriter& to) const {
+void CellUnit::write(ByteWriter& to) const {
   UnitStats::write(to);
   for (const LocalIndex& index : within) to.reals(std::array{index.value, index.standard_error});
 }
 
-SensitivityUnit SensitivityUnit::read(ByteReader& from, std::size_t responses, std::uint64_t first,
-                                      std::size_t points) {
-  SensitivityUnit unit{UnitStats::read(from, responses, first), {}};
+CellUnit CellUnit::read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points) {
+  CellUnit unit{UnitStats::read(from, responses, first), {}};
   for (std::size_t n = 0; n < points * responses; ++n) {
     const double value = from.real();
     unit.within.push_back({value, from.real()});
@@ -91,11 +91,11 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   return {values, outcome, status, iterations};
 }
 
-SensitivityUnit UnitEvaluator::operator()(const WorkUnit& unit) {
+CellUnit UnitEvaluator::operator()(const WorkUnit& unit) {
   const UnitOutcomes outcomes = solve(unit);
   const std::span<const std::size_t> points = points_within(unit, points_);
   const double sigma = plan_->distributions()[unit.slot].standard_deviation();
-  SensitivityUnit found;
+  CellUnit found;
   found.responses.reserve(responses_);
   found.within.resize(points.size() * responses_);
   kept_.clear();

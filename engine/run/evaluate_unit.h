@@ -7,8 +7,8 @@
 #include "engine/model/model.h"
 #include "engine/run/failed_samples.h"
 #include "engine/run/result.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/moments.h"
-#include "engine/stats/sensitivity_index.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -29,16 +29,16 @@ struct UnitStats {
 };
 
 /// What one work unit of a sensitivity study hands on: besides, how the indices stood within it.
-struct SensitivityUnit : UnitStats {
+struct CellUnit : UnitStats {
   std::vector<LocalIndex> within;  ///< [K x R] of the unit's first samples, up to each of points_within()
 
   /// As UnitStats, then `within`.
   void write(ByteWriter& to) const;
   /// points: K
-  static SensitivityUnit read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points);
+  static CellUnit read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points);
 };
 
-/// Those of the history points (engine/kinds/sensitivity/history_points.h) that lie between the unit's samples; only in the first
+/// Those of the history points (engine/run/history_points.h) that lie between the unit's samples; only in the first
 /// unit of a cell there are any. Refers to the points.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
 
@@ -57,7 +57,7 @@ class UnitEvaluator {
   UnitEvaluator(const Plan& plan, const Model& model);
 
   /// Solves the whole unit.
-  SensitivityUnit operator()(const WorkUnit& unit);
+  CellUnit operator()(const WorkUnit& unit);
   /// Any samples of a cell, at most Plan::kUnitSamples of them: what they come to is the same whatever the unit.
   UnitOutcomes solve(const WorkUnit& unit);
   /// The unit's draws times each of these scales, [scales x B] one behind the other, at most Plan::kUnitSamples in all.

@@ -9,22 +9,9 @@
 #include "engine/model/model.h"
 #include "engine/run/result.h"
 #include "engine/run/run_options.h"
+#include "engine/study/error_table.h"
 
 namespace poesy {
-
-/// Names of rows that a user gave, so that he finds them again.
-struct RowLabels {
-  std::string column;              ///< what they name: "part"
-  std::vector<std::string> names;  ///< [S], all different
-};
-
-/// Errors that somebody else sampled: S rows of V factors.
-struct ErrorTable {
-  std::vector<FactorIndex> factors;  ///< [V]
-  std::vector<double> values;        ///< [S x V], row-major, SI
-  std::size_t rows = 0;              ///< S
-  RowLabels labels{};                ///< of the rows; empty where they have no names
-};
 
 /// How poses and rows of errors belong together.
 enum class Pairing {

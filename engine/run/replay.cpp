@@ -4,6 +4,7 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/pose_unit.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -28,7 +29,7 @@ ReplayedSample replay_sample(const Study& study, const Model& model, const PoseS
   POESY_EXPECTS(slot < plan.slots() && pose.value < poses.size() && sample.value < plan.samples());
   const WorkUnit unit{slot, pose, sample, 1};
   std::vector<double> errors(plan.background().begin(), plan.background().end());
-  if (study.analysis.kind == Analysis::Kind::monte_carlo) {
+  if (study.analysis.kind->varies == Varies::together) {
     PoseUnitEvaluator evaluator(plan, model);
     return sample_of(evaluator.solve(unit), {plan.factors().begin(), plan.factors().end()}, std::move(errors));
   }

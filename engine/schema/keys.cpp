@@ -44,13 +44,9 @@ std::string plain(std::string_view text) {
 
 /// "required where select is interior, boundary or grid".
 std::string condition(const StudyTable& table, const StudyKey& key) {
-  std::string text(key.required ? "required" : "");
-  for (std::size_t w = 0; w < key.only_for.size(); ++w) {
-    const std::string_view joint = w == 0 ? "" : w + 1 < key.only_for.size() ? ", " : " or ";
-    if (w == 0) text += (text.empty() ? "where " : " where ") + std::string(table.chooser) + " is ";
-    text += std::string(joint) + std::string(key.only_for[w]);
-  }
-  return text;
+  const std::string where =
+      key.only_for.empty() ? "" : fmt::format("where {} is {}", table.chooser, either(key.only_for));
+  return key.required ? (where.empty() ? "required" : "required " + where) : where;
 }
 
 std::string as_sentence(std::string_view clause) {

@@ -165,6 +165,9 @@ struct Key {
   /// The key's lines of the resolved text, where they are not "KEY = VALUE"; may be none.
   std::string (*lines)(const Object& object) = nullptr;
   int late = 0;  ///< in the resolved text, a key comes after those with a smaller number
+  /// The key's lines of a template for such an object, where they are not its default; may be none.
+  std::string (*shown)(const TemplateLines& lines, const Object& object) = nullptr;
+  bool commented = false;  ///< whether a template has the default behind a '#'
 };
 
 /// A table of typed rows.
@@ -339,6 +342,22 @@ void read_keys(const Keys<Object, Scope>& keys, const StudySection& section, Obj
     word = chosen_word(keys, object);
     if (extent != Extent::any) section.refuse_all_but_those_for(word);
   }
+}
+
+/// The key's lines of a template for this object.
+template <class Object, class Scope>
+std::string template_lines(const TemplateLines& lines, std::string_view table, const Key<Object, Scope>& row,
+                           const Object& object) {
+  if (row.shown != nullptr) return row.shown(lines, object);
+  return lines.usual(table, row.name, row.commented ? "# " : "");
+}
+
+/// The same of all keys of a table.
+template <class Object, class Scope>
+std::string template_lines(const TemplateLines& lines, const Keys<Object, Scope>& keys, const Object& object) {
+  std::string text;
+  for (const Key<Object, Scope>& row : keys.rows) text += template_lines(lines, keys.paths.front(), row, object);
+  return text;
 }
 
 /// The resolved text of a table's keys: "KEY = VALUE" in lines, with every default filled in.

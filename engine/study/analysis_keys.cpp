@@ -4,32 +4,11 @@
 #include <array>
 
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
+#include "engine/study/study_kind.h"
 #include "engine/study/study_text.h"
-#include "engine/kinds/coupling/rows.h"
 
 namespace poesy {
 namespace {
-
-using Kind = Analysis::Kind;
-
-/// A kind of study, with its keys of [analysis] in the order of its templates.
-struct KindKeys {
-  Kind kind;
-  std::vector<std::string_view> keys;
-};
-
-/// In the order in which the reference names kinds.
-const std::array<KindKeys, 5>& kinds() {
-  static const std::array<KindKeys, 5> list{{
-      {Kind::sensitivity, {"factors", "samples", "conf_level", "background", "linearity", "reference"}},
-      {Kind::identification, {"factors", "pose_share", "groups"}},
-      {Kind::monte_carlo, {"factors", "samples", "conf_level", "quantiles", "limits", "judge", "share", "background"}},
-      {Kind::evaluate, {"background", "limits", "cases"}},
-      {Kind::coupling, {"linear", "angular", "limbs", "components", "sources"}},
-  }};
-  return list;
-}
 
 FactorIndex factor_named(const StudyValue& value, const ModelDescription& model) {
   return FactorIndex(value.word(names(model.factors)));
@@ -53,10 +32,18 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   value.fail("is '" + printable(written) + "', which is no factor set of the model", suggestion(written, known));
 }
 
-/// The factor set that a study of this kind takes when it names none.
-std::vector<FactorIndex> usual_factors(Analysis::Kind kind, const ModelDescription& model) {
-  const FactorSet* set = model.find_set("deforming");
-  return kind == Analysis::Kind::sensitivity && set != nullptr ? set->factors : all_factors(model);
+/// The name of the factor set that a study of this kind takes when it names none.
+std::string_view usual_set(const StudyKind& kind, const ModelDescription& model) {
+  return model.find_set(kind.usual_factors) != nullptr ? kind.usual_factors : "all";
+}
+
+std::vector<FactorIndex> usual_factors(const StudyKind& kind, const ModelDescription& model) {
+  const FactorSet* set = model.find_set(kind.usual_factors);
+  return set != nullptr ? set->factors : all_factors(model);
+}
+
+void read_kind(const StudyValue& value, Study& study, const Reading& reading) {
+  study.analysis.kind = reading.kinds.all[value.word(names(reading.kinds))];
 }
 
 void read_studied_factors(const StudyValue& value, Study& study, const Reading&) {
@@ -65,6 +52,12 @@ void read_studied_factors(const StudyValue& value, Study& study, const Reading&)
 
 std::string factors_line(const Study& study) {
   return "factors = " + factors_text(study.analysis.factors, study.model()) + "\n";
+}
+
+std::string shown_factors(const TemplateLines& lines, const Study& study) {
+  const std::string_view usual = usual_set(*study.analysis.kind, study.model());
+  return "# Factor sets:\n" + sets_comment(study.model()) +
+         lines.explained("analysis", "factors", fmt::format("factors = \"{}\"", usual));
 }
 
 /// The table of adaptive samples.
@@ -111,11 +104,17 @@ void check_order(const StudySection& section, const Adaptive& adaptive) {
                               "write a larger max, or min besides");
 }
 
+KeyValue<Study> fixed_samples() {
+  KeyValue<Study> value = whole_at(2, kMostSolves, &Study::analysis, &Analysis::samples);
+  value.type = "integer or table";
+  return value;
+}
+
 /// A number, or the table of adaptive samples, whose level of the intervals must be the only one.
 void read_samples(const StudyValue& value, Study& study, const Reading& reading) {
   Analysis& analysis = study.analysis;
   if (!value.is_section()) {
-    analysis.samples = static_cast<std::size_t>(value.whole_number(2, kMostSolves));
+    fixed_samples().read(value, study);
     return;
   }
   Adaptive adaptive;
@@ -140,6 +139,11 @@ std::string samples_lines(const Study& study) {
   if (!analysis.adaptive) return fmt::format("samples = {}\n", analysis.samples);
   return fmt::format("samples.min = {}\nsamples.max = {}\nsamples.relative_error = {}\n", analysis.adaptive->min,
                      analysis.samples, shortest(analysis.adaptive->relative_error));
+}
+
+std::string shown_samples(const TemplateLines& lines, const Study&) {
+  return lines.usual("analysis", "samples") + lines.keys_lines("analysis.samples") +
+         "# samples = " + lines.inline_table("analysis.samples") + "\n";
 }
 
 const InnerRows<Background>& background_keys() {
@@ -179,66 +183,12 @@ std::string background_lines(const Study& study) {
          keys_text(background_keys(), background);
 }
 
-const InnerRows<ToleranceReference>& reference_keys() {
-  static const InnerRows<ToleranceReference> keys{
-      .paths = {"analysis.reference"},
-      .meaning = "Where tolerances of equal effect begin.",
-      .rows = {InnerRow<ToleranceReference>{.name = "factor",
-                                            .value = {.type = "text"},
-                                            .missing = "name the error from which tolerances are counted",
-                                            .meaning = "One of the errors that vary."},
-               InnerRow<ToleranceReference>{.name = "tolerance",
-                                            .value = {.type = "quantity", .bounds = "greater than 0"},
-                                            .usual = "1 mm or 1 deg",
-                                            .meaning = "Its tolerance, the standard deviation of a normal error."}}};
-  return keys;
-}
-
-void read_reference(const StudyValue& value, Study& study, const Reading&) {
-  const StudySection section = value.section();
-  section.allow();
-  const StudyValue factor = section.require("factor");
-  const std::vector<Factor>& factors = study.model().factors;
-  const FactorIndex named = factor_named(factor, study.model());
-  if (std::ranges::find(study.analysis.factors, named) == study.analysis.factors.end()) {
-    factor.fail("is '" + factors[named.value].name + "', which this study does not vary", "name one of its factors");
-  }
-  const Dimension dimension = factors[named.value].dimension;
-  const auto tolerance = section.find("tolerance");
-  study.analysis.reference = {named, tolerance ? tolerance->positive_quantity(dimension) : display_unit(dimension).si};
-}
-
-std::string reference_line(const Study& study) {
-  if (!study.analysis.reference) return {};
-  const Factor& factor = study.model().factors[study.analysis.reference->factor.value];
-  return fmt::format("reference = {{ factor = {}, tolerance = {} }}\n", in_quotes(factor.name),
-                     exact_value(study.analysis.reference->tolerance, factor.dimension));
-}
-
-std::string linearity_line(const Study& study) {
-  return study.mechanism.compared ? "linearity = " + shortest(study.analysis.linearity) + "\n" : "";
-}
-
-/// Shares between 0 and 1, ascending.
-KeyValue<Study> quantiles() {
-  const NumberBounds bounds = between_0_and_1("0.95");
-  const auto read = [=](const StudyValue& value, Study& study) {
-    std::vector<double> list;
-    for (const StudyValue& one : value.list()) {
-      list.push_back(read_number(one, bounds));
-      if (list.size() > 1 && !(list[list.size() - 2] < list.back())) {
-        one.fail("is " + shortest(list.back()) + ", not above the one before it", "write them in ascending order");
-      }
-    }
-    if (list.empty()) value.fail("is empty", "leave it out for 0.05, 0.5 and 0.95");
-    study.analysis.quantiles = list;
-  };
-  const auto text = [](const Study& study) {
-    std::vector<std::string> list;
-    for (const double quantile : study.analysis.quantiles) list.push_back(shortest(quantile));
-    return list_text(list);
-  };
-  return {.type = "list of numbers", .bounds = std::string(bounds.words), .read = read, .text = text};
+/// Holds the set that the kind suggests, where the model has it.
+std::string shown_background(const TemplateLines& lines, const Study& study) {
+  const std::string_view held = study.analysis.kind->usual_background;
+  return lines.explanation_lines("analysis", "background") + lines.keys_lines("analysis.background") +
+         (study.model().find_set(held) != nullptr ? fmt::format("background = {{ factors = \"{}\" }}\n", held)
+                                                  : "# background = { factors = \"all\" }\n");
 }
 
 /// In the order of the model's responses.
@@ -263,59 +213,44 @@ std::string response_limits_lines(const Study& study) {
   return text;
 }
 
-std::string judge_line(const Study& study) {
-  const bool idle = study.analysis.judge == Judge::rms && study.analysis.limits.empty();
-  return idle ? "" : "judge = " + in_quotes(name(study.analysis.judge)) + "\n";
-}
-
-/// What a share of the draws stays within is part of a run's state, so `share` has its line even where limits are left
-/// out (CheckpointIdentity).
-std::string share_line(const Study& study) {
-  return study.analysis.judge == Judge::share ? "share = " + shortest(study.analysis.share) + "\n" : "";
-}
-
-void check_judge(const StudySection& section, const Analysis& analysis) {
-  const auto judge = section.find("judge");
-  const auto share = section.find("share");
-  if (analysis.judge == Judge::share && !share) {
-    judge->fail("is \"share\", but analysis.share is missing",
-                "write the share of the draws, e.g. share = " + row_of(analysis_keys(), "share").example);
-  }
-  if (analysis.judge != Judge::share && share) {
-    share->fail("is set, but analysis.judge is \"rms\"", "write judge = \"share\", or leave it out");
-  }
-  if (judge && !section.find("limits")) {
-    judge->fail("is set, but the study states no limit", "write [analysis.limits], or leave it out");
-  }
+/// The responses, and a limit of the first one that is a length, or of the first.
+std::string shown_limits(const TemplateLines& lines, const Study& study) {
+  const std::vector<Response>& responses = study.model().responses;
+  if (responses.empty()) return {};
+  std::string list = "Responses:";
+  for (const Response& response : responses) list += " " + response.name;
+  const auto length = std::ranges::find(responses, Dimension::length, &Response::dimension);
+  const Response& response = length == responses.end() ? responses.front() : *length;
+  return comment(list) + lines.explained("analysis", "limits",
+                                         fmt::format("# limits = {{ {} = {} }}", response.name,
+                                                     example_size(response.dimension, 0.05)));
 }
 
 /// The keys of [analysis] that several kinds have, in the order of the reference.
 std::vector<StudyRow> shared_rows() {
   return {
-      StudyRow{.name = "kind",
-               .value = word_at<Kind>({{Kind::sensitivity, "what each error does on its own"},
-                                       {Kind::identification, "which errors deform the mechanism at all"},
-                                       {Kind::evaluate, "what named cases of fixed errors do"},
-                                       {Kind::monte_carlo, "what all errors do together"},
-                                       {Kind::coupling, "what sources of errors do one by one and together"}},
-                                      &Study::analysis, &Analysis::kind),
-               .meaning = "The kind of study."},
+      StudyRow{
+          .name = "kind",
+          .value = {.type = "text", .text = [](const Study& study) { return in_quotes(study.analysis.kind->name); }},
+          .usual = "",
+          .meaning = "The kind of study.",
+          .reader = read_kind},
       StudyRow{.name = "factors",
                .value = {.type = "text or list of texts"},
-               .usual = "in a sensitivity study deforming, where the model has that set; else all",
+               .usual = "all",
                .may_stay = true,
                .meaning = "The errors that vary or are tried: a factor set, all, or a list of factors.",
                .reader = read_studied_factors,
-               .lines = factors_line},
+               .lines = factors_line,
+               .shown = shown_factors},
       StudyRow{
           .name = "samples",
-          .value = {.type = "integer or table",
-                    .bounds = "at least 2",
-                    .text = [](const Study& study) { return std::to_string(study.analysis.samples); }},
+          .value = fixed_samples(),
           .may_stay = true,
           .meaning = "Samples at each pose, of each varied error alone or of all together; or as many as it takes.",
           .reader = read_samples,
-          .lines = samples_lines},
+          .lines = samples_lines,
+          .shown = shown_samples},
       StudyRow{.name = "conf_level",
                .value = number_at(between_0_and_1("0.95"), &Study::analysis, &Analysis::conf_level),
                .may_stay = true,
@@ -326,38 +261,8 @@ std::vector<StudyRow> shared_rows() {
                .meaning = "Errors held constant while others vary; what varies, or what a case sets, is not held.",
                .reader = read_background,
                .lines = background_lines,
-               .late = 2},
-  };
-}
-
-std::vector<StudyRow> sensitivity_rows() {
-  return {StudyRow{.name = "reference",
-                   .value = {.type = "table"},
-                   .usual = "the error of smallest effect, at 1 mm or 1 deg",
-                   .meaning = "The error from which tolerances of equal effect are counted, and its own tolerance.",
-                   .reader = read_reference,
-                   .lines = reference_line,
-                   .late = 1},
-          StudyRow{.name = "linearity",
-                   .value = number_at(between_0_and_1("0.01"), &Study::analysis, &Analysis::linearity),
-                   .meaning =
-                       "With fidelity = \"both\": an error whose effects differ by no more than this share is linear.",
-                   .lines = linearity_line}};
-}
-
-std::vector<StudyRow> monte_carlo_rows() {
-  return {StudyRow{
-      .name = "quantiles", .value = quantiles(), .meaning = "Shares of the samples that lie below, ascending."}};
-}
-
-std::vector<StudyRow> identification_rows() {
-  return {groups_row(), StudyRow{.name = "pose_share",
-                                 .value = number_at(between_0_and_1("0.95"), &Study::analysis, &Analysis::pose_share),
-                                 .meaning = "The share of the poses that a verdict asks for."}};
-}
-
-std::vector<StudyRow> limits_rows() {
-  return {
+               .late = 2,
+               .shown = shown_background},
       StudyRow{.name = "limits",
                .value = {.type = "table"},
                .usual = "none",
@@ -366,24 +271,9 @@ std::vector<StudyRow> limits_rows() {
                    "one is not kept.",
                .reader = read_response_limits,
                .lines = response_limits_lines,
-               .late = 1},
-      StudyRow{.name = "judge",
-               .value = word_at<Judge>(
-                   {{Judge::rms,
-                     "the response's root mean square over the draws of all poses is within the limit; "
-                     "draws that were not solved are left out"},
-                    {Judge::share,
-                     "at every pose at least a share of the draws is within the limit; draws that were not solved are "
-                     "not"}},
-                   &Study::analysis, &Analysis::judge),
-               .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)",
-               .lines = judge_line},
-      StudyRow{.name = "share",
-               .value = number_at(between_0_and_1("0.9973"), &Study::analysis, &Analysis::share),
-               .usual = "",
-               .example = "0.9973",
-               .meaning = "With judge = \"share\", and required there: the share of the draws.",
-               .lines = share_line}};
+               .late = 1,
+               .shown = shown_limits},
+  };
 }
 
 StudyTable response_limits_table() {
@@ -396,26 +286,28 @@ StudyTable response_limits_table() {
                     .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}};
 }
 
-void check_kind(const StudySection& section, const Study& study) {
-  if (study.analysis.kind != Kind::identification || study.model().deformation) return;
-  section.require("kind").fail(
-      "is \"identification\", but nothing deforms in model \"" + study.model().name + "\"",
-      "identification needs limbs that hold one platform against each other; choose another kind");
+/// For which kinds each row holds, and what is said of `kind`. Kinds whose factors a study names come first.
+void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
+  std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
+  std::ranges::stable_partition(listed, [](const StudyKind* kind) { return kind->has_key("factors"); });
+  for (StudyRow& row : table.rows) {
+    for (const StudyKind* kind : listed) {
+      if (kind->has_key(row.name)) row.only_for.push_back(kind->name);
+    }
+  }
+  StudyRow& row = table.rows.front();
+  row.usual = "`" + in_quotes(kinds.front()->name) + "`";
+  for (const StudyKind* kind : kinds) row.value.words.push_back({kind->name, kind->asks});
 }
 
-/// What a kind has where the study does not say it.
-void complete(const StudySection& section, Study& study, const Reading& reading) {
-  Analysis& analysis = study.analysis;
-  if (analysis.kind == Kind::evaluate) {
-    analysis.factors.clear();
-    if (!analysis.cases.empty() || reading.use == StudyUse::evaluate) return;
-    throw InputError(section.place(), "kind = \"evaluate\" needs at least one case",
-                     "write [[analysis.cases]] with name and errors, or use 'poesy evaluate' for a table of errors");
+/// "in a sensitivity study deforming, where the model has that set; else all".
+std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
+  std::string text;
+  for (const StudyKind* kind : kinds) {
+    if (kind->usual_factors.empty()) continue;
+    text += fmt::format("in a {} study {}, where the model has that set; ", kind->name, kind->usual_factors);
   }
-  if (analysis.kind == Kind::identification && analysis.groups.empty()) analysis.groups.push_back(usual_group());
-  if (analysis.kind != Kind::coupling) return;
-  complete_coupling(study, reading);
-  analysis.factors = coupling_factors(analysis.coupling, study.model());
+  return text + (text.empty() ? "all" : "else all");
 }
 
 }  // namespace
@@ -435,33 +327,40 @@ std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescri
   return factors;
 }
 
-std::span<const std::string_view> keys_of(Analysis::Kind kind) {
-  return std::ranges::find(kinds(), kind, &KindKeys::kind)->keys;
+std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual) {
+  const auto value = section.find("name");
+  const std::string name = value ? value->text() : usual;
+  if (value && (name.empty() || name.find_first_of(",;\"\n\r\t") != std::string::npos)) {
+    value->fail("is '" + printable(name) + "'",
+                "a name is plain text without commas and quotes, for it stands in tables");
+  }
+  if (std::ranges::find(taken, name) == taken.end()) return name;
+  if (value) value->fail("is '" + printable(name) + "', which another one has", "give each a name of its own");
+  throw InputError(section.place(), "it has no name, and '" + name + "' is taken", "write name = \"...\"");
 }
 
-const StudyRows& analysis_keys() {
-  static const StudyRows keys = [] {
-    StudyRows table{.paths = {"analysis"}, .meaning = "What is asked.", .chooser = "kind", .rows = shared_rows()};
-    for (const auto& more : {sensitivity_rows(), monte_carlo_rows(), identification_rows(),
-                             std::vector<StudyRow>{cases_row()}, limits_rows(), coupling_rows_of_keys()}) {
-      table.rows.insert(table.rows.end(), more.begin(), more.end());
-    }
-    for (StudyRow& row : table.rows) {
-      for (const KindKeys& kind : kinds()) {
-        if (std::ranges::find(kind.keys, row.name) != kind.keys.end()) row.only_for.push_back(name(kind.kind));
-      }
-    }
-    return table;
-  }();
-  return keys;
+StudyRows analysis_keys(const StudyKind& kind) {
+  StudyRows table{.paths = {"analysis"}, .meaning = "What is asked.", .chooser = "kind", .rows = shared_rows()};
+  if (kind.rows == nullptr) return table;
+  for (StudyRow& row : kind.rows()) table.rows.push_back(std::move(row));
+  return table;
 }
 
-StudyTables analysis_tables() {
-  StudyTables tables{described(analysis_keys()),   response_limits_table(),     described(adaptive_keys()),
-                     described(background_keys()), described(reference_keys()), group_table()};
-  const StudyTables cases = case_tables();
-  tables.insert(tables.end(), cases.begin(), cases.end());
-  tables.push_back(source_table());
+StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order) {
+  StudyRows table = analysis_keys(*kinds.front());
+  for (const StudyKind* kind : kinds.subspan(1)) {
+    if (kind->rows == nullptr) continue;
+    for (StudyRow& row : kind->rows()) table.rows.push_back(std::move(row));
+  }
+  describe_kinds(table, kinds);
+  std::ranges::find(table.rows, "factors", &StudyRow::name)->usual = usual_factors_text(kinds);
+  std::ranges::stable_sort(table.rows, {}, [&](const StudyRow& row) { return std::ranges::find(order, row.name); });
+  StudyTables tables{described(table), response_limits_table(), described(adaptive_keys()),
+                     described(background_keys())};
+  for (const StudyKind* kind : kinds) {
+    if (kind->tables == nullptr) continue;
+    for (StudyTable& inner : kind->tables()) tables.push_back(std::move(inner));
+  }
   return tables;
 }
 
@@ -469,12 +368,15 @@ void read_analysis(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
   const bool runs = reading.use == StudyUse::run;
   section.allow();
-  if (const auto kind = section.find("kind")) read_key(row_of(analysis_keys(), "kind"), *kind, study, reading);
-  if (runs) check_kind(section, study);
-  study.analysis.factors = usual_factors(study.analysis.kind, study.model());
-  read_keys(analysis_keys(), section, study, reading, runs ? Extent::complete : Extent::any);
-  check_judge(section, study.analysis);
-  complete(section, study, reading);
+  study.analysis.kind = reading.kinds.all.front();
+  if (const auto word = section.find("kind")) read_kind(*word, study, reading);
+  const StudyKind& kind = *study.analysis.kind;
+  if (const auto refusal = runs && kind.refusal != nullptr ? kind.refusal(study.model()) : std::nullopt) {
+    section.require("kind").fail("is " + in_quotes(kind.name) + ", but " + refusal->problem, refusal->remedy);
+  }
+  study.analysis.factors = usual_factors(kind, study.model());
+  read_keys(analysis_keys(kind), section, study, reading, runs ? Extent::complete : Extent::any);
+  if (kind.complete != nullptr) kind.complete(study, reading);
 }
 
 }  // namespace poesy

@@ -165,6 +165,14 @@ std::string override_lines(const Study& study) {
   return text.empty() ? "" : "\n[errors.override]\n" + text;
 }
 
+std::string shown_override(const TemplateLines& lines, const Study& study) {
+  if (study.model().factors.empty()) return {};
+  const Factor& factor = study.model().factors.front();
+  return lines.explained("errors", "override",
+                         fmt::format("# override = {{ {} = {{ distribution = \"uniform\", half_width = {} }} }}",
+                                     factor.name, example_size(factor.dimension, 0.5)));
+}
+
 template <Dimension kDimension>
 StudyRow usual_row(std::string_view meaning) {
   return {.name = error_kind(kDimension),
@@ -187,7 +195,8 @@ const StudyRows& errors_keys() {
                                                 .usual = "none",
                                                 .meaning = "Single errors with a distribution of their own.",
                                                 .reader = read_override,
-                                                .lines = override_lines}}};
+                                                .lines = override_lines,
+                                                .shown = shown_override}}};
   return keys;
 }
 

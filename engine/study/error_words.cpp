@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/study/study_kind.h"
 #include "engine/study/study_text.h"
 
 namespace poesy {
@@ -64,9 +65,9 @@ std::string held_errors_text(const Study& study) {
   if (!study.analysis.background) return {};
   const std::vector<FactorIndex> held = held_errors(study);
   if (held.empty()) return {};
-  const bool of_cases = study.analysis.kind == Analysis::Kind::evaluate;
-  return fmt::format("held constant{}: {} at {}", of_cases ? ", unless a case sets another value" : "",
-                     owners_text(held, study), sizes_text(held, study));
+  const std::string_view overrides = study.analysis.kind->overrides;
+  const std::string unless = overrides.empty() ? "" : fmt::format(", unless {} another value", overrides);
+  return fmt::format("held constant{}: {} at {}", unless, owners_text(held, study), sizes_text(held, study));
 }
 
 }  // namespace poesy

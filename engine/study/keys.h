@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/study/study_file.h"
 #include "engine/schema/keys.h"
+#include "engine/study/study_file.h"
 
 /// The tables of a study file: rows of keys, with what reads and writes those that are more than a value. One file for
 /// each table of the file, with the tables inside it.
@@ -19,10 +19,13 @@ inline constexpr std::int64_t kMostPoses = 10'000'000;
 inline constexpr std::int64_t kMostCells = 10'000'000;              ///< (factor, pose) pairs of a result
 inline constexpr std::int64_t kMostSolves = 1'000'000'000'000'000;  ///< of a run
 
+struct StudyKinds;
+
 /// What a row's reader may look at in addition to the value.
 struct Reading {
   const StudySection& root;  ///< the whole file
   const Catalog& catalog;    ///< of mechanisms
+  const StudyKinds& kinds;   ///< of studies
   StudyUse use;              ///< how much must be there
 };
 
@@ -40,13 +43,13 @@ using InnerRow = Key<Object, Nothing>;
 template <class Object>
 using InnerRows = Keys<Object, Nothing>;
 
-/// The rows of the study's own tables.
+/// The rows of the study's own tables; those of [analysis] as this kind has them.
 /// @{
 const StudyRows& file_keys();
 const StudyRows& mechanism_keys();
 const StudyRows& poses_keys();
 const StudyRows& errors_keys();
-const StudyRows& analysis_keys();
+StudyRows analysis_keys(const StudyKind& kind);
 const StudyRows& solver_keys();
 const StudyRows& run_keys();
 /// @}
@@ -56,23 +59,7 @@ const StudyRows& run_keys();
 StudyTables mechanism_tables();
 StudyTables poses_tables();
 StudyTables errors_tables();
-StudyTables analysis_tables();
-StudyTables case_tables();
-StudyTable group_table();
-StudyTable source_table();
-/// @}
-
-/// Every table of a study file, with every key.
-const StudyTables& study_tables();
-
-/// The keys of [analysis] that hold for this kind, in the order of its templates.
-std::span<const std::string_view> keys_of(Analysis::Kind kind);
-
-/// The rows of [analysis] that only some kinds have.
-/// @{
-StudyRow groups_row();
-StudyRow cases_row();
-std::vector<StudyRow> coupling_rows_of_keys();
+StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order);
 /// @}
 
 /// Each reads a part of a study file and throws InputError for the first thing that is wrong with it.
@@ -82,8 +69,6 @@ void read_poses_section(Study& study, const Reading& reading);
 void read_errors_section(Study& study, const Reading& reading);
 void read_analysis(Study& study, const Reading& reading);
 void read_solver(Study& study, const Reading& reading);
-/// What kind = "coupling" asks of its keys together; fills in the literature's sources.
-void complete_coupling(Study& study, const Reading& reading);
 /// @}
 
 /// A file named by the study, relative to the study's folder.
@@ -94,12 +79,20 @@ Distribution usual_distribution(const StudySection& root, Dimension dimension);
 std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
 /// The text of `name`, which must not be among those that are taken; `usual` where there is none.
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
-/// The group of an identification study that names none.
-ErrorSize usual_group();
+/// The factor sets of a model in comment lines of a template.
+std::string sets_comment(const ModelDescription& model);
+/// A length or an angle of so many millimetres or degrees, as templates show it: "1 mm" in quotes.
+std::string example_size(Dimension dimension, double units);
 
 /// Throws InputError at its place for an error of the study that makes no sense on this model (Model::error_bound): the
-/// standard deviation of one that varies, and the size of one that is held, tried, set by a case, or a reference
-/// tolerance.
+/// standard deviation of one that varies, and the size of one that is held, or that the kind sets.
 void check_error_bounds(const StudySection& root, const Study& study, const Model& model);
+/// The same for one error of these sizes, which `linear` and `angular` of a section set.
+void check_error_size(const Model& model, FactorIndex factor, double linear, double angular,
+                      const StudySection& section);
+/// Throws for an error that is too large, at the section's value of this key, or at the section where it has none.
+[[noreturn]] void refuse_error(const StudySection& section, std::string_view key, const std::string& problem);
+/// What to do about an error that is too large.
+inline constexpr std::string_view kTooLargeRemedy = "write a smaller one";
 
 }  // namespace poesy

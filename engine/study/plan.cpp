@@ -4,13 +4,23 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
+namespace {
+
+std::size_t slots_of(const Analysis& analysis) {
+  POESY_EXPECTS(analysis.kind != nullptr);
+  return analysis.kind->varies == Varies::together ? 1 : analysis.factors.size();
+}
+
+}  // namespace
+
 Plan::Plan(const Study& study, PoseSet poses)
     : poses_(std::move(poses)),
       factors_(study.analysis.factors),
       background_(background_errors(study.analysis.background, study.model())),
-      slots_(study.analysis.kind == Analysis::Kind::monte_carlo ? 1 : factors_.size()),
+      slots_(slots_of(study.analysis)),
       samples_(study.analysis.samples),
       adaptive_(study.analysis.adaptive),
       units_per_cell_(units_for(samples_)),

@@ -22,8 +22,8 @@ struct WorkUnit {
   std::size_t count;  ///< B
 };
 
-/// A study of sampled errors, expanded: an immutable table of work units in the order in which they are merged. In a
-/// sensitivity study each factor is a slot, for it varies alone; in a Monte Carlo study one slot holds all factors.
+/// A study of sampled errors, expanded: an immutable table of work units in the order in which they are merged. A
+/// factor that varies alone is a slot; factors that vary together are one slot.
 /// The table depends on the study alone, never on threads or ranks.
 class Plan {
  public:
@@ -33,7 +33,7 @@ class Plan {
   /// Units that so many samples of a cell make up, the last one perhaps smaller.
   static constexpr std::size_t units_for(std::size_t samples) { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
-  /// Of a study of drawn errors, at these poses. Copies what it needs.
+  /// Of a study of drawn errors, at these poses. Copies what it needs. Precondition: the study has a kind.
   Plan(const Study& study, PoseSet poses);
 
   /// Factors that are studied one by one; 1 where all vary together.

@@ -34,8 +34,7 @@ void require_metric(std::string_view key, const Study& study, const Reading& rea
 /// Takes the entry of the mechanism by its platform's metric where the study asks for it.
 void read_metric(const StudyValue& value, Study& study, const Reading& reading) {
   require_metric("metric", study, reading);
-  std::vector<std::string_view> known;
-  for (const StudyWord& word : row_of(solver_keys(), "metric").value.words) known.push_back(word.name);
+  const std::vector<std::string_view> known = names(row_of(solver_keys(), "metric").value.words);
   if (known[value.word(known)] == "platform") study.mechanism.entry = study.mechanism.entry->by_platform.get();
 }
 
@@ -74,13 +73,29 @@ std::string points_line(const Study& study) {
   return points.empty() ? "" : "points = " + points_text(points, exact_value) + "\n";
 }
 
+std::string shown_metric(const TemplateLines& lines, const Study& study) {
+  const std::string& metric = study.model().metric;
+  return metric.empty() ? "" : lines.explained("solver", "metric", "metric = " + in_quotes(metric));
+}
+
+/// The published mechanism's own points.
+std::string shown_points(const TemplateLines& lines, const Study& study) {
+  if (study.model().metric.empty()) return {};
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : study.model().geometry) geometry.push_back(parameter.published);
+  const std::unique_ptr<Model> model = study.mechanism.entry->build(geometry, 0);
+  return lines.explained("solver", "points", "# points = " + points_text(model->metric_points(), readable_value));
+}
+
+std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
+  return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
+}
+
 /// "fail" is short for "exclude" and a limit of 0.
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
   constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::exclude};
   constexpr std::size_t kFail = 2;
-  std::vector<std::string_view> known;
-  for (const StudyWord& each : row_of(solver_keys(), "not_converged").value.words) known.push_back(each.name);
-  const std::size_t word = value.word(known);
+  const std::size_t word = value.word(names(row_of(solver_keys(), "not_converged").value.words));
   study.not_converged = kPolicies[word];
   if (word != kFail) return;
   reading.root.section("solver").refuse("max_not_converged", "not_converged = \"fail\", which allows none");
@@ -99,14 +114,16 @@ std::vector<StudyRow> metric_rows() {
                .meaning = "How mismatch of angle is weighed against mismatch of position where limbs work against each "
                           "other; only for models that have such a mismatch.",
                .reader = read_metric,
-               .lines = metric_line},
+               .lines = metric_line,
+               .shown = shown_metric},
       StudyRow{.name = "points",
                .value = {.type = "list of lists of lengths"},
                .usual = "where the limbs hold the platform",
                .meaning = "Points [x, y, z] in the platform's frame for metric = \"platform\", three or more that are "
                           "not on a line.",
                .reader = read_points,
-               .lines = points_line}};
+               .lines = points_line,
+               .shown = shown_points}};
 }
 
 std::vector<StudyRow> iteration_rows() {
@@ -122,7 +139,8 @@ std::vector<StudyRow> iteration_rows() {
                .besides = "; with metric = \"platform\" `1e-14`",
                .meaning =
                    "Converged: the residual's largest change (rad, m) in one iteration is below this; with metric "
-                   "= \"platform\" its length is below this share of the mechanism's reach."},
+                   "= \"platform\" its length is below this share of the mechanism's reach.",
+               .shown = shown_tolerance},
       StudyRow{.name = "max_iterations",
                .value = whole_at(1, std::numeric_limits<int>::max(), &Study::solver, &SolverOptions::max_iterations),
                .meaning = "Iterations after which a sample counts as not converged."}};
@@ -176,7 +194,7 @@ const StudyRows& file_keys() {
                table_row("mechanism", "add the section [mechanism] with the key model", "", "Which mechanism."),
                table_row("poses", "add the section [poses] with the key count", "", "At which poses of the platform."),
                table_row("errors", "", "as shown there", "How errors scatter."),
-               table_row("analysis", "", "a sensitivity study", "What is asked, of which errors."),
+               table_row("analysis", "", "", "What is asked, of which errors."),
                table_row("solver", "", "as shown there", "How samples are solved."),
                table_row("run", "", "as shown there", "Where draws begin.")}};
   return keys;

@@ -12,8 +12,6 @@ namespace {
 /// In the order of the enumerations.
 /// @{
 constexpr std::array<std::string_view, 5> kSelectNames{"interior", "file", "boundary", "grid", "trajectory"};
-constexpr std::array<std::string_view, 5> kKindNames{"sensitivity", "identification", "evaluate", "monte-carlo",
-                                                     "coupling"};
 constexpr std::array<std::string_view, 2> kJudgeNames{"rms", "share"};
 constexpr std::array<std::string_view, 2> kNotConvergedNames{"exclude", "include"};
 constexpr std::array<std::string_view, 2> kMethodNames{"newton", "gauss-newton"};
@@ -27,7 +25,6 @@ std::string_view name_among(const std::array<std::string_view, kCount>& names, E
 }  // namespace
 
 std::string_view name(PoseSelection::Select select) { return name_among(kSelectNames, select); }
-std::string_view name(Analysis::Kind kind) { return name_among(kKindNames, kind); }
 std::string_view name(Judge judge) { return name_among(kJudgeNames, judge); }
 std::string_view name(NotConverged policy) { return name_among(kNotConvergedNames, policy); }
 std::string_view name(SolverOptions::Method method) { return name_among(kMethodNames, method); }

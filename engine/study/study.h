@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/index.h"
 #include "engine/model/catalog.h"
@@ -41,57 +43,6 @@ struct Background {
   double angular = 0.0;              ///< rad, for factors that are angles
 };
 
-/// A fixed set of errors with a name.
-struct ErrorCase {
-  std::string name;            ///< stands in tables
-  std::vector<double> errors;  ///< [F], SI
-};
-
-/// The sizes at which identification sets errors.
-struct ErrorSize {
-  std::string name;  ///< stands in tables
-  double linear;     ///< m
-  double angular;    ///< rad
-};
-
-/// The error from which equal-effect tolerances are counted, and its own tolerance.
-struct ToleranceReference {
-  FactorIndex factor;  ///< one of those that vary
-  double tolerance;    ///< SI
-};
-
-/// A group of errors that is judged as one.
-struct ErrorSource {
-  std::string name;                  ///< stands in tables, joined to others by '+'
-  std::vector<FactorIndex> factors;  ///< as the study names them, whatever the pattern leaves of them
-};
-
-/// Which errors of a source have its size, and which of these move together.
-struct ErrorPattern {
-  /// How far a choice of limbs or components goes.
-  enum class Choice {
-    all,         ///< every one, together
-    some,        ///< those that are named, together
-    independent  ///< every one, each on its own
-  };
-
-  Choice limbs = Choice::all;       ///< which limbs' errors have the size
-  std::size_t limb = 0;             ///< for some: it alone; counts from 1
-  Choice components = Choice::all;  ///< which components of an error have it
-  std::vector<std::string> axes;    ///< for some: "x", "y", "z"; scalars are kept besides
-};
-
-/// What a coupling study asks for. See engine/kinds/coupling/coupling.h.
-struct CouplingStudy {
-  std::vector<double> linear;        ///< [Z] m, sizes of the runs; empty where no error is a length
-  std::vector<double> angular;       ///< [Z] rad; empty where no error is an angle
-  ErrorPattern pattern;              ///< of every source
-  std::vector<ErrorSource> sources;  ///< no factor in two of them
-
-  /// Z.
-  std::size_t sizes() const { return linear.empty() ? angular.size() : linear.size(); }
-};
-
 /// Samples until the intervals are narrow enough, at the least `min` and at the most Analysis::samples at each pose;
 /// see engine/run/rounds.h.
 struct AdaptiveSamples {
@@ -105,40 +56,44 @@ struct ResponseLimit {
   double most;           ///< SI, above zero
 };
 
-/// By which number of a Monte Carlo study its limits are judged; see engine/run/verdict.h.
+/// By which number of its draws a study's limits are judged; see engine/run/verdict.h.
 enum class Judge {
   rms,   ///< the response's root mean square over the draws of all poses
   share  ///< what a share of the draws stays within at the worst pose
 };
 
+struct StudyKind;
+
 /// What is asked, of which errors.
 struct Analysis {
-  /// Kinds of studies.
-  enum class Kind {
-    sensitivity,     ///< the effect of each error on its own
-    identification,  ///< which errors deform the mechanism at all
-    evaluate,        ///< named cases of fixed errors
-    monte_carlo,     ///< all errors vary together
-    coupling         ///< error sources of fixed size, one by one and together
-  };
-
-  Kind kind = Kind::sensitivity;                   ///< decides which of the members below count
-  std::vector<FactorIndex> factors;                ///< that vary, or that are tried; empty for evaluate
-  std::size_t samples = 1000;                      ///< sensitivity, Monte Carlo: at each pose
-  std::optional<AdaptiveSamples> adaptive;         ///< sensitivity, Monte Carlo; then `samples` is their maximum
-  double conf_level = 0.95;                        ///< sensitivity, Monte Carlo
-  std::optional<Background> background;            ///< not for identification
-  std::optional<ToleranceReference> reference;     ///< sensitivity
-  double linearity = 0.01;                         ///< sensitivity at two fidelities: up to this an error is linear
-  std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< Monte Carlo: shares of samples below, ascending
-  std::vector<ErrorSize> groups;                   ///< identification
-  double pose_share = 0.95;                        ///< identification: of the poses that a verdict asks for
-  std::vector<ErrorCase> cases;                    ///< evaluate
-  CouplingStudy coupling;                          ///< coupling
-  std::vector<ResponseLimit> limits;               ///< Monte Carlo, evaluate: in the order of the model's responses
-  Judge judge = Judge::rms;                        ///< Monte Carlo: of the limits
-  double share = 0.0;                              ///< Monte Carlo, for Judge::share: of the draws at each pose
+  const StudyKind* kind = nullptr;          ///< engine/study/study_kind.h; a study that was read has one
+  std::vector<FactorIndex> factors;         ///< that vary, or that are tried; empty where others say it
+  std::size_t samples = 1000;               ///< of errors that vary: at each pose
+  std::optional<AdaptiveSamples> adaptive;  ///< likewise; then `samples` is their maximum
+  double conf_level = 0.95;                 ///< of errors that vary
+  std::optional<Background> background;     ///< errors that are held
+  std::vector<ResponseLimit> limits;        ///< in the order of the model's responses
+  std::any asked;                           ///< what the kind alone asks, see asked_of(); empty: as its defaults are
 };
+
+/// What the study's kind alone asks. Precondition: the kind has options of this type.
+template <class Options>
+const Options& asked_of(const Analysis& analysis) {
+  static const Options usual{};
+  if (!analysis.asked.has_value()) return usual;
+  const auto* asked = std::any_cast<Options>(&analysis.asked);
+  POESY_EXPECTS(asked != nullptr);
+  return *asked;
+}
+
+/// The same to be changed.
+template <class Options>
+Options& asked_of(Analysis& analysis) {
+  if (!analysis.asked.has_value()) analysis.asked = Options{};
+  auto* asked = std::any_cast<Options>(&analysis.asked);
+  POESY_EXPECTS(asked != nullptr);
+  return *asked;
+}
 
 /// What becomes of samples without a solution.
 enum class NotConverged {
@@ -165,11 +120,6 @@ struct Study {
 
 /// Names as written in a study file.
 std::string_view name(PoseSelection::Select select);
-/// As a study file has it.
-std::string_view name(Analysis::Kind kind);
-/// Every kind, in the order in which they are listed.
-inline constexpr std::array kKinds{Analysis::Kind::sensitivity, Analysis::Kind::identification,
-                                   Analysis::Kind::evaluate, Analysis::Kind::monte_carlo, Analysis::Kind::coupling};
 /// As a study file has it.
 std::string_view name(Judge judge);
 /// Every one, in the order in which they are listed.

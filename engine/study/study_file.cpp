@@ -7,10 +7,10 @@
 #include <fstream>
 
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
-#include "engine/study/text_file.h"
-#include "engine/kinds/coupling/rows.h"
 #include "engine/schema/keys_section.h"
+#include "engine/study/keys.h"
+#include "engine/study/study_kind.h"
+#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
@@ -57,45 +57,11 @@ toml::table parse(const std::string& text, const std::string& path) {
   }
 }
 
-/// What a study asks for at each pose, and what these numbers are the product of.
-struct AtPose {
-  double values;  ///< of one response that the result keeps
-  std::string_view of_values;
-  double solves;
-  std::string_view of_solves;
-};
-
-AtPose at_pose(const Study& study) {
-  const Analysis& analysis = study.analysis;
-  const double factors = static_cast<double>(analysis.factors.size());
-  const double samples = static_cast<double>(analysis.samples);
-  const double tried = factors * static_cast<double>(analysis.groups.size());
-  const double cases = static_cast<double>(analysis.cases.size());
-  switch (analysis.kind) {
-    case Analysis::Kind::sensitivity:
-      if (study.mechanism.compared) {
-        return {factors, "factors", 2.0 * factors * samples, "factors times samples times two fidelities"};
-      }
-      return {factors, "factors", factors * samples, "factors times samples"};
-    case Analysis::Kind::identification:
-      return {tried, "factors times groups", tried, "factors times groups"};
-    case Analysis::Kind::evaluate:
-      return {cases, "cases", cases, "cases"};
-    case Analysis::Kind::monte_carlo:
-      return {static_cast<double>(analysis.quantiles.size()), "quantiles", samples, "samples"};
-    case Analysis::Kind::coupling:
-      break;
-  }
-  const std::size_t rows = coupling_rows(analysis.coupling, study.model()).errors.size();
-  const auto sets = static_cast<double>(analysis.coupling.sizes() * rows);
-  return {sets, "sizes times sets of sources", sets, "sizes times sets of sources"};
-}
-
 /// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
-  const AtPose asked = at_pose(study);
+  const AtPose asked = study.analysis.kind->at_pose(study);
   if (poses * asked.values > static_cast<double>(kMostCells)) {
     throw InputError(root.section("poses").place(),
                      "poses times " + std::string(asked.of_values) + " is " + shortest(poses * asked.values) +
@@ -110,25 +76,27 @@ void check_size(const StudySection& root, const Study& study) {
   }
 }
 
-/// "both" is for sensitivity studies with a fixed number of samples, and `linearity` for those with "both".
-void check_fidelities(const StudySection& root, const Study& study) {
-  if (!study.mechanism.compared) {
-    root.section("analysis").refuse("linearity", "a study without fidelity = \"both\"");
-  } else if (study.analysis.kind != Analysis::Kind::sensitivity) {
+/// "both" is for kinds that compare fidelities, with a fixed number of samples.
+void check_fidelities(const Study& study, const Reading& reading) {
+  if (!study.mechanism.compared) return;
+  if (!study.analysis.kind->compares_fidelities) {
+    const auto other = std::ranges::find_if(reading.kinds.all, &StudyKind::compares_fidelities);
     const std::vector<std::string>& fidelities = study.model().fidelities;
-    const StudyValue fidelity = root.section("mechanism").require("fidelity");
-    fidelity.fail("is \"both\", but kind = \"" + std::string(name(study.analysis.kind)) + "\" solves at one fidelity",
-                  "write \"" + fidelities[0] + "\" or \"" + fidelities[1] + "\", or take kind = \"sensitivity\"");
-  } else if (study.analysis.adaptive) {
-    const StudyValue samples = root.section("analysis").require("samples");
+    const StudyValue fidelity = reading.root.section("mechanism").require("fidelity");
+    fidelity.fail(
+        "is \"both\", but kind = " + in_quotes(study.analysis.kind->name) + " solves at one fidelity",
+        "write \"" + fidelities[0] + "\" or \"" + fidelities[1] + "\", or take kind = " + in_quotes((*other)->name));
+  }
+  if (study.analysis.adaptive) {
+    const StudyValue samples = reading.root.section("analysis").require("samples");
     samples.fail(
         "ends at a relative error, but fidelity = \"both\" compares two fidelities on the same samples",
         "write a fixed number, e.g. samples = " + std::to_string(Analysis().samples) + ", or choose one fidelity");
   }
 }
 
-Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use) {
-  const Reading reading{root, catalog, use};
+Study study_from(const Reading& reading) {
+  const StudySection& root = reading.root;
   Study study;
   for (const std::string_view key : {"format", "version"}) {
     read_key(row_of(file_keys(), key), root.require(key), study, reading);
@@ -140,37 +108,26 @@ Study study_from(const StudySection& root, const Catalog& catalog, StudyUse use)
   read_errors_section(study, reading);
   read_analysis(study, reading);
   read_keys(run_keys(), root.section("run"), study, reading);
-  if (use == StudyUse::run) check_fidelities(root, study);
+  if (reading.use == StudyUse::run) check_fidelities(study, reading);
   check_size(root, study);
   return study;
 }
 
 }  // namespace
 
-const StudyTables& study_tables() {
-  static const StudyTables tables = [] {
-    StudyTables all{described(file_keys())};
-    for (const StudyTables& more : {mechanism_tables(), poses_tables(), errors_tables(), analysis_tables(),
-                                    StudyTables{described(solver_keys()), described(run_keys())}}) {
-      all.insert(all.end(), more.begin(), more.end());
-    }
-    return all;
-  }();
-  return tables;
-}
-
-Study read_study(const std::string& path, const Catalog& catalog, StudyUse use) {
+Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds) {
   if (begins_like_hdf5(path)) {
     throw InputError({path}, "is an HDF5 file, such as a result of poesy, and no study", "give its study, a TOML file");
   }
-  return study_of_text(read_text(path, "study", kMostBytes), path, catalog, use);
+  return study_of_text(read_text(path, "study", kMostBytes), path, catalog, use, kinds);
 }
 
-Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use) {
+Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
+                    const StudyKinds& kinds) {
   check_lines(text, path);
   const toml::table table = parse(text, path);
-  const StudySection root(table, "", {path, 1, 1}, study_tables());
-  Study study = study_from(root, catalog, use);
+  const StudySection root(table, "", {path, 1, 1}, kinds.tables);
+  Study study = study_from({root, catalog, kinds, use});
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   if (use == StudyUse::run) check_error_bounds(root, study, *model);
   return study;

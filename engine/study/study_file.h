@@ -10,27 +10,30 @@ namespace poesy {
 /// How much of a study a command needs.
 enum class StudyUse {
   run,      ///< all sections complete
-  evaluate  ///< [mechanism] and [solver]; the others are checked where present but may be incomplete or absent, and a
-            ///< pose file is not opened
+  evaluate  ///< [mechanism] and [solver]; the others are checked where present but may be incomplete or absent, keys
+            ///< that another kind alone has are passed over, and a pose file is not opened
 };
 
-/// Reads and validates a study file (TOML, format "poesy-study", version 1).
+struct StudyKinds;
+
+/// Reads and validates a study file (TOML, format "poesy-study", version 1) of one of these kinds.
 /// Throws InputError with file, line and column for everything that is wrong with its content (also for a
 /// directory or a file that is not text), FileError when the file cannot be read.
 /// A pose file named by the study is found relative to the study's folder.
-Study read_study(const std::string& path, const Catalog& catalog, StudyUse use);
+Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds);
 
 /// The same for a study's text; `path` names it in messages.
-Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use);
+Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
+                    const StudyKinds& kinds);
 
 /// The study with every default filled in, as TOML that reads back to the same study.
 std::string resolved_text(const Study& study);
 
 /// A complete, commented study of this kind and mechanism that runs as it is.
-/// Precondition: the mechanism offers this kind (something deforms, for identification; sources, for coupling).
-std::string template_text(const CatalogEntry& entry, Analysis::Kind kind);
+/// Precondition: there is a template for the mechanism (StudyKind::no_template).
+std::string template_text(const CatalogEntry& entry, const StudyKind& kind, const StudyKinds& kinds);
 
 /// The whole reference of study files, as Markdown.
-std::string study_reference();
+std::string study_reference(const StudyKinds& kinds);
 
 }  // namespace poesy

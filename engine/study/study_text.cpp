@@ -5,7 +5,8 @@
 
 #include <algorithm>
 
-#include "engine/study/keys.h"
+#include "engine/base/contract.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 
@@ -50,10 +51,23 @@ std::string factors_text(std::span<const FactorIndex> factors, const ModelDescri
   return text + "\n]";
 }
 
+namespace {
+
+/// The keys that hold for the study's kind.
+StudyRows analysis_keys_of(const Study& study) {
+  const StudyKind& kind = *study.analysis.kind;
+  StudyRows keys = analysis_keys(kind);
+  std::erase_if(keys.rows, [&](const StudyRow& row) { return row.name != keys.chooser && !kind.has_key(row.name); });
+  return keys;
+}
+
+}  // namespace
+
 std::string resolved_text(const Study& study) {
+  POESY_EXPECTS(study.analysis.kind != nullptr);
   return fmt::format("{}\n[mechanism]\n{}\n[poses]\n{}\n[errors]\n{}\n[analysis]\n{}\n[solver]\n{}\n[run]\n{}",
                      keys_text(file_keys(), study), keys_text(mechanism_keys(), study), keys_text(poses_keys(), study),
-                     keys_text(errors_keys(), study), keys_text(analysis_keys(), study),
+                     keys_text(errors_keys(), study), keys_text(analysis_keys_of(study), study),
                      keys_text(solver_keys(), study), keys_text(run_keys(), study));
 }
 

@@ -12,10 +12,8 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/files/csv_lines.h"
-#include "engine/run/evaluation.h"
+#include "engine/study/csv_lines.h"
 #include "engine/study/error_words.h"
-#include "engine/study/table_file.h"
 
 namespace poesy {
 namespace {

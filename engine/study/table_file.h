@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "engine/model/model.h"
-#include "engine/run/evaluation.h"
+#include "engine/study/error_table.h"
 #include "engine/study/poses/trajectory.h"
 
 namespace poesy {

@@ -3,6 +3,10 @@ add_test(NAME architecture.include_table
          COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/architecture/include_table.py ${PROJECT_SOURCE_DIR})
 add_test(NAME architecture.include_table_finds_violations
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/include_table_test.py)
+add_test(NAME architecture.kind_names
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/kind_names.py ${PROJECT_SOURCE_DIR})
+add_test(NAME architecture.kind_names_finds_violations
+         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/kind_names_test.py)
 add_test(NAME architecture.readme_commands
          COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/architecture/readme_commands.py $<TARGET_FILE:poesy>)
 add_test(NAME architecture.readme_commands_finds_violations
@@ -20,6 +24,7 @@ add_test(NAME architecture.ctest_lines
 add_test(NAME architecture.ctest_lines_finds_violations
          COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/architecture/ctest_lines_test.py)
 set_tests_properties(architecture.include_table architecture.include_table_finds_violations
+                     architecture.kind_names architecture.kind_names_finds_violations
                      architecture.ctest_lines architecture.ctest_lines_finds_violations
                      architecture.readme_commands architecture.readme_commands_finds_violations
                      architecture.page_links architecture.page_links_finds_violations

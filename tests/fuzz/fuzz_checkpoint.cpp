@@ -12,6 +12,7 @@
 #include "engine/run/evaluation_state.h"
 #include "tests/fuzz/small_plans.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/kinds.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ void offer(State state, const Make& make, const Use& use) {
 }
 
 void offer_to_sensitivity(State state) {
-  static const fuzz::SmallPlan small(Analysis::Kind::sensitivity);
+  static const fuzz::SmallPlan small(&kSensitivityStudy);
   const Plan& plan = small.plan;
   const auto make = [&] { return SensitivityCollector(plan, fuzz::kResponses, 0.95); };
   offer(state, make, [&](SensitivityCollector&& collector) {
@@ -49,7 +50,7 @@ void offer_to_sensitivity(State state) {
 }
 
 void offer_to_monte_carlo(State state) {
-  static const fuzz::SmallPlan small(Analysis::Kind::monte_carlo);
+  static const fuzz::SmallPlan small(&kMonteCarloStudy);
   const Plan& plan = small.plan;
   const auto make = [&] { return MonteCarloCollector(plan, fuzz::kResponses, small.study.analysis); };
   offer(state, make, [&](MonteCarloCollector&& collector) {

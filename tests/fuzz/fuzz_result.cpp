@@ -7,9 +7,10 @@
 
 #include "engine/base/error.h"
 #include "engine/files/output_folder.h"
-#include "engine/files/result_file.h"
 #include "engine/files/shard_file.h"
-#include "engine/kinds/report.h"
+#include "engine/kinds/registry.h"
+#include "engine/kinds/result_file.h"
+#include "engine/report/html/report.h"
 #include "engine/report/json_tables.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
@@ -50,15 +51,17 @@ void limit_children() {
 
 void use(const std::string& path) {
   const StoredResult result = read_result(path);
-  static_cast<void>(summary_text(result, 80));
-  static_cast<void>(failures_text(result, path, 80));
-  const std::vector<Table> tables = result_tables(result, default_ranking(result));
+  const ReportKind& kind = kind_of(result).report;
+  const SolveTally tally = kind.tally(result);
+  static_cast<void>(summary_text(result, tally, 80));
+  static_cast<void>(failures_text(result, tally, path, 80));
+  const std::vector<Table> tables = result_tables(kind, result, {default_ranking(result)});
   for (const std::size_t width : {std::size_t{1}, std::size_t{80}, kUnlimitedWidth}) {
     static_cast<void>(text_of(tables, width));
   }
-  static_cast<void>(json_of(result, tables));
+  static_cast<void>(json_of(result, tally.total(), tables));
   const ReportedResult reported{result, path};
-  static_cast<void>(html_report({&reported, 1}));
+  static_cast<void>(html_report(kind, {&reported, 1}));
   for (const std::string& table : export_tables(path, folder())) {
     fuzz::expect(std::filesystem::path(table).parent_path() == folder(), "a table lies in the folder that was named");
     ::unlink(table.c_str());

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "engine/base/error.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "models/registry.h"
 #include "tests/fuzz/target.h"
 

@@ -19,6 +19,7 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/fuzz/small_plans.h"
+#include "tests/support/kinds.h"
 
 namespace {
 
@@ -58,7 +59,7 @@ void write_sensitivity_seed(const std::string& path) {
   fidelity.linear = {1, 0};
   fidelity.not_converged = {0, 1, 2, 3, 4, 5, 6, 7};
   result.failures = {{0, PoseIndex(1), {SampleIndex(7), SolveStatus::singular}}};
-  write_sensitivity(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_convergence_seed(const std::string& path) {
@@ -68,16 +69,16 @@ void write_convergence_seed(const std::string& path) {
   convergence.min = 1000;
   convergence.max = 3000;
   convergence.relative_error = 0.05;
-  convergence.conf_level = 0.95;
-  convergence.milestones = {1000, 2000};
+  convergence.course.conf_level = 0.95;
+  convergence.course.samples = {1000, 2000};
   const std::size_t indices = result.responses * result.factors;
-  convergence.quantity.assign(2 * indices, 0.5);
-  convergence.half_width.assign(2 * indices, 0.25);
+  convergence.course.value.assign(2 * indices, 0.5);
+  convergence.course.half_width.assign(2 * indices, 0.25);
   convergence.reached.assign(indices, 1);
   convergence.relative_half_width.assign(indices, 0.5);
   convergence.samples.assign(result.factors, 2000);
   example.study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
-  write_sensitivity(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_shard_seed(const std::string& path) {
@@ -88,17 +89,17 @@ void write_shard_seed(const std::string& path) {
 
 void write_cases_seed(const std::string& path) {
   test::Example example;
-  example.study.analysis.kind = Analysis::Kind::evaluate;
-  example.study.analysis.cases = {
+  example.study.analysis.kind = &kEvaluateStudy;
+  asked_of<CaseOptions>(example.study.analysis).cases = {
       {"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}, {"none", {0.0, 0.0, 0.0}}};
   const CaseResult result = case_result(example.evaluation(Pairing::every_pose_with_every_row), NotConverged::include);
-  write_cases(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_identification_seed(const std::string& path) {
   test::Example example;
-  example.study.analysis.kind = Analysis::Kind::identification;
-  example.study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+  example.study.analysis.kind = &kIdentificationStudy;
+  asked_of<IdentificationOptions>(example.study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
   IdentificationResult result;
   result.factors = 2;
   result.groups = 2;
@@ -116,7 +117,7 @@ void write_identification_seed(const std::string& path) {
   result.coupled = {1, 1};
   result.couplings = {{0, 0, 1, 4}, {1, 1, 0, 2}};
   result.solves.by_status = {5, 4, 3, 2, 1};
-  write_identification(path, example.study, example.poses, result, example.facts);
+  write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_results(const std::string& folder) {
@@ -179,8 +180,8 @@ void write_checkpoints(const std::string& path, const std::vector<Bytes>& states
 }
 
 void write_checkpoints(const std::string& folder) {
-  const fuzz::SmallPlan one_by_one(Analysis::Kind::sensitivity);
-  const fuzz::SmallPlan together(Analysis::Kind::monte_carlo);
+  const fuzz::SmallPlan one_by_one(&kSensitivityStudy);
+  const fuzz::SmallPlan together(&kMonteCarloStudy);
   write_checkpoints(folder + "/sensitivity", states_of([&](const RunOptions& options) {
                       run_sensitivity(one_by_one.plan, *one_by_one.model, 0.95, options);
                     }));

@@ -5,17 +5,18 @@
 #include "engine/run/evaluation.h"
 #include "engine/study/plan.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy::fuzz {
 
 /// A study of the fake mechanism at two poses, with a last unit that is smaller than the others.
 struct SmallPlan {
-  explicit SmallPlan(Analysis::Kind kind)
+  explicit SmallPlan(const StudyKind* kind)
       : study(study_of(kind)),
         model(build_model(study.mechanism)),
         plan(study, select_poses(study.poses, *model).poses) {}
 
-  static Study study_of(Analysis::Kind kind) {
+  static Study study_of(const StudyKind* kind) {
     static const Catalog catalog = test::fake_catalog();
     Study study;
     study.mechanism = {&catalog.front(), {test::FakeModel::kArm}, 0, {}};
@@ -25,7 +26,7 @@ struct SmallPlan {
     study.analysis.kind = kind;
     study.analysis.factors = {FactorIndex(0), FactorIndex(1)};
     study.analysis.samples = 2 * Plan::kUnitSamples + 300;
-    study.analysis.quantiles = {0.1, 0.9};
+    test::set_quantiles(study.analysis, {0.1, 0.9});
     return study;
   }
 

@@ -13,7 +13,7 @@ poesy_test(three_prs_test LABELS unit
                    models/three_prs/kinematics_test.cpp models/three_prs/machine_test.cpp
                    models/three_prs/model_test.cpp models/three_prs/separation_test.cpp
                    models/three_prs/trajectory_test.cpp
-           LINKS poesy_models poesy_study nlohmann_json::nlohmann_json DATA)
+           LINKS poesy_models poesy_kinds nlohmann_json::nlohmann_json DATA)
 poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_kinds poesy_models)
 # Of every mechanism in the registry, whatever it is.
 poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_kinds poesy_models)

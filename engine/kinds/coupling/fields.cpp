@@ -6,6 +6,9 @@
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/options.h"
+#include "engine/kinds/coupling/stored.h"
+#include "engine/kinds/registry.h"
 
 namespace poesy {
 namespace {
@@ -89,7 +92,7 @@ struct Membership {
 };
 
 Membership membership(const Study& study) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
   for (std::size_t s = 0; s < coupling.sources.size(); ++s) {
     const auto blocks = error_blocks(coupling.sources[s], coupling.pattern, study.model());
@@ -113,7 +116,7 @@ void add_axes(ResultBuilder& result, const CouplingStudy& coupling) {
 
 /// The sizes, the subsets, and where each error belongs.
 void add_choices(ResultBuilder& result, const Study& study) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   StoredCoupling sizes;
   sizes.linear = or_nan(coupling.linear, coupling.sizes());
   sizes.angular = or_nan(coupling.angular, coupling.sizes());
@@ -138,7 +141,7 @@ void append_size_columns(CsvTable& table, const StoredCoupling& stored, std::siz
 
 /// A table with a line for each size and subset, and for each of `repeated` poses.
 CsvTable subset_table(const StoredResult& result, const std::string& name, std::size_t repeated) {
-  const StoredCoupling& stored = result.coupling;
+  const StoredCoupling& stored = coupling_of(result);
   const std::size_t subsets = stored.found.subsets;
   CsvTable table{
       name,
@@ -156,7 +159,7 @@ void append_response_columns(CsvTable& table, const StoredResult& result, const 
       if (field.axes != axes || field.name == "sum") continue;
       const std::string name = response.name + "_" + (field.name == "count" ? "poses" : field.name);
       table.columns.push_back(field_column(with_unit(name, csv_unit(field.unit, result, &response)), field,
-                                           result.coupling.found, r * table.lines));
+                                           coupling_of(result).found, r * table.lines));
     }
   }
 }
@@ -172,31 +175,32 @@ CsvTable curve_table(const StoredResult& result) {
   return table;
 }
 
-}  // namespace
-
-void add_coupling(ResultBuilder& result, const Study& study, const CouplingResult& found) {
-  add_axes(result, study.analysis.coupling);
+void write(ResultBuilder& result, const Study& study, const std::any& any) {
+  const auto& found = std::any_cast<const CouplingResult&>(any);
+  add_names(result, study, study.analysis.factors);
+  add_axes(result, asked_of<CouplingStudy>(study.analysis));
   write_group(result, kCoupling, found);
   add_choices(result, study);
   add_solver(result, {"size", "pose"}, found.solves);
 }
 
-void read_coupling(const h5::File& file, StoredResult& result) {
-  StoredCoupling& stored = result.coupling;
+void read(const h5::File& file, StoredResult& result) {
+  StoredCoupling stored;
   stored.size_names = file.read<std::string>("/size");
   stored.sources = file.read<std::string>("/source");
   stored.subsets = file.read<std::string>("/subset");
   read_fields(file, "/coupling", kSizes, stored);
   read_group(file, kCoupling, stored.found);
   stored.found.solves = read_solver(file, {"size", "pose"});
+  result.found = std::move(stored);
 }
 
-void append_coupling_tables(CsvTables& tables, const StoredResult& result) {
+void append_tables(CsvTables& tables, const StoredResult& result) {
   tables.push_back(curve_table(result));
   CsvTable summary = subset_table(result, "coupling_summary", 1);
   append_response_columns(summary, result, kSummaryAxes);
   tables.push_back(std::move(summary));
-  const StoredCoupling& stored = result.coupling;
+  const StoredCoupling& stored = coupling_of(result);
   const std::size_t poses = result.poses.size();
   CsvTable solves{"not_converged",
                   {"pose", [poses](std::size_t line) { return std::to_string(line % poses); }},
@@ -205,5 +209,9 @@ void append_coupling_tables(CsvTables& tables, const StoredResult& result) {
   append_solve_columns(solves, stored.found.solves);
   tables.push_back(std::move(solves));
 }
+
+}  // namespace
+
+constinit const FileKind kCouplingFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

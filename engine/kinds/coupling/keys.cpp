@@ -5,12 +5,15 @@
 #include <set>
 
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
-#include "engine/study/study_text.h"
 #include "engine/kinds/coupling/rows.h"
+#include "engine/study/error_words.h"
+#include "engine/study/study_kind.h"
+#include "engine/study/study_text.h"
 
 namespace poesy {
 namespace {
+
+constexpr std::array<std::string_view, 5> kCouplingKeys{"linear", "angular", "limbs", "components", "sources"};
 
 using PatternChoice = ErrorPattern::Choice;
 
@@ -24,9 +27,8 @@ PatternChoice read_choice(const StudyValue& value) {
 }
 
 void read_limbs(const StudyValue& value, Study& study, const Reading&) {
-  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
   const ModelDescription& model = study.model();
-  ErrorPattern& pattern = study.analysis.coupling.pattern;
+  ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
   if (value.is_text()) {
     pattern.limbs = read_choice(value);
     return;
@@ -43,8 +45,7 @@ void read_limbs(const StudyValue& value, Study& study, const Reading&) {
 }
 
 void read_components(const StudyValue& value, Study& study, const Reading&) {
-  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
-  ErrorPattern& pattern = study.analysis.coupling.pattern;
+  ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
   if (value.is_text()) {
     pattern.components = read_choice(value);
     return;
@@ -103,7 +104,7 @@ std::vector<ErrorSource> usual_sources(const StudySection& analysis, const Model
                      std::string(kNameThem));
   }
   std::vector<ErrorSource> sources;
-  for (const CouplingSource& usual : model.sources) {
+  for (const SourceSet& usual : model.sources) {
     sources.push_back({usual.name, model.find_set(usual.set)->factors});
     const ErrorSource& source = sources.back();
     if (!error_blocks(source, pattern, model).empty()) continue;
@@ -115,14 +116,13 @@ std::vector<ErrorSource> usual_sources(const StudySection& analysis, const Model
 }
 
 void read_sources(const StudyValue& value, Study& study, const Reading&) {
-  if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
   const std::vector<StudyValue> list = value.list();
   if (list.size() < kFewestSources || list.size() > kMostSources) {
     value.fail("has " + std::to_string(list.size()) + (list.size() == 1 ? " source" : " sources") +
                    ", but there must be " + std::to_string(kFewestSources) + " to " + std::to_string(kMostSources),
                "group factors into fewer or more sources");
   }
-  CouplingStudy& coupling = study.analysis.coupling;
+  CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   for (const StudyValue& one : list) {
     coupling.sources.push_back(read_source(one.section(), coupling.sources, coupling.pattern, study.model()));
   }
@@ -130,18 +130,19 @@ void read_sources(const StudyValue& value, Study& study, const Reading&) {
 
 std::string sources_lines(const Study& study) {
   std::string text;
-  for (const ErrorSource& source : study.analysis.coupling.sources) {
+  for (const ErrorSource& source : asked_of<CouplingStudy>(study.analysis).sources) {
     text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", in_quotes(source.name),
                         factors_text(source.factors, study.model()));
   }
   return text;
 }
 
+using Sizes = std::vector<double>;
+
 /// Sizes of this dimension.
-KeyValue<Study> sizes_at(Dimension dimension, std::vector<double> CouplingStudy::*member) {
+KeyValue<Study> sizes_at(Dimension dimension, Sizes CouplingStudy::*member) {
   const auto read = [=](const StudyValue& value, Study& study) {
-    if (study.analysis.kind != Analysis::Kind::coupling) return;  // `evaluate` passes over them
-    std::vector<double>& sizes = study.analysis.coupling.*member;
+    Sizes& sizes = asked_of<CouplingStudy>(study.analysis).*member;
     for (const StudyValue& size : value.list()) sizes.push_back(size.positive_quantity(dimension));
     if (sizes.empty()) value.fail("is empty", "write at least one size");
   };
@@ -150,12 +151,42 @@ KeyValue<Study> sizes_at(Dimension dimension, std::vector<double> CouplingStudy:
 
 template <Dimension kDimension>
 std::string sizes_line(const Study& study) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::vector<std::string> sizes;
   for (const double size : kDimension == Dimension::length ? coupling.linear : coupling.angular) {
     sizes.push_back(exact_value(size, kDimension));
   }
   return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
+}
+
+/// Whether an error of this dimension is among the literature's sources.
+bool has_source_of(const ModelDescription& model, Dimension dimension) {
+  return std::ranges::any_of(model.sources, [&](const SourceSet& source) {
+    return std::ranges::any_of(model.find_set(source.set)->factors,
+                               [&](FactorIndex factor) { return model.factors[factor.value].dimension == dimension; });
+  });
+}
+
+template <Dimension kDimension>
+std::string shown_sizes(const TemplateLines& lines, const Study& study) {
+  std::vector<std::string> sizes;
+  for (const double factor : {0.1, 0.3, 0.5}) {
+    sizes.push_back(fmt::format("\"{} {}\"", factor, display_unit(kDimension).name));
+  }
+  const std::string_view key = error_kind(kDimension);
+  const std::string_view sign = has_source_of(study.model(), kDimension) ? "" : "# ";
+  return lines.explained("analysis", key, fmt::format("{}{} = {}", sign, key, list_text(sizes)));
+}
+
+std::string shown_sources(const TemplateLines& lines, const Study& study) {
+  std::string text = "\n" + lines.explanation_lines("analysis", "sources") + lines.keys_lines("analysis.sources") +
+                     "# Factor sets:\n" + sets_comment(study.model());
+  for (const SourceSet& source : study.model().sources) {
+    text +=
+        fmt::format("[[analysis.sources]]\nname = {}\nfactors = {}\n\n", in_quotes(source.name), in_quotes(source.set));
+  }
+  text.pop_back();
+  return text;
 }
 
 std::string choice_text(PatternChoice choice, const std::string& some) {
@@ -164,12 +195,12 @@ std::string choice_text(PatternChoice choice, const std::string& some) {
 }
 
 std::string limbs_text(const Study& study) {
-  const ErrorPattern& pattern = study.analysis.coupling.pattern;
+  const ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
   return choice_text(pattern.limbs, std::to_string(pattern.limb));
 }
 
 std::string components_text(const Study& study) {
-  const ErrorPattern& pattern = study.analysis.coupling.pattern;
+  const ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
   std::vector<std::string> axes;
   for (const std::string& axis : pattern.axes) axes.push_back(in_quotes(axis));
   return choice_text(pattern.components, list_text(axes));
@@ -229,17 +260,8 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
   }
 }
 
-}  // namespace
-
-void complete_coupling(Study& whole, const Reading& reading) {
-  const StudySection analysis = reading.root.section("analysis");
-  const ModelDescription& model = whole.model();
-  CouplingStudy& study = whole.analysis.coupling;
-  const auto linear = analysis.find("linear");
-  const auto angular = analysis.find("angular");
-  if (linear && angular) require_equal_numbers(*angular, study);
-  if (linear || angular) require_different_runs(linear ? *linear : *angular, study);
-  if (reading.use == StudyUse::evaluate) return;
+/// Fills in the literature's sources, and asks for a size of each of their errors.
+void complete_sources(const StudySection& analysis, const ModelDescription& model, CouplingStudy& study) {
   if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
   require_sizes(analysis, "linear", Dimension::length, study, model);
   require_sizes(analysis, "angular", Dimension::angle, study, model);
@@ -247,17 +269,31 @@ void complete_coupling(Study& whole, const Reading& reading) {
   refuse_idle_sizes(analysis, "angular", Dimension::angle, study, model);
 }
 
-std::vector<StudyRow> coupling_rows_of_keys() {
+void complete_coupling(Study& whole, const Reading& reading) {
+  const StudySection analysis = reading.root.section("analysis");
+  const ModelDescription& model = whole.model();
+  CouplingStudy& study = asked_of<CouplingStudy>(whole.analysis);
+  const auto linear = analysis.find("linear");
+  const auto angular = analysis.find("angular");
+  if (linear && angular) require_equal_numbers(*angular, study);
+  if (linear || angular) require_different_runs(linear ? *linear : *angular, study);
+  if (reading.use == StudyUse::run) complete_sources(analysis, model, study);
+  whole.analysis.factors = coupling_factors(study, model);
+}
+
+std::vector<StudyRow> coupling_key_rows() {
   return {StudyRow{.name = "linear",
                    .value = sizes_at(Dimension::length, &CouplingStudy::linear),
                    .meaning =
                        "Sizes of lengths: each is a run of its own, in which every error is at once as large as that. "
                        "Required where a source has lengths; as many as of angular, if there are both.",
-                   .lines = sizes_line<Dimension::length>},
+                   .lines = sizes_line<Dimension::length>,
+                   .shown = shown_sizes<Dimension::length>},
           StudyRow{.name = "angular",
                    .value = sizes_at(Dimension::angle, &CouplingStudy::angular),
                    .meaning = "Sizes of angles, in the same way.",
-                   .lines = sizes_line<Dimension::angle>},
+                   .lines = sizes_line<Dimension::angle>,
+                   .shown = shown_sizes<Dimension::angle>},
           StudyRow{.name = "limbs",
                    .value = {.type = "text or integer", .text = limbs_text},
                    .meaning =
@@ -276,22 +312,59 @@ std::vector<StudyRow> coupling_rows_of_keys() {
                    .meaning = "2 to 8 sources of errors: each alone, and every combination of them at once.",
                    .reader = read_sources,
                    .lines = sources_lines,
-                   .late = 2}};
+                   .late = 2,
+                   .shown = shown_sources}};
 }
 
-StudyTable source_table() {
-  return {.paths = {"analysis.sources"},
-          .meaning = "For kind = \"coupling\".",
-          .keys = {{.name = "name",
-                    .type = "text",
-                    .usual = "source 1, source 2 and so on",
-                    .meaning = "Name of the source, without '+', commas and quotes."},
-                   {.name = "factors",
-                    .type = "text or list of texts",
-                    .required = true,
-                    .missing = "write a factor set or a list of factors",
-                    .meaning = "Its errors: a factor set, all, or a list of factors, of which no other source has "
-                               "one."}}};
+StudyTables source_tables() {
+  return {{.paths = {"analysis.sources"},
+           .meaning = "For kind = \"coupling\".",
+           .keys = {{.name = "name",
+                     .type = "text",
+                     .usual = "source 1, source 2 and so on",
+                     .meaning = "Name of the source, without '+', commas and quotes."},
+                    {.name = "factors",
+                     .type = "text or list of texts",
+                     .required = true,
+                     .missing = "write a factor set or a list of factors",
+                     .meaning = "Its errors: a factor set, all, or a list of factors, of which no other source has "
+                                "one."}}}};
 }
+
+void check_sizes(const StudySection& analysis, const Study& study, const Model& model) {
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  for (const FactorIndex factor : study.analysis.factors) {
+    const Dimension dimension = model.description().factors[factor.value].dimension;
+    const Sizes& sizes = dimension == Dimension::length ? coupling.linear : coupling.angular;
+    for (std::size_t z = 0; z < sizes.size(); ++z) {
+      const auto problem = beyond_bound(model, factor, sizes[z], "an error");
+      if (problem) analysis.require(error_kind(dimension)).list()[z].fail(*problem, kTooLargeRemedy);
+    }
+  }
+}
+
+std::optional<Refusal> no_sources(const ModelDescription& model) {
+  if (!model.sources.empty()) return std::nullopt;
+  return Refusal{"model '" + model.name + "' suggests no sources of errors, so its coupling has no template",
+                 "choose another kind, or write [[analysis.sources]] in a study of this kind"};
+}
+
+AtPose coupling_at_pose(const Study& study) {
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  const auto sets = static_cast<double>(coupling.sizes() * coupling_rows(coupling, study.model()).errors.size());
+  return {sets, "sizes times sets of sources", sets, "sizes times sets of sources"};
+}
+
+}  // namespace
+
+const StudyKind kCouplingStudy{.name = "coupling",
+                               .asks = "what sources of errors do one by one and together",
+                               .keys = kCouplingKeys,
+                               .rows = coupling_key_rows,
+                               .tables = source_tables,
+                               .no_template = no_sources,
+                               .complete = complete_coupling,
+                               .check_errors = check_sizes,
+                               .at_pose = coupling_at_pose};
 
 }  // namespace poesy

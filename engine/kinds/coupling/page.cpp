@@ -5,17 +5,24 @@
 #include <span>
 
 #include "engine/kinds/coupling/coupling.h"
-#include "engine/kinds/report_kind.h"
+#include "engine/kinds/coupling/stored.h"
+#include "engine/kinds/registry.h"
 #include "engine/report/display.h"
 
 namespace poesy {
 namespace {
 
+/// Norms have no sign and cannot tell what cancels, so they are not shown.
+ShownCells cells(const StoredResult& result) {
+  const CouplingResult& found = coupling_of(result).found;
+  return shown_cells(result, found.sizes * (2 * found.subsets + 3), result.signed_headline);
+}
+
 /// The curves of a coupling result: one panel for each response and size. Refers to all that it is given.
 class Curves {
  public:
   Curves(const StoredResult& result, const PoseFigures& figures)
-      : result_(result), found_(result.coupling.found), figures_(figures) {}
+      : result_(result), found_(coupling_of(result).found), figures_(figures) {}
 
   Lines effects() const {
     return lines("", [&](std::size_t r, std::size_t z) { return effect_series(r, z); });
@@ -48,9 +55,9 @@ class Curves {
 
  private:
   /// The first subsets are the sources one by one.
-  std::size_t sources() const { return std::min(result_.coupling.sources.size(), found_.subsets); }
+  std::size_t sources() const { return std::min(coupling_of(result_).sources.size(), found_.subsets); }
   std::size_t last() const { return found_.subsets - 1; }
-  const std::string& subset(std::size_t k) const { return result_.coupling.subsets[k]; }
+  const std::string& subset(std::size_t k) const { return coupling_of(result_).subsets[k]; }
   /// Each response with each size, of which the last comes first: it is what tables show.
   std::vector<std::pair<std::size_t, std::size_t>> panels() const {
     std::vector<std::pair<std::size_t, std::size_t>> list;
@@ -60,7 +67,7 @@ class Curves {
     return list;
   }
   std::string panel_label(std::size_t r, std::size_t z) const {
-    return fmt::format("{} at {}", result_.responses[r].name, result_.coupling.size_names[z]);
+    return fmt::format("{} at {}", result_.responses[r].name, coupling_of(result_).size_names[z]);
   }
 
   template <class SeriesOf>
@@ -131,8 +138,8 @@ void add_tables(const StoredResult& result, std::span<const Table> tables, Secti
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (result.coupling.found.subsets == 0) return;
-  const PoseFigures figures(result, page);
+  if (coupling_of(result).found.subsets == 0) return;
+  const PoseFigures figures(result, cells(result), page);
   const Curves curves(result, figures);
   Section& section = page.add_section("together", "What the sources do, alone and together");
   section.paragraph(
@@ -157,16 +164,10 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 }
 
 SolveTally tally(const StoredResult& result) {
-  return {"size", result.coupling.size_names, result.poses.size(), result.coupling.found.solves};
+  return {"size", coupling_of(result).size_names, result.poses.size(), coupling_of(result).found.solves};
 }
 
-StudyWords words(const StoredResult& result) { return {.sizes = result.coupling.size_names}; }
-
-/// Norms have no sign and cannot tell what cancels, so they are not shown.
-ShownCells cells(const StoredResult& result) {
-  const CouplingResult& found = result.coupling.found;
-  return shown_cells(result, found.sizes * (2 * found.subsets + 3), result.signed_headline);
-}
+StudyWords words(const StoredResult& result) { return {.sizes = coupling_of(result).size_names}; }
 
 /// Items are subsets at a size.
 std::vector<std::string> sized_subsets(const StoredCoupling& coupling) {
@@ -178,8 +179,8 @@ std::vector<std::string> sized_subsets(const StoredCoupling& coupling) {
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const CouplingResult& found = result.coupling.found;
-  Comparable all = comparable_by_response(result, "subset", sized_subsets(result.coupling));
+  const CouplingResult& found = coupling_of(result).found;
+  Comparable all = comparable_by_response(result, "subset", sized_subsets(coupling_of(result)));
   add_quantity(all, result, "largest effect over the poses", "effect_max",
                [&](std::size_t r, std::size_t n) { return found.effect_max[r * found.sizes * found.subsets + n]; });
   return all;
@@ -187,8 +188,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 
 }  // namespace
 
-constinit const ReportKind kCouplingReport{.name = "coupling",
-                                           .tally = tally,
+constinit const ReportKind kCouplingReport{.tally = tally,
                                            .tables = coupling_tables,
                                            .words = words,
                                            .shown_cells = cells,

@@ -4,8 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "engine/kinds/coupling/options.h"
 #include "engine/model/model.h"
 #include "engine/run/evaluation.h"
+#include "engine/study/error_table.h"
 #include "engine/study/study.h"
 
 namespace poesy {

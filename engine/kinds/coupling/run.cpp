@@ -1,6 +1,7 @@
 #include "engine/kinds/coupling/run.h"
 
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/options.h"
 #include "engine/kinds/coupling/rows.h"
 #include "engine/run/evaluation.h"
 
@@ -8,16 +9,16 @@ namespace poesy {
 namespace {
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
-  const CouplingStudy& coupling = run.study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(run.study.analysis);
   const ModelDescription& model = run.model.description();
   const auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
                                          Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
   if (!evaluation || !run.makes_result()) return std::nullopt;
-  return StudyResult{coupling_result(*evaluation, coupling, model, run.study.not_converged), std::nullopt};
+  return StudyResult{coupling_result(*evaluation, coupling, model, run.study.not_converged), std::nullopt, {}};
 }
 
 Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  const CouplingStudy& coupling = study.analysis.coupling;
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   const CouplingRows rows = coupling_rows(coupling, study.model());
   const ErrorTable table = coupling_table(coupling, study.model());
   const std::size_t solves = table.rows * poses.size();

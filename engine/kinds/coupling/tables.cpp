@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/stored.h"
 #include "engine/report/display.h"
 #include "engine/report/study_settings.h"
 #include "engine/report/tables.h"
@@ -24,7 +25,7 @@ Cell pose_cell(bool known, std::int64_t pose) {
 }
 
 std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::size_t at) {
-  const StoredCoupling& stored = result.coupling;
+  const StoredCoupling& stored = coupling_of(result);
   const CouplingResult& found = stored.found;
   const double rounding = rounding_at(stored, at / found.subsets % found.sizes);
   const auto cell = [&](double value) {
@@ -47,7 +48,7 @@ std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::siz
 }
 
 Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
-  const StoredCoupling& stored = result.coupling;
+  const StoredCoupling& stored = coupling_of(result);
   const CouplingResult& found = stored.found;
   const NamedUnit& response = result.responses[r];
   const std::string_view unit = display(response).name;
@@ -70,7 +71,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
 
 /// Whether a source alone does nothing at any pose, at any size, to one of the responses shown.
 bool does_nothing(const StoredResult& result, const std::string& source) {
-  const StoredCoupling& stored = result.coupling;
+  const StoredCoupling& stored = coupling_of(result);
   const CouplingResult& found = stored.found;
   const auto k = static_cast<std::size_t>(std::ranges::find(stored.subsets, source) - stored.subsets.begin());
   if (k == found.subsets) return false;
@@ -88,7 +89,7 @@ bool same_in_all_limbs(const StoredResult& result) {
 }
 
 std::vector<std::string> notes(const StoredResult& result) {
-  const StoredCoupling& stored = result.coupling;
+  const StoredCoupling& stored = coupling_of(result);
   std::vector<std::string> list{
       fmt::format("{} of errors, alone and together; largest values over {}",
                   counted(stored.sources.size(), "source", "sources"), counted(stored.found.poses, "pose", "poses")),
@@ -112,7 +113,7 @@ std::vector<std::string> notes(const StoredResult& result) {
 
 std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions&) {
   std::vector<Table> tables;
-  for (std::size_t z = 0; z < result.coupling.found.sizes; ++z) {
+  for (std::size_t z = 0; z < coupling_of(result).found.sizes; ++z) {
     for (const std::size_t r : result.signed_headline) tables.push_back(response_table(result, z, r));
   }
   if (!tables.empty()) tables.back().notes = notes(result);

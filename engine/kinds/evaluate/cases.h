@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/kinds/evaluate/options.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/study/study.h"

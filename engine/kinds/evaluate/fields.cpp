@@ -4,7 +4,10 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/options.h"
 #include "engine/kinds/evaluate/row_outcomes.h"
+#include "engine/kinds/evaluate/stored.h"
+#include "engine/kinds/registry.h"
 #include "engine/run/evaluation.h"
 #include "engine/study/table_file.h"
 
@@ -204,20 +207,21 @@ std::vector<std::string> component_units(const std::string& text, std::size_t co
 }
 
 /// The first cells of a line: the label of its row of errors, where rows have labels, and a number.
-std::string labelled(const StoredResult& result, std::size_t row, std::size_t number) {
-  const std::string label = result.labels.names.empty() ? "" : result.labels.names[row] + ",";
+std::string labelled(const RowLabels& labels, std::size_t row, std::size_t number) {
+  const std::string label = labels.names.empty() ? "" : labels.names[row] + ",";
   return label + std::to_string(number);
 }
 
 /// The heading of these cells.
-std::string labelled(const StoredResult& result, const std::string& number) {
-  return result.labels.names.empty() ? number : result.labels.column + "," + number;
+std::string labelled(const RowLabels& labels, const std::string& number) {
+  return labels.names.empty() ? number : labels.column + "," + number;
 }
 
 /// What a solve gave. at(line): its position, counted pose by pose.
 template <class At>
 void append_solve_columns(CsvTable& table, const StoredResult& result, const At& at) {
-  const EvaluationResult& found = result.evaluation;
+  const StoredEvaluation& stored = evaluation_of(result);
+  const EvaluationResult& found = stored.evaluation;
   const auto append = [&](const std::string& heading, auto number) {
     table.columns.push_back(
         {heading, [at, number](std::size_t line) { return static_cast<double>(number(at(line))); }});
@@ -229,7 +233,7 @@ void append_solve_columns(CsvTable& table, const StoredResult& result, const At&
            [&, r](std::size_t k) { return found.response[r * found.status.size() + k]; });
   }
   std::size_t d = 0;
-  for (const Detail& detail : result.details) {
+  for (const Detail& detail : stored.details) {
     const auto units = component_units(detail.unit, detail.components.size());
     for (std::size_t k = 0; k < units.size(); ++k, ++d) {
       append(with_unit(detail.name + "_" + detail.components[k], units[k]),
@@ -242,11 +246,13 @@ void append_solve_columns(CsvTable& table, const StoredResult& result, const At&
 
 /// Pose by pose.
 CsvTable solve_table(const StoredResult& result) {
-  const std::size_t samples = result.evaluation.samples;
-  CsvTable table{"evaluate",
-                 {labelled(result, "pose"),
-                  [&, samples](std::size_t at) { return labelled(result, row_of_solve(result, at), at / samples); }},
-                 result.evaluation.status.size()};
+  const StoredEvaluation& stored = evaluation_of(result);
+  const std::size_t samples = stored.evaluation.samples;
+  CsvTable table{
+      "evaluate",
+      {labelled(stored.labels, "pose"),
+       [&, samples](std::size_t at) { return labelled(stored.labels, row_of_solve(stored, at), at / samples); }},
+      stored.evaluation.status.size()};
   table.columns.push_back({"sample", [samples](std::size_t at) { return static_cast<double>(at % samples); }});
   append_solve_columns(table, result, std::identity());
   return table;
@@ -254,55 +260,57 @@ CsvTable solve_table(const StoredResult& result) {
 
 /// Case by case.
 CsvTable case_solve_table(const StoredResult& result) {
-  const std::size_t poses = result.evaluation.poses;
-  const std::size_t cases = result.cases.size();
+  const StoredEvaluation& stored = evaluation_of(result);
+  const std::size_t poses = stored.evaluation.poses;
+  const std::size_t cases = stored.cases.size();
   CsvTable table{
-      "evaluate", {"case", [&, poses](std::size_t line) { return result.cases[line / poses]; }}, cases * poses};
+      "evaluate", {"case", [&, poses](std::size_t line) { return stored.cases[line / poses]; }}, cases * poses};
   table.columns.push_back({"pose", [poses](std::size_t line) { return static_cast<double>(line % poses); }});
   append_solve_columns(table, result, [poses, cases](std::size_t line) { return line % poses * cases + line / poses; });
   return table;
 }
 
 CsvTable joint_table(const StoredResult& result) {
-  const std::size_t joints = result.joints.size();
-  const std::vector<double>& values = result.evaluation.joint_displacement;
+  const StoredEvaluation& stored = evaluation_of(result);
+  const std::size_t joints = stored.joints.size();
+  const std::vector<double>& values = stored.evaluation.joint_displacement;
   CsvTable table = lines_of_poses(result, "joint_displacements");
   table.lines = values.size() / std::max<std::size_t>(joints, 1);
   for (std::size_t j = 0; j < joints; ++j) {
-    table.columns.push_back(list_column(with_unit(result.joints[j], "rad or m"), values, j, joints));
+    table.columns.push_back(list_column(with_unit(stored.joints[j], "rad or m"), values, j, joints));
   }
   return table;
 }
 
 CsvTable error_table(const StoredResult& result) {
+  const StoredEvaluation& stored = evaluation_of(result);
   const std::size_t factors = result.factors.size();
-  CsvTable table{"errors", {}, result.errors.size() / std::max<std::size_t>(factors, 1)};
-  if (result.cases.empty()) {
-    const bool row_by_row = result.pairing == Pairing::row_by_row;
-    table.first = {labelled(result, row_by_row ? "pose" : "sample"),
-                   [&](std::size_t row) { return labelled(result, row, row); }};
+  CsvTable table{"errors", {}, stored.errors.size() / std::max<std::size_t>(factors, 1)};
+  if (stored.cases.empty()) {
+    const bool row_by_row = stored.pairing == Pairing::row_by_row;
+    table.first = {labelled(stored.labels, row_by_row ? "pose" : "sample"),
+                   [&](std::size_t row) { return labelled(stored.labels, row, row); }};
   } else {
-    table.first = {"case", [&](std::size_t c) { return result.cases[c]; }};
+    table.first = {"case", [&](std::size_t c) { return stored.cases[c]; }};
   }
   for (std::size_t p = 0; p < factors; ++p) {
     const NamedUnit& factor = result.factors[p];
-    table.columns.push_back(list_column(with_unit(factor.name, factor.unit), result.errors, p, factors));
+    table.columns.push_back(list_column(with_unit(factor.name, factor.unit), stored.errors, p, factors));
   }
   return table;
 }
 
 /// A line for each row of errors that has a label.
 CsvTable part_table(const StoredResult& result) {
-  CsvTable table{"parts",
-                 {result.labels.column, [&](std::size_t row) { return result.labels.names[row]; }},
-                 result.labels.names.size()};
+  const RowLabels& labels = evaluation_of(result).labels;
+  CsvTable table{"parts", {labels.column, [&](std::size_t row) { return labels.names[row]; }}, labels.names.size()};
   const auto append = [&](const std::string& heading, const std::vector<RowOutcome>& outcomes, auto member) {
     table.columns.push_back(
         {heading, [outcomes, member](std::size_t row) { return static_cast<double>(outcomes[row].*member); }});
   };
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
-    const std::vector<RowOutcome> outcomes = row_outcomes(result, r);
+    const std::vector<RowOutcome> outcomes = row_outcomes(evaluation_of(result), r);
     if (r == 0) append("poses", outcomes, &RowOutcome::solved);
     append(with_unit(response.name + "_mean", response.unit), outcomes, &RowOutcome::mean);
     append(with_unit(response.name + "_extreme", response.unit), outcomes, &RowOutcome::extreme);
@@ -312,9 +320,10 @@ CsvTable part_table(const StoredResult& result) {
 }
 
 CsvTable case_sum_table(const StoredResult& result) {
-  const CaseResult& found = result.case_result;
-  const std::size_t cases = result.cases.size();
-  CsvTable table{"cases", {"case", [&](std::size_t c) { return result.cases[c]; }}, cases};
+  const StoredEvaluation& stored = evaluation_of(result);
+  const CaseResult& found = stored;
+  const std::size_t cases = stored.cases.size();
+  CsvTable table{"cases", {"case", [&](std::size_t c) { return stored.cases[c]; }}, cases};
   table.columns.push_back(list_column("poses", found.count));
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
@@ -327,18 +336,27 @@ CsvTable case_sum_table(const StoredResult& result) {
   return table;
 }
 
-}  // namespace
+/// What `poesy evaluate` found. Refers to all.
+struct EvaluatedTable {
+  const EvaluationResult& found;
+  const ErrorTable& errors;
+  Pairing pairing;
+};
 
-void add_evaluation(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found,
-                    const ErrorTable& errors, Pairing pairing) {
-  result.add_axis("sample", axis_numbers(found.samples), {"1", "Number of the sample at each pose, from 0"});
-  add_solves(result, model, found, kTableAxes);
-  add_errors(result, errors, pairing == Pairing::row_by_row ? "pose" : "sample", pairing);
-  add_limits(result, model, found.verdicts);
+void write_table(ResultBuilder& result, const Study& study, const EvaluatedTable& table) {
+  const ModelDescription& model = study.model();
+  add_names(result, study, table.errors.factors);
+  result.add_axis("sample", axis_numbers(table.found.samples), {"1", "Number of the sample at each pose, from 0"});
+  add_solves(result, model, table.found, kTableAxes);
+  add_errors(result, table.errors, table.pairing == Pairing::row_by_row ? "pose" : "sample", table.pairing);
+  add_limits(result, model, table.found.verdicts);
 }
 
-void add_cases(ResultBuilder& result, const Study& study, const ErrorTable& errors, const CaseResult& found) {
-  result.add_axis("case", texts(study.analysis.cases, &ErrorCase::name), {"1", "Name of the case"});
+void write_cases(ResultBuilder& result, const Study& study, const CaseResult& found) {
+  const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
+  const ErrorTable errors = case_table(cases);
+  add_names(result, study, errors.factors);
+  result.add_axis("case", texts(cases, &ErrorCase::name), {"1", "Name of the case"});
   add_solves(result, study.model(), transposed(found.evaluation), kCaseAxes);
   add_errors(result, errors, "case", Pairing::every_pose_with_every_row);
   add_limits(result, study.model(), found.evaluation.verdicts);
@@ -346,34 +364,73 @@ void add_cases(ResultBuilder& result, const Study& study, const ErrorTable& erro
   write_fields(result, "/evaluate", kSumFields, found);
 }
 
-void read_evaluation(const h5::File& file, StoredResult& result) {
-  result.details = read_details(file);
-  result.joints = file.read<std::string>("/joint");
-  const bool has_cases = file.exists("/case");
-  if (has_cases) {
-    result.cases = file.read<std::string>("/case");
-    read_fields(file, "/evaluate", kSumFields, result.case_result);
-    result.evaluation = transposed(read_solves(file, result.responses, result.details, kCaseAxes));
-  } else {
-    result.evaluation = read_solves(file, result.responses, result.details, kTableAxes);
-  }
-  const bool row_by_row = !has_cases && file.attribute<std::string>("/errors", "pairing").at(0) == kRowByRow;
-  result.pairing = row_by_row ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
-  const std::string rows = row_by_row ? "pose" : has_cases ? "case" : "sample";
-  result.evaluation.verdicts = read_limits(file, result);
-  if (result.evaluation.verdicts) check_rows(result.evaluation.verdicts->limits, axis_length(file, rows));
-  result.errors = read_along<double>(file, "/errors/values", {rows, "factor"});
-  result.labels = read_labels(file, rows);
+void write(ResultBuilder& result, const Study& study, const std::any& found) {
+  if (const auto* cases = std::any_cast<CaseResult>(&found)) return write_cases(result, study, *cases);
+  write_table(result, study, std::any_cast<const EvaluatedTable&>(found));
 }
 
-void append_evaluation_tables(CsvTables& tables, const StoredResult& result) {
-  append_limit_table(tables, result, result.evaluation.verdicts);
-  const bool has_cases = !result.cases.empty();
+void read(const h5::File& file, StoredResult& result) {
+  StoredEvaluation stored;
+  stored.details = read_details(file);
+  stored.joints = file.read<std::string>("/joint");
+  const bool has_cases = file.exists("/case");
+  if (has_cases) {
+    stored.cases = file.read<std::string>("/case");
+    read_fields<CaseResult>(file, "/evaluate", kSumFields, stored);
+    stored.evaluation = transposed(read_solves(file, result.responses, stored.details, kCaseAxes));
+  } else {
+    stored.evaluation = read_solves(file, result.responses, stored.details, kTableAxes);
+  }
+  const bool row_by_row = !has_cases && file.attribute<std::string>("/errors", "pairing").at(0) == kRowByRow;
+  stored.pairing = row_by_row ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
+  const std::string rows = row_by_row ? "pose" : has_cases ? "case" : "sample";
+  result.verdicts = read_limits(file, result);
+  if (result.verdicts) check_rows(result.verdicts->limits, axis_length(file, rows));
+  stored.errors = read_along<double>(file, "/errors/values", {rows, "factor"});
+  stored.labels = read_labels(file, rows);
+  if (result.verdicts) {
+    result.row_names = has_cases ? stored.cases : row_names(stored.labels, stored.pairing, stored.evaluation.samples);
+  }
+  result.found = std::move(stored);
+}
+
+void append_tables(CsvTables& tables, const StoredResult& result) {
+  append_limit_table(tables, result);
+  const StoredEvaluation& stored = evaluation_of(result);
+  const bool has_cases = !stored.cases.empty();
   tables.push_back(has_cases ? case_solve_table(result) : solve_table(result));
   tables.push_back(joint_table(result));
   tables.push_back(error_table(result));
   if (has_cases) tables.push_back(case_sum_table(result));
-  if (!has_cases && !result.labels.names.empty()) tables.push_back(part_table(result));
+  if (!has_cases && !stored.labels.names.empty()) tables.push_back(part_table(result));
+}
+
+}  // namespace
+
+constinit const FileKind kEvaluationFile{.write = write, .read = read, .append_tables = append_tables};
+
+GivenErrors evaluated_errors(const StoredResult& result) {
+  const StoredEvaluation& stored = evaluation_of(result);
+  if (!stored.cases.empty()) return {.word = "case", .names = stored.cases, .values = stored.errors};
+  return {.word = "varied error",
+          .names = {std::string(kAllFactors)},
+          .samples = stored.evaluation.samples,
+          .pairing = stored.pairing,
+          .values = stored.errors};
+}
+
+std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows) {
+  std::vector<std::string> names;
+  for (const std::string& label : labels.names) names.push_back(labels.column + " " + label);
+  if (!names.empty() || pairing == Pairing::row_by_row) return names;
+  for (std::size_t row = 0; row < rows; ++row) names.push_back("sample " + std::to_string(row));
+  return names;
+}
+
+void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses, const ErrorTable& errors,
+                      Pairing pairing, const EvaluationResult& result, const RunFacts& facts) {
+  write_result(path, kEvaluateStudy.name, kEvaluationFile, study, poses, EvaluatedTable{result, errors, pairing},
+               facts);
 }
 
 }  // namespace poesy

@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
+#include "engine/kinds/evaluate/options.h"
+#include "engine/study/error_words.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
+
+constexpr std::array<std::string_view, 3> kEvaluateKeys{"background", "limits", "cases"};
 
 void set_case_errors(const StudyValue& value, std::string_view key, const ModelDescription& model,
                      std::vector<double>& errors) {
@@ -71,9 +76,8 @@ std::vector<double> read_case_errors(const StudySection& section, const ModelDes
 }
 
 void read_cases(const StudyValue& value, Study& study, const Reading&) {
-  if (study.analysis.kind != Analysis::Kind::evaluate) return;  // `evaluate` passes over them
   const std::vector<double> background = background_errors(study.analysis.background, study.model());
-  std::vector<ErrorCase>& cases = study.analysis.cases;
+  std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
   for (const StudyValue& one : value.list()) {
     const StudySection section = one.section();
     section.allow();
@@ -90,7 +94,7 @@ void read_cases(const StudyValue& value, Study& study, const Reading&) {
 /// Every error by name.
 std::string cases_lines(const Study& study) {
   std::string text;
-  for (const ErrorCase& one : study.analysis.cases) {
+  for (const ErrorCase& one : asked_of<CaseOptions>(study.analysis).cases) {
     text += fmt::format("\n[[analysis.cases]]\nname = {}\n\n[analysis.cases.errors]\n", in_quotes(one.name));
     for (std::size_t f = 0; f < one.errors.size(); ++f) {
       const Factor& factor = study.model().factors[f];
@@ -100,84 +104,31 @@ std::string cases_lines(const Study& study) {
   return text;
 }
 
-const InnerRows<ErrorSize>& group_keys() {
-  static const InnerRows<ErrorSize> keys{
-      .paths = {"analysis.groups"},
-      .meaning = "For kind = \"identification\".",
-      .rows = {InnerRow<ErrorSize>{.name = "name",
-                                   .value = text_at(&ErrorSize::name),
-                                   .usual = "group 1, group 2 and so on",
-                                   .meaning = "Name of the group, without commas and quotes."},
-               InnerRow<ErrorSize>{.name = "linear",
-                                   .value = positive_at(Dimension::length, &ErrorSize::linear),
-                                   .missing = "a group sets both",
-                                   .meaning = "Size of errors that are lengths."},
-               InnerRow<ErrorSize>{.name = "angular",
-                                   .value = positive_at(Dimension::angle, &ErrorSize::angular),
-                                   .missing = "a group sets both",
-                                   .meaning = "Size of errors that are angles."}}};
-  return keys;
+std::string shown_cases(const TemplateLines& lines, const Study& study) {
+  const ModelDescription& model = study.model();
+  const std::string_view sizes = lines.example("analysis.cases", "errors");
+  const std::string text = "\n" + lines.explanation_lines("analysis", "cases") + lines.keys_lines("analysis.cases") +
+                           lines.keys_lines("analysis.cases.errors", 2) +
+                           comment("    " + std::string(lines.meaning("analysis.cases.errors"))) +
+                           lines.keys_lines("analysis.cases.errors.SET", 3) +
+                           fmt::format("[[analysis.cases]]\nname = \"group 1\"\nerrors = {}\n", sizes);
+  if (model.factors.empty()) return text;
+  const Factor& factor = model.factors.front();
+  return text +
+         fmt::format("\n[[analysis.cases]]\nname = \"one error\"\nerrors = {{ {} = {} }}\n# errors = {{ {} = {} }}\n",
+                     factor.name, example_size(factor.dimension, 0.1),
+                     in_quotes(model.factor_sets.empty() ? factor.name : model.factor_sets.back().name), sizes);
 }
 
-void read_groups(const StudyValue& value, Study& study, const Reading&) {
-  if (study.analysis.kind != Analysis::Kind::identification) return;  // `evaluate` passes over them
-  std::vector<ErrorSize>& groups = study.analysis.groups;
-  for (const StudyValue& one : value.list()) {
-    ErrorSize group{};
-    read_keys(group_keys(), one.section(), group, Nothing());
-    group.name = read_name(one.section(), names(groups), "group " + std::to_string(groups.size() + 1));
-    groups.push_back(std::move(group));
-  }
-  if (groups.empty()) value.fail("is empty", "leave it out for one group of 1 mm and 1 deg");
-}
-
-std::string groups_lines(const Study& study) {
-  std::string text;
-  for (const ErrorSize& group : study.analysis.groups) {
-    text += "\n[[analysis.groups]]\n" + keys_text(group_keys(), group);
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual) {
-  const auto value = section.find("name");
-  const std::string name = value ? value->text() : usual;
-  if (value && (name.empty() || name.find_first_of(",;\"\n\r\t") != std::string::npos)) {
-    value->fail("is '" + printable(name) + "'",
-                "a name is plain text without commas and quotes, for it stands in tables");
-  }
-  if (std::ranges::find(taken, name) == taken.end()) return name;
-  if (value) value->fail("is '" + printable(name) + "', which another one has", "give each a name of its own");
-  throw InputError(section.place(), "it has no name, and '" + name + "' is taken", "write name = \"...\"");
-}
-
-ErrorSize usual_group() { return {"group 1", display_unit(Dimension::length).si, display_unit(Dimension::angle).si}; }
-
-StudyRow groups_row() {
-  const ErrorSize group = usual_group();
-  return {.name = "groups",
-          .value = {.type = "list of tables"},
-          .usual = fmt::format("`[{{ name = {}, linear = {}, angular = {} }}]`", in_quotes(group.name),
-                               readable_value(group.linear, Dimension::length),
-                               readable_value(group.angular, Dimension::angle)),
-          .meaning = "The sizes at which errors are set; each group gives verdicts of its own.",
-          .reader = read_groups,
-          .lines = groups_lines,
-          .late = 2};
-}
-
-StudyTable group_table() { return described(group_keys()); }
-
-StudyRow cases_row() {
-  return {.name = "cases",
-          .value = {.type = "list of tables"},
-          .required = true,
-          .meaning = "Fixed errors, each case with a name.",
-          .reader = read_cases,
-          .lines = cases_lines,
-          .late = 2};
+std::vector<StudyRow> cases_rows() {
+  return {StudyRow{.name = "cases",
+                   .value = {.type = "list of tables"},
+                   .required = true,
+                   .meaning = "Fixed errors, each case with a name.",
+                   .reader = read_cases,
+                   .lines = cases_lines,
+                   .late = 2,
+                   .shown = shown_cases}};
 }
 
 StudyTables case_tables() {
@@ -206,5 +157,51 @@ StudyTables case_tables() {
                {.name = "angular", .type = "angle", .meaning = "All errors of the set that are angles."}}};
   return {cases, errors, of_set};
 }
+
+/// Factors come from the cases alone.
+void complete_cases(Study& study, const Reading& reading) {
+  study.analysis.factors.clear();
+  if (!asked_of<CaseOptions>(study.analysis).cases.empty() || reading.use == StudyUse::evaluate) return;
+  throw InputError(reading.root.section("analysis").place(), "kind = \"evaluate\" needs at least one case",
+                   "write [[analysis.cases]] with name and errors, or use 'poesy evaluate' for a table of errors");
+}
+
+/// At the error itself, at what sets all of its dimension, or at the case, where a factor set does.
+[[noreturn]] void refuse_case(const StudySection& errors, const std::string& name, const Factor& factor,
+                              const std::string& problem) {
+  for (const std::string_view key : {std::string_view(factor.name), error_kind(factor.dimension)}) {
+    if (const auto value = errors.find(key)) value->fail(problem, kTooLargeRemedy);
+  }
+  throw InputError(errors.place(), "case '" + printable(name) + "' " + problem, kTooLargeRemedy);
+}
+
+void check_cases(const StudySection& analysis, const Study& study, const Model& model) {
+  const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    for (std::size_t f = 0; f < cases[c].errors.size(); ++f) {
+      const auto problem = beyond_bound(model, FactorIndex(f), cases[c].errors[f], "an error");
+      if (!problem) continue;
+      refuse_case(analysis.require("cases").list()[c].section().section("errors"), cases[c].name,
+                  model.description().factors[f], *problem);
+    }
+  }
+}
+
+AtPose cases_at_pose(const Study& study) {
+  const auto cases = static_cast<double>(asked_of<CaseOptions>(study.analysis).cases.size());
+  return {cases, "cases", cases, "cases"};
+}
+
+}  // namespace
+
+const StudyKind kEvaluateStudy{.name = "evaluate",
+                               .asks = "what named cases of fixed errors do",
+                               .keys = kEvaluateKeys,
+                               .overrides = "a case sets",
+                               .rows = cases_rows,
+                               .tables = case_tables,
+                               .complete = complete_cases,
+                               .check_errors = check_cases,
+                               .at_pose = cases_at_pose};
 
 }  // namespace poesy

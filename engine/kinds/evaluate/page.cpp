@@ -5,12 +5,18 @@
 #include <span>
 
 #include "engine/base/nan.h"
-#include "engine/kinds/report_kind.h"
+#include "engine/kinds/evaluate/stored.h"
+#include "engine/kinds/registry.h"
 #include "engine/report/display.h"
 #include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {
+
+ShownCells cells(const StoredResult& result) {
+  const std::size_t cases = evaluation_of(result).cases.size();
+  return shown_cells(result, cases == 0 ? kSummaryRows : cases);
+}
 
 /// One response to one row of errors at all poses, [M]; NaN where it was not solved.
 std::vector<double> response_to(const EvaluationResult& found, std::size_t r, std::size_t sample) {
@@ -24,16 +30,17 @@ std::vector<double> response_to(const EvaluationResult& found, std::size_t r, st
 
 /// A curve over the poses for each case, and the same as fields of the workspace.
 void add_cases(const StoredResult& result, const PoseFigures& figures, Page& page, Section& section) {
+  const std::vector<std::string>& cases = evaluation_of(result).cases;
   Lines lines{.x = figures.axis(), .panels = {}};
   std::vector<Field> fields;
   for (const std::size_t r : figures.responses()) {
     const NamedUnit& response = result.responses[r];
     Panel panel{response.name, unit_text(response), {}};
-    for (std::size_t c = 0; c < result.cases.size(); ++c) {
+    for (std::size_t c = 0; c < cases.size(); ++c) {
       const ArrayName array =
-          figures.add(fmt::format("case/{}/{}", c, r), response_to(result.evaluation, r, c), response);
-      panel.series.push_back({result.cases[c], array});
-      fields.push_back({fmt::format("{}, {}", response.name, result.cases[c]), unit_text(response), array});
+          figures.add(fmt::format("case/{}/{}", c, r), response_to(evaluation_of(result).evaluation, r, c), response);
+      panel.series.push_back({cases[c], array});
+      fields.push_back({fmt::format("{}, {}", response.name, cases[c]), unit_text(response), array});
     }
     lines.panels.push_back(std::move(panel));
   }
@@ -83,7 +90,7 @@ PoseQuantiles quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
 /// The distribution of each response over all poses and rows.
 void add_distribution(const StoredResult& result, Page& page, Section& section) {
   constexpr std::size_t kLevels = 101;
-  const EvaluationResult& found = result.evaluation;
+  const EvaluationResult& found = evaluation_of(result).evaluation;
   std::vector<double> levels;
   for (std::size_t n = 0; n < kLevels; ++n) levels.push_back(static_cast<double>(n) / (kLevels - 1.0));
   ArrayPool& pool = page.figures.pool;
@@ -103,7 +110,7 @@ void add_rows(const StoredResult& result, const PoseFigures& figures, Page& page
   for (const std::size_t r : figures.responses()) {
     const NamedUnit& response = result.responses[r];
     const std::string unit = unit_text(response);
-    const PoseQuantiles found = quantiles_at_poses(result.evaluation, r);
+    const PoseQuantiles found = quantiles_at_poses(evaluation_of(result).evaluation, r);
     const auto add = [&](std::string_view what, const std::vector<double>& values) {
       return figures.add(fmt::format("{}/{}", what, r), values, response);
     };
@@ -124,19 +131,21 @@ void add_rows(const StoredResult& result, const PoseFigures& figures, Page& page
 
 std::string rows_text(const StoredResult& result) {
   const std::string poses = counted(result.poses.size(), "pose", "poses");
-  if (result.pairing == Pairing::row_by_row) return fmt::format("{}, each with a row of errors of its own.", poses);
-  return fmt::format("{} of errors, each at {}.", counted(result.evaluation.samples, "row", "rows"), poses);
+  if (evaluation_of(result).pairing == Pairing::row_by_row)
+    return fmt::format("{}, each with a row of errors of its own.", poses);
+  return fmt::format("{} of errors, each at {}.", counted(evaluation_of(result).evaluation.samples, "row", "rows"),
+                     poses);
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const bool cases = !result.cases.empty();
+  const bool cases = !evaluation_of(result).cases.empty();
   add_limits(tables, page);
   Section& section = page.add_section("responses", cases ? "What each case does" : "What the errors do");
   section.paragraph(cases ? "Each case is a fixed set of errors. Poses where it was not solved are left out."
                           : rows_text(result) + " Samples that were not solved are left out.");
   if (!cases) add_distribution(result, page, section);
   for (const std::string_view name : {"evaluation", "cases", "parts"}) section.table(tables, name);
-  const PoseFigures figures(result, page);
+  const PoseFigures figures(result, cells(result), page);
   Section& where = page.add_section("where", result.time.empty() ? "Where in the workspace" : "Along the trajectory");
   figures.add_note(where);
   if (cases) {
@@ -148,13 +157,14 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 
 /// Samples that are no cases are one row together.
 SolveTally tally(const StoredResult& result) {
-  const EvaluationResult& found = result.evaluation;
-  SolveTally outcomes{"case", result.cases, found.poses, {}};
-  if (result.cases.empty()) outcomes.names = {"all rows"};
+  const std::vector<std::string>& cases = evaluation_of(result).cases;
+  const EvaluationResult& found = evaluation_of(result).evaluation;
+  SolveTally outcomes{"case", cases, found.poses, {}};
+  if (cases.empty()) outcomes.names = {"all rows"};
   outcomes.cells.resize(outcomes.names.size() * found.poses);
   for (std::size_t m = 0; m < found.poses; ++m) {
     for (std::size_t s = 0; s < found.samples; ++s) {
-      const std::size_t row = result.cases.empty() ? 0 : s;
+      const std::size_t row = cases.empty() ? 0 : s;
       const std::size_t at = m * found.samples + s;
       outcomes.cells[row * found.poses + m].add(found.status[at], found.iterations[at]);
     }
@@ -163,21 +173,18 @@ SolveTally tally(const StoredResult& result) {
 }
 
 StudyWords words(const StoredResult& result) {
-  const std::size_t rows = result.evaluation.samples;
-  if (result.cases.empty()) {
-    return {.from_tables = true, .samples = counted(rows, "row of errors", "rows of errors")};
+  const StoredEvaluation& stored = evaluation_of(result);
+  if (stored.cases.empty()) {
+    return {.from_tables = true, .samples = counted(stored.evaluation.samples, "row of errors", "rows of errors")};
   }
-  return {.samples = counted(result.cases.size(), "case", "cases")};
-}
-
-ShownCells cells(const StoredResult& result) {
-  return shown_cells(result, result.cases.empty() ? kSummaryRows : result.cases.size());
+  return {.samples = counted(stored.cases.size(), "case", "cases")};
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  if (result.cases.empty()) {
+  const StoredEvaluation& stored = evaluation_of(result);
+  if (stored.cases.empty()) {
     constexpr double kLevels[] = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
-    const EvaluationResult& found = result.evaluation;
+    const EvaluationResult& found = stored.evaluation;
     Comparable all = comparable_by_response(
         result, "number",
         {"smallest", "5 % quantile", "25 % quantile", "median", "75 % quantile", "95 % quantile", "largest"});
@@ -189,19 +196,18 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
                  [&](std::size_t r, std::size_t n) { return statistics[r][n]; });
     return all;
   }
-  const std::size_t cases = result.cases.size();
-  Comparable all = comparable_by_response(result, "case", result.cases);
+  const std::size_t cases = stored.cases.size();
+  Comparable all = comparable_by_response(result, "case", stored.cases);
   add_quantity(all, result, "mean over the poses", "case_mean",
-               [&](std::size_t r, std::size_t c) { return result.case_result.mean[r * cases + c]; });
+               [&](std::size_t r, std::size_t c) { return stored.mean[r * cases + c]; });
   add_quantity(all, result, "largest over the poses", "case_max",
-               [&](std::size_t r, std::size_t c) { return result.case_result.max[r * cases + c]; });
+               [&](std::size_t r, std::size_t c) { return stored.max[r * cases + c]; });
   return all;
 }
 
 }  // namespace
 
-constinit const ReportKind kEvaluationReport{.name = "evaluate",
-                                             .tally = tally,
+constinit const ReportKind kEvaluationReport{.tally = tally,
                                              .tables = evaluation_tables,
                                              .words = words,
                                              .shown_cells = cells,

@@ -5,14 +5,14 @@
 
 namespace poesy {
 
-std::vector<RowOutcome> row_outcomes(const StoredResult& result, std::size_t response) {
-  const EvaluationResult& found = result.evaluation;
+std::vector<RowOutcome> row_outcomes(const StoredEvaluation& stored, std::size_t response) {
+  const EvaluationResult& found = stored.evaluation;
   const std::size_t solves = found.status.size();
-  std::vector<RowOutcome> rows(result.labels.names.size());
+  std::vector<RowOutcome> rows(stored.labels.names.size());
   for (std::size_t at = 0; at < solves; ++at) {
     if (!solved(found.status[at])) continue;
     const double value = found.response[response * solves + at];
-    RowOutcome& row = rows[row_of_solve(result, at)];
+    RowOutcome& row = rows[row_of_solve(stored, at)];
     if (row.solved == 0) row.mean = row.extreme = 0.0;
     row.mean += value;  // their sum, until all are there
     if (row.solved == 0 || std::abs(value) > std::abs(row.extreme)) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/kinds/evaluate/stored.h"
 #include "engine/run/evaluation.h"
 
 namespace poesy {
@@ -18,15 +19,15 @@ struct RowOutcome {
 };
 
 /// Of an evaluation whose rows have labels: the outcome of each, in their order.
-std::vector<RowOutcome> row_outcomes(const StoredResult& result, std::size_t response);
+std::vector<RowOutcome> row_outcomes(const StoredEvaluation& stored, std::size_t response);
 
 /// The position of the row whose extreme is the largest in magnitude, the first of equals; the number of rows when no
 /// row was solved.
 std::size_t worst_row(const std::vector<RowOutcome>& outcomes);
 
 /// The row of errors of a solve, `at` counted pose by pose.
-inline std::size_t row_of_solve(const StoredResult& result, std::size_t at) {
-  return result.pairing == Pairing::row_by_row ? at / result.evaluation.samples : at % result.evaluation.samples;
+inline std::size_t row_of_solve(const StoredEvaluation& stored, std::size_t at) {
+  return stored.pairing == Pairing::row_by_row ? at / stored.evaluation.samples : at % stored.evaluation.samples;
 }
 
 }  // namespace poesy

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/kinds/run_kind.h"
+#include "engine/kinds/kind.h"
 
 namespace poesy {
 

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/evaluate/row_outcomes.h"
-#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/evaluate/stored.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
@@ -52,24 +51,25 @@ std::string passes(const StoredResult& result, std::size_t r) {
 /// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty where rows have no labels or none
 /// was solved.
 std::string worst_note(const StoredResult& result, std::size_t r) {
-  if (result.labels.names.empty()) return {};
-  const std::vector<RowOutcome> outcomes = row_outcomes(result, r);
+  const RowLabels& labels = evaluation_of(result).labels;
+  if (labels.names.empty()) return {};
+  const std::vector<RowOutcome> outcomes = row_outcomes(evaluation_of(result), r);
   const std::size_t worst = worst_row(outcomes);
   if (worst == outcomes.size()) return {};
   const NamedUnit& response = result.responses[r];
-  return fmt::format("{} {} is worst in {}: {} at {}{}", result.labels.column, result.labels.names[worst],
-                     response.name, response_text(response, outcomes[worst].extreme),
-                     place_text(result, outcomes[worst].pose), passes(result, r));
+  return fmt::format("{} {} is worst in {}: {} at {}{}", labels.column, labels.names[worst], response.name,
+                     response_text(response, outcomes[worst].extreme), place_text(result, outcomes[worst].pose),
+                     passes(result, r));
 }
 
 Table parts_table(const StoredResult& result) {
-  const RowLabels& labels = result.labels;
+  const RowLabels& labels = evaluation_of(result).labels;
   Table table{.name = "parts",
               .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
               .columns = {},
               .notes = {"poses: those that were solved"}};
   std::vector<std::vector<RowOutcome>> outcomes;  // of each response of the headline
-  for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(result, r));
+  for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(evaluation_of(result), r));
   std::vector<FilledColumn> columns{
       {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
       {number_column("poses", "poses"),
@@ -92,14 +92,14 @@ Table parts_table(const StoredResult& result) {
 }
 
 Table cases_table(const StoredResult& result) {
-  const CaseResult& found = result.case_result;
-  const std::size_t cases = result.cases.size();
+  const StoredEvaluation& found = evaluation_of(result);
+  const std::size_t cases = found.cases.size();
   Table table{.name = "cases",
               .caption = "Each case over its poses: mean and largest value of the responses",
               .columns = {},
               .notes = {"poses: those whose solve counts"}};
   std::vector<FilledColumn> columns{
-      {text_column("case", "case"), [&](std::size_t c) { return text_cell(result.cases[c]); }},
+      {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
       {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count[c]); }}};
   int dispensable = 0;  // of the first response's columns; the last response's go first
   for (const std::size_t r : result.headline) {
@@ -120,7 +120,8 @@ Table cases_table(const StoredResult& result) {
 
 Table evaluation_table(const StoredResult& result) {
   std::vector<Summary> found;
-  for (std::size_t r = 0; r < result.responses.size(); ++r) found.push_back(summary(result.evaluation, r));
+  for (std::size_t r = 0; r < result.responses.size(); ++r)
+    found.push_back(summary(evaluation_of(result).evaluation, r));
   const auto number = [&](const std::string& name, double Summary::*member) {
     return FilledColumn{number_column(name, name), [&, member](std::size_t r) {
                           return value_cell(found[r].*member, result.responses[r], kDigits);
@@ -137,10 +138,9 @@ Table evaluation_table(const StoredResult& result) {
 }
 
 std::vector<Table> evaluation_tables(const StoredResult& result, const TableOptions&) {
-  std::vector<Table> tables;
-  if (std::optional<Table> limits = limits_table(result)) tables.push_back(std::move(*limits));
-  tables.push_back(result.cases.empty() ? evaluation_table(result) : cases_table(result));
-  if (!result.labels.names.empty()) tables.push_back(parts_table(result));
+  const StoredEvaluation& stored = evaluation_of(result);
+  std::vector<Table> tables{stored.cases.empty() ? evaluation_table(result) : cases_table(result)};
+  if (!stored.labels.names.empty()) tables.push_back(parts_table(result));
   return tables;
 }
 

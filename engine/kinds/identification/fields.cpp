@@ -2,6 +2,9 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/identification/identification.h"
+#include "engine/kinds/identification/options.h"
+#include "engine/kinds/identification/stored.h"
+#include "engine/kinds/registry.h"
 
 namespace poesy {
 namespace {
@@ -46,9 +49,10 @@ bool by_group(const FieldRow<Identification>& field) { return field.name.ends_wi
 /// A column for each group of a row along [group x factor].
 void append_group_columns(CsvTable& table, const StoredResult& result, const std::string& prefix,
                           const FieldRow<Identification>& field) {
-  for (std::size_t g = 0; g < result.groups.size(); ++g) {
+  for (std::size_t g = 0; g < identification_of(result).groups; ++g) {
     const std::string heading = prefix + "group_" + std::to_string(g + 1);
-    table.columns.push_back(field_column(heading, field, result.identification, g * result.factors.size()));
+    table.columns.push_back(
+        field_column<Identification>(heading, field, identification_of(result), g * result.factors.size()));
   }
 }
 
@@ -56,7 +60,7 @@ CsvTable verdict_table(const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "identification");
   for (const FieldRow<Identification>& field : kIdentification.fields) {
     if (field.axes == kByFactor) {
-      table.columns.push_back(field_column(field.name, field, result.identification));
+      table.columns.push_back(field_column<Identification>(field.name, field, identification_of(result)));
     } else if (by_group(field)) {
       append_group_columns(table, result, field.name.substr(0, field.name.find('_')) + "_", field);
     }
@@ -65,7 +69,7 @@ CsvTable verdict_table(const StoredResult& result) {
 }
 
 CsvTable coupling_table(const StoredResult& result) {
-  const std::vector<Coupling>& couplings = result.identification.couplings;
+  const std::vector<Coupling>& couplings = identification_of(result).couplings;
   const auto names = [&](std::size_t line) {
     return result.factors[couplings[line].first].name + "+" + result.factors[couplings[line].second].name;
   };
@@ -78,10 +82,11 @@ CsvTable coupling_table(const StoredResult& result) {
            list_column("poses", couplings, 0, 1, &Coupling::deforming_poses)}};
 }
 
-}  // namespace
-
-void add_identification(ResultBuilder& result, const Study& study, const IdentificationResult& found) {
-  const std::vector<ErrorSize>& groups = study.analysis.groups;
+void write(ResultBuilder& result, const Study& study, const std::any& any) {
+  const auto& found = std::any_cast<const Identification&>(any);
+  POESY_EXPECTS(found.factors == study.analysis.factors.size());
+  add_names(result, study, study.analysis.factors);
+  const std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
   result.add_axis("status", texts(kStatusNames, std::identity()), {"1", "How a solve ended"});
   result.add_axis("group", texts(groups, &ErrorSize::name), {"1", "Name of the group of sizes"});
   result.add_axis("coupling", axis_numbers(found.couplings.size()), {"1", "Number of the coupling, from 0"});
@@ -94,14 +99,14 @@ void add_identification(ResultBuilder& result, const Study& study, const Identif
   result.show_axes("/identification", {"coupling", "status"});
 }
 
-void read_identification(const h5::File& file, StoredResult& result) {
-  IdentificationResult& found = result.identification;
-  read_group(file, kIdentification, found);
+void read(const h5::File& file, StoredResult& result) {
+  StoredIdentification found;
+  read_group<Identification>(file, kIdentification, found);
   found.required_poses =
       static_cast<std::uint64_t>(file.attribute<std::int64_t>("/identification", "required_poses").at(0));
-  result.groups = read_columns(file, "/identification", kSizeFields);
+  found.sizes = read_columns(file, "/identification", kSizeFields);
   const auto names = file.read<std::string>("/group");
-  for (std::size_t g = 0; g < names.size(); ++g) result.groups[g].name = names[g];
+  for (std::size_t g = 0; g < names.size(); ++g) found.sizes[g].name = names[g];
   found.couplings = read_columns(file, "/identification", kCouplingFields);
   for (const Coupling& coupling : found.couplings) {
     if (coupling.group >= found.groups || coupling.first >= found.factors || coupling.second >= found.factors) {
@@ -111,14 +116,16 @@ void read_identification(const h5::File& file, StoredResult& result) {
   const auto by_status = read_along<std::uint64_t>(file, "/identification/solves_by_status", {"status"});
   if (by_status.size() != found.solves.by_status.size()) throw h5::Error("/status lists other endings of solves");
   std::ranges::copy(by_status, found.solves.by_status.begin());
+  result.found = std::move(found);
 }
 
-void append_identification_tables(CsvTables& tables, const StoredResult& result) {
+void append_tables(CsvTables& tables, const StoredResult& result) {
+  const std::vector<ErrorSize>& sizes = identification_of(result).sizes;
   tables.push_back({"groups",
-                    {"group", [&](std::size_t g) { return result.groups[g].name; }},
-                    result.groups.size(),
-                    {list_column("linear [m]", result.groups, 0, 1, &ErrorSize::linear),
-                     list_column("angular [rad]", result.groups, 0, 1, &ErrorSize::angular)}});
+                    {"group", [&sizes](std::size_t g) { return sizes[g].name; }},
+                    sizes.size(),
+                    {list_column("linear [m]", sizes, 0, 1, &ErrorSize::linear),
+                     list_column("angular [rad]", sizes, 0, 1, &ErrorSize::angular)}});
   tables.push_back(verdict_table(result));
   for (const FieldRow<Identification>& field : kIdentification.fields) {
     if (field.axes != kGroupAxes || by_group(field)) continue;
@@ -128,5 +135,9 @@ void append_identification_tables(CsvTables& tables, const StoredResult& result)
   }
   tables.push_back(coupling_table(result));
 }
+
+}  // namespace
+
+constinit const FileKind kIdentificationFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/kinds/identification/options.h"
 #include "engine/run/evaluation.h"
 
 namespace poesy {
@@ -24,10 +25,10 @@ using Deformations = std::vector<double>;
 class Identification {
  public:
   Identification(const Analysis& analysis, const ModelDescription& model, const SolveTable& solve)
-      : analysis_(&analysis), model_(&model), solve_(&solve) {
+      : analysis_(&analysis), asked_(&asked_of<IdentificationOptions>(analysis)), model_(&model), solve_(&solve) {
     POESY_EXPECTS(model.deformation.has_value());
     found_.factors = analysis.factors.size();
-    found_.groups = analysis.groups.size();
+    found_.groups = asked_->groups.size();
     found_.rounding = model.deformation->rounding;
     const std::size_t cells = found_.groups * found_.factors;
     found_.coupled_below.resize(cells);
@@ -54,7 +55,7 @@ class Identification {
 
   double size(std::size_t group, std::size_t p) const {
     const bool is_length = model_->factors[analysis_->factors[p].value].dimension == Dimension::length;
-    return is_length ? analysis_->groups[group].linear : analysis_->groups[group].angular;
+    return is_length ? asked_->groups[group].linear : asked_->groups[group].angular;
   }
 
   /// Solves all trials at all poses at once, and gives the deformations of each. Empty when stopped.
@@ -68,7 +69,7 @@ class Identification {
     if (!solved_table) return std::nullopt;
     found_.poses = solved_table->poses;
     found_.required_poses = std::max<std::uint64_t>(
-        1, static_cast<std::uint64_t>(std::llround(analysis_->pose_share * static_cast<double>(found_.poses))));
+        1, static_cast<std::uint64_t>(std::llround(asked_->pose_share * static_cast<double>(found_.poses))));
     found_.solves.merge(solved_table->total());
     const std::size_t all = solved_table->poses * trials.size();
     const auto response = std::span(solved_table->response).subspan(model_->deformation->response * all, all);
@@ -201,6 +202,7 @@ class Identification {
   }
 
   const Analysis* analysis_;
+  const IdentificationOptions* asked_;
   const ModelDescription* model_;
   const SolveTable* solve_;
   IdentificationResult found_;

@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
 #include "engine/kinds/identification/identification.h"
-#include "engine/kinds/report_kind.h"
+#include "engine/kinds/identification/stored.h"
+#include "engine/kinds/registry.h"
 #include "engine/report/display.h"
 
 namespace poesy {
@@ -9,7 +10,7 @@ namespace {
 
 std::vector<std::string> group_names(const StoredResult& result) {
   std::vector<std::string> names;
-  for (const ErrorSize& group : result.groups) names.push_back(group.name);
+  for (const ErrorSize& group : identification_of(result).sizes) names.push_back(group.name);
   return names;
 }
 
@@ -25,7 +26,7 @@ std::vector<double> share_of_poses(const IdentificationResult& found, const std:
 }
 
 Bars bars_of(const StoredResult& result, ArrayPool& pool) {
-  const IdentificationResult& found = result.identification;
+  const IdentificationResult& found = identification_of(result);
   const Choice sizes{"size of the errors", group_names(result)};
   const std::vector<std::vector<std::string>> percent(found.groups, {"%"});
   const auto quantity = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
@@ -41,7 +42,7 @@ Bars bars_of(const StoredResult& result, ArrayPool& pool) {
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const IdentificationResult& found = result.identification;
+  const IdentificationResult& found = identification_of(result);
   Section& section = page.add_section("which-errors-deform", "Which errors deform the mechanism");
   section.paragraph(fmt::format(
       "Each error was set alone, and then together with those of its frame that do not deform alone, at {}. An error "
@@ -55,14 +56,14 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   for (const Table& table : tables) section.table(table);
 }
 
-SolveTally tally(const StoredResult& result) { return {"", {"all errors"}, 1, {result.identification.solves}}; }
+SolveTally tally(const StoredResult& result) { return {"", {"all errors"}, 1, {identification_of(result).solves}}; }
 
 StudyWords words(const StoredResult& result) { return {.sizes = group_names(result)}; }
 
 ShownCells cells(const StoredResult& result) { return shown_cells(result, kSummaryRows); }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const IdentificationResult& found = result.identification;
+  const IdentificationResult& found = identification_of(result);
   std::vector<double> percent;
   for (const std::uint64_t below : found.single_below) {
     percent.push_back(100.0 - 100.0 * static_cast<double>(below) / static_cast<double>(found.poses));
@@ -77,8 +78,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 
 }  // namespace
 
-constinit const ReportKind kIdentificationReport{.name = "identification",
-                                                 .tally = tally,
+constinit const ReportKind kIdentificationReport{.tally = tally,
                                                  .tables = identification_tables,
                                                  .words = words,
                                                  .shown_cells = cells,

@@ -1,4 +1,5 @@
 #include "engine/kinds/identification/run.h"
+#include "engine/kinds/identification/options.h"
 #include "engine/run/evaluation.h"
 
 #include <utility>
@@ -9,12 +10,12 @@ namespace {
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   auto result = run_identification(run.study, run.model, run.poses, run.options);
   if (!result || !run.makes_result()) return std::nullopt;
-  return StudyResult{*std::move(result), std::nullopt};
+  return StudyResult{*std::move(result), std::nullopt, {}};
 }
 
 Outlook identification_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const std::size_t errors = study.analysis.factors.size();
-  const std::size_t groups = study.analysis.groups.size();
+  const std::size_t groups = asked_of<IdentificationOptions>(study.analysis).groups.size();
   const std::size_t solves = errors * groups * poses.size();
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
   return {.solves = counted_things(errors, "errors x ") + counted_things(groups, "groups x ") +

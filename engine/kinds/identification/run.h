@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "engine/kinds/identification/identification.h"
-#include "engine/kinds/run_kind.h"
+#include "engine/kinds/kind.h"
 #include "engine/run/run_options.h"
 
 namespace poesy {

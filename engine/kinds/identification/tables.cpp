@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/kinds/identification/identification.h"
+#include "engine/kinds/identification/stored.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 
@@ -33,7 +34,7 @@ std::vector<std::string> notes(const IdentificationResult& found) {
 }
 
 Table verdict_table(const StoredResult& result) {
-  const IdentificationResult& found = result.identification;
+  const IdentificationResult& found = identification_of(result);
   Table table{
       .name = "identification",
       .caption = fmt::format("{} of {} errors deform alone, {} with couplings", std::ranges::count(found.single, 1),
@@ -45,7 +46,8 @@ Table verdict_table(const StoredResult& result) {
       {text_column("verdict", "verdict"), [&](std::size_t p) { return text_cell(verdict(found, p)); }}};
   for (std::size_t g = 0; g < found.groups; ++g) {
     columns.push_back(
-        {number_column(fmt::format("deforming_poses_{}", g + 1), result.groups[g].name, "", static_cast<int>(g)),
+        {number_column(fmt::format("deforming_poses_{}", g + 1), identification_of(result).sizes[g].name, "",
+                       static_cast<int>(g)),
          [&, g](std::size_t p) { return count_cell(found.poses - found.single_below[g * found.factors + p]); }});
   }
   fill(table, positions(found.factors), columns);
@@ -57,11 +59,11 @@ Table coupling_rows(const StoredResult& result) {
               .caption = "Errors that deform together and not alone",
               .columns = {text_column("error", "error"), text_column("with", "with"), text_column("group", "group"),
                           number_column("deforming_poses", "poses")},
-              .notes = {fmt::format("poses: where the two deform, of {}", result.identification.poses)}};
-  for (const Coupling& coupling : result.identification.couplings) {
-    table.rows.push_back({text_cell(result.factors[coupling.first].name),
-                          text_cell(result.factors[coupling.second].name),
-                          text_cell(result.groups[coupling.group].name), count_cell(coupling.deforming_poses)});
+              .notes = {fmt::format("poses: where the two deform, of {}", identification_of(result).poses)}};
+  for (const Coupling& coupling : identification_of(result).couplings) {
+    table.rows.push_back(
+        {text_cell(result.factors[coupling.first].name), text_cell(result.factors[coupling.second].name),
+         text_cell(identification_of(result).sizes[coupling.group].name), count_cell(coupling.deforming_poses)});
   }
   return table;
 }
@@ -70,7 +72,7 @@ Table coupling_rows(const StoredResult& result) {
 
 std::vector<Table> identification_tables(const StoredResult& result, const TableOptions&) {
   std::vector<Table> tables{verdict_table(result)};
-  if (!result.identification.couplings.empty()) tables.push_back(coupling_rows(result));
+  if (!identification_of(result).couplings.empty()) tables.push_back(coupling_rows(result));
   return tables;
 }
 

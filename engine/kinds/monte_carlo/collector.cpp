@@ -84,7 +84,8 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
                                          bool keep_checkpoint)
     : plan_(&plan),
       responses_(responses),
-      analysis_(analysis),
+      limits_(analysis.limits),
+      asked_(asked_of<MonteCarloOptions>(analysis)),
       keep_checkpoint_(keep_checkpoint),
       sketches_(responses),
       moments_(plan.poses().size() * responses),
@@ -94,13 +95,13 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
   result_.poses = plan.poses().size();
   result_.conf_level = analysis.conf_level;
   result_.quantile_relative_error = QuantileSketch::kRelativeError;
-  result_.levels = analysis.quantiles;
+  result_.levels = asked_.quantiles;
   const std::size_t cells = responses * result_.poses;
   for (std::vector<double>* values : {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std,
                                       &result_.min, &result_.max, &result_.rms}) {
     values->resize(cells);
   }
-  if (analysis.judge == Judge::share) result_.share_magnitude.resize(cells);
+  if (asked_.judge == Judge::share) result_.share_magnitude.resize(cells);
   result_.count.resize(cells);
   for (std::vector<double>* values : {&result_.quantiles, &result_.quantiles_ci_low, &result_.quantiles_ci_high}) {
     values->resize(cells * result_.levels.size());
@@ -178,8 +179,8 @@ void MonteCarloCollector::set_quantiles(std::size_t response, std::size_t pose, 
     result_.quantiles_ci_low[at] = interval.low;
     result_.quantiles_ci_high[at] = interval.high;
   }
-  if (analysis_.judge != Judge::share) return;
-  const std::uint64_t rank = quantile_rank(analysis_.share, at_pose_.solves.total());
+  if (asked_.judge != Judge::share) return;
+  const std::uint64_t rank = quantile_rank(asked_.share, at_pose_.solves.total());
   result_.share_magnitude[cell] =
       rank <= sketch.count() ? sketch.magnitudes().order_statistic(rank) : std::numeric_limits<double>::infinity();
 }
@@ -246,7 +247,7 @@ MonteCarloResult MonteCarloCollector::result() && {
     set_overall(r, overall);
   }
   for (std::size_t m = 0; m < result_.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], result_.failures);
-  if (!analysis_.limits.empty()) result_.verdicts = judge_draws(analysis_, result_, sketches_);
+  if (!limits_.empty()) result_.verdicts = judge_draws(limits_, asked_.judge, asked_.share, result_, sketches_);
   return std::move(result_);
 }
 

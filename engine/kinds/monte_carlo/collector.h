@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/pose_unit.h"
 #include "engine/run/result.h"
@@ -97,7 +98,8 @@ class MonteCarloCollector {
 
   const Plan* plan_;
   std::size_t responses_;
-  Analysis analysis_;
+  std::vector<ResponseLimit> limits_;
+  MonteCarloOptions asked_;
   bool keep_checkpoint_;
   PoseIndex open_;                        ///< the open pose, if there is one
   PoseSamples at_pose_;                   ///< its samples

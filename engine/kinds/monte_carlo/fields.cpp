@@ -2,7 +2,10 @@
 
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/stored.h"
+#include "engine/kinds/registry.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -98,7 +101,7 @@ void fill_in_root_mean_squares(MonteCarlo& found) {
 /// those of the responses (prefix "overall_", first: 0).
 void append_number_columns(CsvTable& table, const StoredResult& result, const std::vector<std::string>& names,
                            const std::string& prefix, std::size_t first, const std::string& unit) {
-  const MonteCarlo& found = result.monte_carlo;
+  const MonteCarlo& found = monte_carlo_of(result);
   const std::size_t levels = found.levels.size();
   for (const std::string& name : names) {
     table.columns.push_back(
@@ -138,7 +141,7 @@ CsvTable overall_table(const StoredResult& result) {
 
 /// Bins of no width, which fill up the result's table, are left out.
 CsvTable histogram_table(const StoredResult& result, std::size_t r) {
-  const MonteCarlo& found = result.monte_carlo;
+  const MonteCarlo& found = monte_carlo_of(result);
   const NamedUnit& response = result.responses[r];
   const std::size_t bins = found.histogram_counts.size() / found.responses;
   const std::size_t edge = r * (bins + 1);
@@ -155,10 +158,16 @@ CsvTable histogram_table(const StoredResult& result, std::size_t r) {
           }};
 }
 
-}  // namespace
+const CourseWords kConvergence = convergence_words(
+    kByResponse, "mean", kResponseUnit, "Mean over the samples of all poses",
+    "Every pose got samples until, at a milestone, the half-width of the mean of every response of the headline was at "
+    "most relative_error of its magnitude, or max was there",
+    "errors");
 
-void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarloResult& found) {
+void write(ResultBuilder& result, const Study& study, const std::any& any) {
+  const auto& found = std::any_cast<const MonteCarlo&>(any);
   const std::size_t bins = found.histogram_counts.size() / found.responses;
+  add_names(result, study, study.analysis.factors);
   add_sigma(result, study);
   result.add_axis("quantile", found.levels, {"1", "Share of the samples below the quantile"});
   result.add_axis("bin", axis_numbers(bins), {"1", "Number of the histogram's bin, from 0"});
@@ -166,17 +175,18 @@ void add_monte_carlo(ResultBuilder& result, const Study& study, const MonteCarlo
                   {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
   write_group(result, kMonteCarlo, found);
   if (!found.share_magnitude.empty()) {
-    result.file().set_attribute("/monte_carlo/share_magnitude", "share", study.analysis.share);
+    result.file().set_attribute("/monte_carlo/share_magnitude", "share",
+                                asked_of<MonteCarloOptions>(study.analysis).share);
   }
   add_limits(result, study.model(), found.verdicts);
-  add_convergence(result, Analysis::Kind::monte_carlo, found.convergence);
-  add_solver(result, {"pose"}, found.solves);
+  add_convergence(result, kConvergence, found.convergence);
+  add_solver(result, kByPose, found.solves);
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
 
-void read_monte_carlo(const h5::File& file, StoredResult& result) {
+void read(const h5::File& file, StoredResult& result) {
+  MonteCarlo found;
   read_sigma(file, result);
-  MonteCarloResult& found = result.monte_carlo;
   found.levels = file.read<double>("/quantile");
   found.quantile_relative_error = file.attribute<double>("/monte_carlo/quantiles", "quantile_relative_error").at(0);
   read_group(file, kMonteCarlo, found);
@@ -184,26 +194,32 @@ void read_monte_carlo(const h5::File& file, StoredResult& result) {
     throw h5::Error("/edge does not have one position more than /bin");
   }
   fill_in_root_mean_squares(found);
-  found.verdicts = read_limits(file, result);
-  found.convergence = read_convergence(file, Analysis::Kind::monte_carlo);
-  found.solves = read_solver(file, {"pose"});
-  found.failures = read_failures(file, result);
+  result.verdicts = read_limits(file, result);
+  result.convergence = read_convergence(file, kConvergence);
+  found.solves = read_solver(file, kByPose);
+  result.varied = {std::string(kAllFactors)};
+  result.failures = read_failures(file, result);
+  result.found = std::move(found);
 }
 
-void append_monte_carlo_tables(CsvTables& tables, const StoredResult& result) {
-  const MonteCarlo& found = result.monte_carlo;
+void append_tables(CsvTables& tables, const StoredResult& result) {
+  const MonteCarlo& found = monte_carlo_of(result);
   tables.push_back(sigma_table(result));
   for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(response_table(result, r));
   tables.push_back(overall_table(result));
   if (!found.histogram_counts.empty()) {
     for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(histogram_table(result, r));
   }
-  append_limit_table(tables, result, found.verdicts);
+  append_limit_table(tables, result);
   CsvTable solves = lines_of_poses(result, "not_converged");
   append_solve_columns(solves, found.solves);
   tables.push_back(std::move(solves));
   tables.push_back(failure_table(result));
-  append_convergence_tables(tables, result, Analysis::Kind::monte_carlo, found.convergence);
+  append_convergence_tables(tables, result, kConvergence);
 }
+
+}  // namespace
+
+constinit const FileKind kMonteCarloFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

@@ -5,11 +5,14 @@
 
 #include "engine/base/units.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/report_kind.h"
+#include "engine/kinds/monte_carlo/stored.h"
+#include "engine/kinds/registry.h"
 #include "engine/report/display.h"
 
 namespace poesy {
 namespace {
+
+ShownCells cells(const StoredResult& result) { return shown_cells(result, kSummaryRows); }
 
 /// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. Without the first and
 /// the last bin, which reach out to the extremes.
@@ -44,7 +47,7 @@ std::vector<Mark> limit_marks(const StoredResult& result, std::size_t r, double 
   const LimitVerdict* verdict = verdict_on(result, r);
   if (verdict == nullptr) return {};
   std::vector<Mark> marks{{"limit", verdict->limit / unit}};
-  if (result.monte_carlo.overall_min[r] < 0.0) marks.push_back({"limit", -verdict->limit / unit});
+  if (monte_carlo_of(result).overall_min[r] < 0.0) marks.push_back({"limit", -verdict->limit / unit});
   return marks;
 }
 
@@ -64,7 +67,7 @@ std::string distribution_caption(const StoredResult& result, std::size_t r) {
 Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
   const NamedUnit& response = result.responses[r];
   const std::string unit = unit_text(response);
-  const Outline drawn = outline(result.monte_carlo, r, display(response).si);
+  const Outline drawn = outline(monte_carlo_of(result), r, display(response).si);
   const auto add = [&](std::string_view what, const std::vector<double>& values, double scale) {
     return pool.add(fmt::format("{}/{}", what, r), values, scale);
   };
@@ -79,7 +82,7 @@ Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
 }
 
 void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   Section& section = page.add_section("how-large", "How large are the deviations");
   section.paragraph(fmt::format("All {} vary at once.", counted(result.factors.size(), "error", "errors")));
   section.table(tables, "overall");
@@ -103,14 +106,14 @@ std::vector<double> quantile_at_poses(const MonteCarloResult& found, std::size_t
 std::string quantile_label(double level) { return percent_text(level) + " quantile"; }
 
 SolveTally tally(const StoredResult& result) {
-  return {"", {"all errors"}, result.poses.size(), result.monte_carlo.solves};
+  return {"", {"all errors"}, result.poses.size(), monte_carlo_of(result).solves};
 }
 
 /// The mean of each pose in a band from the lowest to the highest quantile, and what colours the workspace.
 void add_where(const StoredResult& result, Page& page) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   const std::vector<double>& levels = found.levels;
-  const PoseFigures figures(result, page);
+  const PoseFigures figures(result, cells(result), page);
   Lines bands{.x = figures.axis(), .panels = {}};
   std::vector<Field> fields;
   for (const std::size_t r : figures.responses()) {
@@ -143,10 +146,10 @@ void add_where(const StoredResult& result, Page& page) {
 }
 
 void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  Section& section = add_how_sure(page, "How sure are the means", result.monte_carlo.conf_level);
-  if (result.monte_carlo.convergence) {
+  Section& section = add_how_sure(page, "How sure are the means", monte_carlo_of(result).conf_level);
+  if (result.convergence) {
     ArrayPool& pool = page.figures.pool;
-    const EstimateCourse course = with_ends(result.monte_carlo.convergence->course);
+    const EstimateCourse course = with_ends(result.convergence->course);
     Lines lines = over_samples(course, pool);
     for (const std::size_t r : headline_order(result)) {
       const NamedUnit& response = result.responses[r];
@@ -167,29 +170,24 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (result.monte_carlo.poses == 0 || result.monte_carlo.levels.empty()) return;
+  if (monte_carlo_of(result).poses == 0 || monte_carlo_of(result).levels.empty()) return;
   add_limits(tables, page);
   add_how_large(result, tables, page);
   add_where(result, page);
   add_how_sure(result, tables, page);
 }
 
-Settling settling(const StoredResult& result) {
-  const std::optional<ConvergenceResult>& adaptive = result.monte_carlo.convergence;
-  return {"overall means", {"all errors"}, result.headline, adaptive ? &*adaptive : nullptr};
-}
+Settling settling(const StoredResult& result) { return {"overall means", {"all errors"}, result.headline}; }
 
 StudyWords words(const StoredResult&) { return {.draws = true}; }
 
 void warn(const StoredResult& result, std::vector<std::string>& list) {
-  if (std::string text = not_settled_text(result); !text.empty()) list.push_back(std::move(text));
+  if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
-
-ShownCells cells(const StoredResult& result) { return shown_cells(result, kSummaryRows); }
 
 /// The numbers of a Monte Carlo result over the samples of all poses, by name; in the order of the levels.
 std::vector<std::pair<std::string, std::vector<double>>> overall(const StoredResult& result) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<std::pair<std::string, std::vector<double>>> list{
       {"mean", found.overall_mean}, {"standard deviation", found.overall_std}, {"smallest", found.overall_min}};
   for (std::size_t q = 0; q < found.levels.size(); ++q) {
@@ -215,8 +213,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 
 }  // namespace
 
-constinit const ReportKind kMonteCarloReport{.name = "monte-carlo",
-                                             .tally = tally,
+constinit const ReportKind kMonteCarloReport{.tally = tally,
                                              .tables = monte_carlo_tables,
                                              .settling = settling,
                                              .words = words,

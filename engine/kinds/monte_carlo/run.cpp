@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/options.h"
 #include "engine/run/fold.h"
 #include "engine/run/pending_units.h"
 #include "engine/run/pose_unit.h"
@@ -106,7 +107,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
   auto result = run_monte_carlo(plan, run.model, run.study.analysis, run.options);
   if (!result || !run.makes_result()) return std::nullopt;
-  StudyResult found{{}, result->verdicts};
+  StudyResult found{{}, result->verdicts, {}};
   found.found = *std::move(result);
   return found;
 }
@@ -115,7 +116,8 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
   constexpr std::size_t kNumbers = 8;  // mean, its interval, std, min, max, count, rms
   const std::size_t responses = study.model().responses.size();
   // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
-  const std::size_t of_sketch = 3 * study.analysis.quantiles.size() + (study.analysis.judge == Judge::share ? 1 : 0);
+  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const std::size_t numbers = responses * (kNumbers + of_sketch) * sizeof(double);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
                               responses * (kStoredMoments + (2 + of_sketch) * sizeof(double)) + kStoredSolves,

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "engine/kinds/kind.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/run_kind.h"
 #include "engine/model/model.h"
 #include "engine/run/run_options.h"
 #include "engine/study/plan.h"

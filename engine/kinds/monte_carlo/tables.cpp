@@ -7,6 +7,7 @@
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/stored.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 
@@ -27,7 +28,7 @@ std::string quantile_heading(double level) { return "q_" + shortest(level); }
 
 /// The lowest quantiles go first, then the smallest value; mean, spread and what is high stay.
 std::vector<FilledColumn> overall_columns(const StoredResult& result) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const std::vector<double>& values,
                                 int dispensable = 0, std::size_t stride = 1, std::size_t offset = 0) {
     return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
@@ -51,7 +52,7 @@ std::vector<FilledColumn> overall_columns(const StoredResult& result) {
 
 /// Precondition: there are poses and quantiles.
 Table overall_table(const StoredResult& result) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   Table table{.name = "overall",
               .caption = fmt::format("{} together: responses over the samples of {}{}",
                                      counted(result.factors.size(), "error varies", "errors vary"),
@@ -116,7 +117,7 @@ WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
 }
 
 std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   const Unit& unit = display(result.responses[r]);
   std::vector<double> mean;
   double sum = 0.0;
@@ -138,7 +139,7 @@ std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
 /// Names the poses that cannot be told from the worst; empty where there is none.
 std::string alike_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 5;
-  const WorstPoses poses = worst_poses(result.monte_carlo, r);
+  const WorstPoses poses = worst_poses(monte_carlo_of(result), r);
   if (poses.alike.empty()) return {};
   std::string names;
   const std::size_t named = std::min(kMost, poses.alike.size());
@@ -147,12 +148,12 @@ std::string alike_text(const StoredResult& result, std::size_t r) {
     names += fmt::format(" and {}", counted(poses.alike.size() - named, "other", "others"));
   }
   return fmt::format("{}: the largest {} is at {}, but its samples do not tell it from {}", result.responses[r].name,
-                     quantile_heading(result.monte_carlo.levels.back()), place_text(result, poses.worst), names);
+                     quantile_heading(monte_carlo_of(result).levels.back()), place_text(result, poses.worst), names);
 }
 
 /// Precondition: there are poses and quantiles.
 Table poses_table(const StoredResult& result) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   const std::string name = "largest_" + quantile_name(found.levels.back());
   const std::string heading = quantile_heading(found.levels.back());
   Table table{
@@ -179,14 +180,12 @@ Table poses_table(const StoredResult& result) {
 }  // namespace
 
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
-  const MonteCarloResult& found = result.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Table> tables;
-  if (std::optional<Table> limits = limits_table(result)) tables.push_back(std::move(*limits));
   if (found.poses > 0 && !found.levels.empty()) {
     tables.push_back(overall_table(result));
     tables.push_back(poses_table(result));
   }
-  if (std::optional<Table> convergence = convergence_table(result)) tables.push_back(std::move(*convergence));
   return tables;
 }
 

@@ -26,14 +26,14 @@ void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
 
 }  // namespace
 
-LimitVerdicts judge_draws(const Analysis& analysis, const MonteCarloResult& found,
-                          std::span<const QuantileSketch> overall) {
-  LimitVerdicts verdicts{.judge = analysis.judge, .share = analysis.share, .limits = {}};
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
+                          const MonteCarloResult& found, std::span<const QuantileSketch> overall) {
+  LimitVerdicts verdicts{.judge = judge, .share = share, .limits = {}};
   const std::uint64_t tried = found.total().total();
-  for (const ResponseLimit& limit : analysis.limits) {
+  for (const ResponseLimit& limit : limits) {
     LimitVerdict verdict{.response = limit.response, .limit = limit.most, .tried = tried};
     verdict.within = count_within(overall[limit.response], limit.most);
-    if (analysis.judge == Judge::rms) {
+    if (judge == Judge::rms) {
       verdict.value = found.overall_rms[limit.response];
     } else {
       take_worst_pose(found, verdict);

@@ -14,7 +14,7 @@ namespace poesy {
 ///   share_magnitude is. Draws that do not count are not within it.
 /// overall: [R], the samples of all poses that count. Numbers from a sketch are off by its kRelativeError at most.
 /// Precondition: found.overall_rms is there, and found.share_magnitude where it is needed.
-LimitVerdicts judge_draws(const Analysis& analysis, const MonteCarloResult& found,
-                          std::span<const QuantileSketch> overall);
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
+                          const MonteCarloResult& found, std::span<const QuantileSketch> overall);
 
 }  // namespace poesy

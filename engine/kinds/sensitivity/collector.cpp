@@ -23,7 +23,7 @@ SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t respons
   if (plan.samples() % Plan::kUnitSamples != 0) parts_.resize(plan.cells());
 }
 
-void SensitivityCollector::add(const WorkUnit& unit, const SensitivityUnit& found) {
+void SensitivityCollector::add(const WorkUnit& unit, const CellUnit& found) {
   const std::size_t cell = cell_of(unit);
   POESY_EXPECTS(unit.first.value == units_done(cell) * Plan::kUnitSamples);
   UnitStats& stats = (unit.count == Plan::kUnitSamples ? whole_ : parts_)[cell];

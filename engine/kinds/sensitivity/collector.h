@@ -21,7 +21,7 @@ class SensitivityCollector {
   SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level);
 
   /// Precondition: the unit after those done in its cell.
-  void add(const WorkUnit& unit, const SensitivityUnit& found);
+  void add(const WorkUnit& unit, const CellUnit& found);
 
   /// Units of this cell that were added.
   std::size_t units_done(std::size_t cell) const;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/report/display.h"
 #include "engine/kinds/sensitivity/figures.h"
-#include "engine/kinds/report_kind.h"
-#include "engine/kinds/sensitivity/two_rankings.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/sensitivity/two_rankings.h"
+#include "engine/report/display.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/tolerance.h"
 
@@ -54,7 +54,7 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
         .paragraph("A and B were not solved at the same poses, so they cannot be compared pose by pose.");
     return;
   }
-  const PoseFigures figures(a, page);
+  const PoseFigures figures(a, sensitivity_cells(a), page);
   const Common factors = ranked_common(a, b);
   std::vector<std::string> rows;
   for (const auto& both : factors) rows.push_back(a.factors[both.first].name);
@@ -81,9 +81,12 @@ void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
 
 /// Their rankings beside each other.
 void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) {
-  const RankedResult ranked_a{a.stored, a.path, default_ranking(a.stored)};
-  const RankedResult ranked_b{b.stored, b.path, default_ranking(b.stored)};
-  const TwoRankings rankings = two_rankings(ranked_a, ranked_b);
+  const auto ranked = [](const ReportedResult& one) {
+    return RankedResult{one.stored, one.path, default_ranking(one.stored), sensitivity_tally(one.stored).total()};
+  };
+  const RankedResult ranked_a = ranked(a);
+  const RankedResult ranked_b = ranked(b);
+  const TwoRankings rankings = two_rankings(ranked_a, ranked_b, RowOrder::effect);
   Section& section = page.add_section("rankings", "The two rankings");
   section.paragraph(ranked_text('A', ranked_a) + ".");
   section.paragraph(ranked_text('B', ranked_b) + ".");
@@ -96,7 +99,7 @@ void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) 
 
 /// Predicted from the errors one by one (stats/tolerance.h), in the unit shown.
 double total_rms(const StoredResult& result, std::size_t response) {
-  const MeanSquare squares = mean_square(response_study(result.sensitivity, result.factor_sigma, response));
+  const MeanSquare squares = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
   return std::sqrt(squares.at(result.factor_sigma)) / display(result.responses[response]).si;
 }
 
@@ -115,7 +118,7 @@ Comparable comparable_sensitivity(const StoredResult& result, const StoredResult
   };
   add("effect at the size each study sets (index x sigma)", "effect", true);
   add("global index", "index", false);
-  if (result.sensitivity.background.empty()) return all;
+  if (sensitivity_of(result).background.empty()) return all;
   all.total_label = "All errors together, predicted from each alone: root mean square over samples and poses";
   for (const std::size_t r : response_order(result)) all.totals.push_back(total_rms(result, r));
   return all;

@@ -2,6 +2,7 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/stored.h"
 
 namespace poesy {
 namespace {
@@ -29,8 +30,8 @@ const Group<Fidelity> kFidelity{
       "Samples that the second fidelity did not solve"}}};
 
 /// What a measure is called in CSV: the index by the name of its fidelity.
-std::string csv_name(const FieldRow<Fidelity>& field, const StoredResult& result) {
-  return field.name == "global" ? result.fidelities[1] : field.name;
+std::string csv_name(const FieldRow<Fidelity>& field, const StoredSensitivity& first) {
+  return field.name == "global" ? first.fidelities[1] : field.name;
 }
 
 }  // namespace
@@ -43,15 +44,15 @@ void add_fidelity(ResultBuilder& result, const Study& study, const std::optional
   result.file().set_attribute("/fidelity", "fidelities", std::span<const std::string>(names));
 }
 
-void read_fidelity(const h5::File& file, StoredResult& result) {
+void read_fidelity(const h5::File& file, StoredSensitivity& found) {
   if (!file.exists("/fidelity")) return;
-  result.fidelities = file.attribute<std::string>("/fidelity", "fidelities");
-  if (result.fidelities.size() != 2) throw h5::Error("it does not compare two fidelities");
-  read_group(file, kFidelity, result.sensitivity.fidelity.emplace());
+  found.fidelities = file.attribute<std::string>("/fidelity", "fidelities");
+  if (found.fidelities.size() != 2) throw h5::Error("it does not compare two fidelities");
+  read_group(file, kFidelity, found.fidelity.emplace());
 }
 
 void append_fidelity_tables(CsvTables& tables, const StoredResult& result) {
-  const SensitivityResult& first = result.sensitivity;
+  const StoredSensitivity& first = sensitivity_of(result);
   if (!first.fidelity) return;
   const Fidelity& found = *first.fidelity;
   CsvTable table = lines_of_factors(result, "fidelity");
@@ -61,11 +62,11 @@ void append_fidelity_tables(CsvTables& tables, const StoredResult& result) {
     const std::size_t begin = r * first.factors;
     const std::string index_unit = csv_unit(kIndexUnit, result, &response);
     table.columns.push_back(
-        list_column(with_unit(response.name + "_" + result.fidelities[0], index_unit), first.global, begin));
+        list_column(with_unit(response.name + "_" + first.fidelities[0], index_unit), first.global, begin));
     for (const FieldRow<Fidelity>& field : kFidelity.fields) {
       if (field.axes != kByResponseFactor) continue;
       const std::string heading =
-          with_unit(response.name + "_" + csv_name(field, result), csv_unit(field.unit, result, &response));
+          with_unit(response.name + "_" + csv_name(field, first), csv_unit(field.unit, result, &response));
       table.columns.push_back(field_column(heading, field, found, begin));
     }
   }

@@ -1,7 +1,11 @@
 #include <algorithm>
 
 #include "engine/files/result_parts.h"
+#include "engine/kinds/registry.h"
+#include "engine/kinds/sensitivity/options.h"
+#include "engine/kinds/sensitivity/points_radius.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/stored.h"
 
 namespace poesy {
 namespace {
@@ -56,6 +60,49 @@ const Group<Indices> kIndices{
      {"background", &Indices::background, kByResponsePose, kResponseUnit,
       "The response with all varied errors zero; NaN where that was not solved", "background"}}};
 
+const Axes kHistoryAxes{"response", "factor", "samples"};
+
+const CourseWords kHistory{
+    {"/sensitivity/history",
+     "The global indices after the first samples of each pose: what a study with so many samples finds; NaN where "
+     "undefined",
+     kCourseLevel,
+     {},
+     {{"global", &EstimateCourse::value, kHistoryAxes, kIndexUnit, "Global index after so many samples at each pose"},
+      {"global_ci_low", &EstimateCourse::ci_low, kHistoryAxes, kIndexUnit, "Lower end of the interval of global", "",
+       kCourseLevel},
+      {"global_ci_high", &EstimateCourse::ci_high, kHistoryAxes, kIndexUnit, "Upper end of the interval of global", "",
+       kCourseLevel}}},
+    "samples",
+    "Samples at each pose; the last is the study's number",
+    "history_",
+    "factor",
+    {"index", "index_ci_low", "index_ci_high"}};
+
+const CourseWords kConvergence = convergence_words(
+    {"response", "factor"}, "index", kIndexUnit, "Global index",
+    "An error got samples until, at a milestone, the half-width of every response's global index was at most "
+    "relative_error of the index, or the index rounding (below 1e-10), or max was there",
+    "factor");
+
+/// What the ranking owes to the metric's points, [2 x R]: /metric/radius_tau.
+void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau) {
+  result.add_axis("radius_multiple", std::vector<double>(kPointsRadii.begin(), kPointsRadii.end()),
+                  {"1", "Distance of the metric's points from their middle, over that in /metric/points"});
+  result.add("/metric/radius_tau", {"radius_multiple", "response"}, tau,
+             {"1",
+              "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, "
+              "to first order, without the background's errors, at up to 32 of the poses"});
+}
+
+/// Empty where the file has none.
+std::vector<double> read_radius_tau(const h5::File& file) {
+  if (!file.exists("/metric/radius_tau")) return {};
+  if (axis_length(file, "radius_multiple") != kPointsRadii.size())
+    throw h5::Error("/radius_multiple is of other radii");
+  return read_along<double>(file, "/metric/radius_tau", {"radius_multiple", "response"});
+}
+
 /// The index by one estimator ("global", "global_corrected") with its interval, in SI or in the units people read.
 void append_index_columns(CsvTable& table, const StoredResult& result, const std::string& estimator, std::size_t r,
                           bool displayed) {
@@ -66,7 +113,7 @@ void append_index_columns(CsvTable& table, const StoredResult& result, const std
     const auto field = std::ranges::find(kIndices.fields, estimator + end, &FieldRow<Indices>::name);
     const auto number = [&result, &response, field, displayed, r](std::size_t p) {
       const double scale = displayed ? display(result.factors[p]).si / display(response).si : 1.0;
-      return number_at(*field, result.sensitivity, r * result.factors.size() + p) * scale;
+      return number_at<Indices>(*field, sensitivity_of(result), r * result.factors.size() + p) * scale;
     };
     const std::string name = response.name + estimator.substr(std::string_view("global").size()) + end;
     table.columns.push_back({with_unit(name, unit), number});
@@ -77,7 +124,7 @@ void append_index_columns(CsvTable& table, const StoredResult& result, const std
 CsvTable global_table(const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "global");
   for (const std::string& estimator : {std::string("global"), std::string("global_corrected")}) {
-    if (estimator == "global_corrected" && result.sensitivity.global_corrected.empty()) continue;
+    if (estimator == "global_corrected" && sensitivity_of(result).global_corrected.empty()) continue;
     for (std::size_t r = 0; r < result.responses.size(); ++r) {
       for (const bool displayed : {false, true}) append_index_columns(table, result, estimator, r, displayed);
     }
@@ -89,7 +136,7 @@ CsvTable index_change_table(const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "index_change");
   const std::size_t factors = result.factors.size();
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
-    table.columns.push_back(list_column(result.responses[r].name, result.sensitivity.index_change, r * factors));
+    table.columns.push_back(list_column(result.responses[r].name, sensitivity_of(result).index_change, r * factors));
   }
   return table;
 }
@@ -102,7 +149,8 @@ void append_local_tables(CsvTables& tables, const StoredResult& result) {
       const NamedUnit& response = result.responses[r];
       const std::size_t first = r * result.factors.size() * result.poses.size();
       CsvTable table = lines_of_factors(result, field.name + "_" + response.name);
-      append_pose_columns(table, result, field, result.sensitivity, first, csv_unit(field.unit, result, &response));
+      append_pose_columns<Indices>(table, result, field, sensitivity_of(result), first,
+                                   csv_unit(field.unit, result, &response));
       tables.push_back(std::move(table));
     }
   }
@@ -114,59 +162,63 @@ void append_solver_tables(CsvTables& tables, const StoredResult& result) {
     CsvTable table = lines_of_factors(result, number.name);
     for (std::size_t m = 0; m < poses; ++m) {
       table.columns.push_back(
-          list_column("pose_" + std::to_string(m), result.sensitivity.solves, m, poses, number.get));
+          list_column("pose_" + std::to_string(m), sensitivity_of(result).solves, m, poses, number.get));
     }
     tables.push_back(std::move(table));
   }
 }
 
-}  // namespace
-
-void add_sensitivity(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
+void write(ResultBuilder& result, const Study& study, const std::any& any) {
+  const auto& found = std::any_cast<const SensitivityResult&>(any);
+  const std::vector<FactorIndex>& factors = study.analysis.factors;
+  POESY_EXPECTS(found.factors == factors.size());
+  add_names(result, study, factors);
   add_sigma(result, study);
   write_group(result, kIndices, found);
-  add_history(result, found.history);
+  if (found.history) add_course(result, kHistory, *found.history);
   add_tolerances(result, study, found);
   add_separation(result, study, found.separation);
   add_fidelity(result, study, found.fidelity);
-  add_convergence(result, Analysis::Kind::sensitivity, found.convergence);
+  add_convergence(result, kConvergence, found.convergence);
   if (!found.radius_tau.empty()) add_radius_tau(result, found.radius_tau);
-  add_solver(result, {"factor", "pose"}, found.solves);
-  const auto names =
-      texts(study.analysis.factors, [&](FactorIndex factor) { return study.model().factors[factor.value].name; });
+  add_solver(result, kByFactorPose, found.solves);
+  const auto names = texts(factors, [&](FactorIndex factor) { return study.model().factors[factor.value].name; });
   add_failures(result, found.failures, names, found.total().not_converged());
 }
 
-void read_sensitivity(const h5::File& file, StoredResult& result) {
+void read(const h5::File& file, StoredResult& result) {
+  StoredSensitivity found;
   read_sigma(file, result);
-  if (file.exists("/factors/distribution")) {
-    result.factor_distribution = read_along<std::string>(file, "/factors/distribution", {"factor"});
-    check_names(result.factor_distribution, "/factors/distribution");
-  }
-  SensitivityResult& found = result.sensitivity;
-  read_group(file, kIndices, found);
-  found.solves = read_solver(file, {"factor", "pose"});
+  read_group<Indices>(file, kIndices, found);
+  found.solves = read_solver(file, kByFactorPose);
   found.radius_tau = read_radius_tau(file);
-  found.history = read_history(file);
-  found.failures = read_failures(file, result);
-  found.convergence = read_convergence(file, Analysis::Kind::sensitivity);
-  read_tolerances(file, result);
-  read_separation(file, result);
-  read_fidelity(file, result);
+  if (file.exists(kHistory.group.path)) found.history = read_course(file, kHistory);
+  result.varied = texts(result.factors, &NamedUnit::name);
+  result.failures = read_failures(file, result);
+  result.convergence = read_convergence(file, kConvergence);
+  read_tolerances(file, result.factors, found);
+  read_separation(file, found);
+  read_fidelity(file, found);
+  result.found = std::move(found);
 }
 
-void append_sensitivity_tables(CsvTables& tables, const StoredResult& result) {
+void append_tables(CsvTables& tables, const StoredResult& result) {
+  const Indices& found = sensitivity_of(result);
   tables.push_back(sigma_table(result));
   tables.push_back(global_table(result));
-  if (!result.sensitivity.index_change.empty()) tables.push_back(index_change_table(result));
+  if (!found.index_change.empty()) tables.push_back(index_change_table(result));
   append_local_tables(tables, result);
   append_solver_tables(tables, result);
   tables.push_back(failure_table(result));
   append_tolerance_tables(tables, result);
   append_separation_tables(tables, result);
   append_fidelity_tables(tables, result);
-  append_convergence_tables(tables, result, Analysis::Kind::sensitivity, result.sensitivity.convergence);
-  append_history_tables(tables, result);
+  append_convergence_tables(tables, result, kConvergence);
+  if (found.history) append_course_tables(tables, result, kHistory, *found.history, {});
 }
+
+}  // namespace
+
+constinit const FileKind kSensitivityFile{.write = write, .read = read, .append_tables = append_tables};
 
 }  // namespace poesy

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
@@ -11,6 +12,26 @@
 #include "engine/stats/rank_correlation.h"
 
 namespace poesy {
+
+SolveTally sensitivity_tally(const StoredResult& result) {
+  const SensitivityResult& found = sensitivity_of(result);
+  SolveTally made{"error", names_of(result.factors), result.poses.size(), found.solves};
+  if (!found.fidelity) return made;
+  const std::vector<std::uint64_t>& failed = found.fidelity->not_converged;
+  const std::vector<std::uint8_t>& linear = found.fidelity->linear;
+  const std::vector<std::string>& fidelities = sensitivity_of(result).fidelities;
+  made.second = {.first = fidelities[0],
+                 .second = fidelities[1],
+                 .not_converged = std::accumulate(failed.begin(), failed.end(), std::uint64_t{0}),
+                 .total = made.total().total(),
+                 .not_linear = static_cast<std::size_t>(std::ranges::count(linear, std::uint8_t{0})),
+                 .errors = linear.size()};
+  return made;
+}
+
+ShownCells sensitivity_cells(const StoredResult& result) {
+  return shown_cells(result, result.factors.size() * (result.time.empty() ? 1 : 2));
+}
 
 std::vector<double> in_shown_units(const StoredResult& result, const std::vector<double>& indices, bool as_effect) {
   std::vector<double> list;
@@ -38,7 +59,7 @@ std::vector<std::vector<std::string>> units_of_indices(const StoredResult& resul
 }
 
 std::vector<double> local_effects(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   const std::size_t cells = found.factors * found.poses;
   std::vector<double> effects(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {

@@ -6,10 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "engine/kinds/report_kind.h"
+#include "engine/kinds/sensitivity/stored.h"
+#include "engine/report/report_kind.h"
 
 /// What the page of a sensitivity result and that of two share.
 namespace poesy {
+
+/// How the solves ended, by error and pose.
+SolveTally sensitivity_tally(const StoredResult& result);
+
+/// What figures by pose show; on a trajectory curves show the same numbers as the map.
+ShownCells sensitivity_cells(const StoredResult& result);
 
 /// Indices [R x P] in the units shown and the order of response_order: as effects, index x sigma, or as they are.
 std::vector<double> in_shown_units(const StoredResult& result, const std::vector<double>& indices, bool as_effect);

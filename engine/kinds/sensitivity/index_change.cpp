@@ -10,7 +10,7 @@
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostNames = 10;
 
 std::span<const double> changes_of(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   return std::span(found.index_change).subspan(response * found.factors, found.factors);
 }
 
@@ -50,7 +50,7 @@ std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::s
 
 }  // namespace
 
-bool has_index_changes(const StoredResult& result) { return !result.sensitivity.index_change.empty(); }
+bool has_index_changes(const StoredResult& result) { return !sensitivity_of(result).index_change.empty(); }
 
 Cell change_cell(double change) {
   if (std::isnan(change)) return text_cell("");

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
-#include "engine/kinds/sensitivity/history_points.h"
+#include "engine/run/history_points.h"
 
 namespace poesy {
 namespace {

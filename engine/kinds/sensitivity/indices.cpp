@@ -7,8 +7,8 @@
 #include "engine/base/nan.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/counts.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/rounding.h"
-#include "engine/stats/sensitivity_index.h"
 
 namespace poesy {
 namespace {

@@ -11,8 +11,8 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
 #include "engine/run/some_poses.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/rounding.h"
-#include "engine/stats/sensitivity_index.h"
 
 namespace poesy {
 namespace {

@@ -7,12 +7,15 @@
 #include <optional>
 #include <span>
 
+#include "engine/kinds/registry.h"
 #include "engine/kinds/sensitivity/figures.h"
 #include "engine/kinds/sensitivity/index_change.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/sensitivity/two_rankings.h"
 #include "engine/report/display.h"
 #include "engine/stats/rounding.h"
 #include "engine/stats/tolerance.h"
@@ -37,7 +40,7 @@ std::string few_matter_text(const StoredResult& result) {
   constexpr double kHardly = 0.01;
   if (!has_tolerances(result)) return {};
   const std::size_t response = response_named(result, default_ranking(result));
-  const MeanSquare found = mean_square(response_study(result.sensitivity, result.factor_sigma, response));
+  const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
   const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
   if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return {};
   const std::vector<std::size_t> order = largest_first(shares);
@@ -85,7 +88,7 @@ void add_which_errors_matter(const StoredResult& result, std::span<const Table> 
       "The global index of an error is the scatter of a response for each unit of scatter of the error, its mean over "
       "the {} plus its spread between them. Times the size that the study gives the error it is the effect, which "
       "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals. {}",
-      counted(result.poses.size(), "pose", "poses"), 100.0 * result.sensitivity.conf_level,
+      counted(result.poses.size(), "pose", "poses"), 100.0 * sensitivity_of(result).conf_level,
       has_corrected_indices(result) ? kCorrected : kPublished));
   if (const std::string text = few_matter_text(result); !text.empty()) section.paragraph(text);
   Bars bars{{{"response", names_of(result.responses, response_order(result))}},
@@ -117,7 +120,8 @@ std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::s
     list.push_back({"effect on " + response.name, unit_text(response),
                     figures.add(fmt::format("effect/{}", r), in_order(local_effects(result, r), rows), response)});
   }
-  list.push_back({"not converged", "%", figures.add("not_converged", in_order(tally_of(result).shares(), rows), 0.01)});
+  list.push_back(
+      {"not converged", "%", figures.add("not_converged", in_order(sensitivity_tally(result).shares(), rows), 0.01)});
   return list;
 }
 
@@ -172,7 +176,7 @@ std::string worst_place_text(const StoredResult& result) {
 }
 
 void add_where(const StoredResult& result, Page& page) {
-  const PoseFigures figures(result, page);
+  const PoseFigures figures(result, sensitivity_cells(result), page);
   const RankedErrors ranked = ranked_errors(result, default_ranking(result));
   const std::vector<std::string> errors = names_of(result.factors, ranked.rows);
   Section& section = page.add_section("where", "Where in the workspace");
@@ -201,8 +205,8 @@ void add_where(const StoredResult& result, Page& page) {
 
 /// With fewer samples; none where an older version wrote the result.
 std::optional<EstimateCourse> course_of(const StoredResult& result) {
-  if (result.sensitivity.convergence) return with_ends(result.sensitivity.convergence->course);
-  return result.sensitivity.history;
+  if (result.convergence) return with_ends(result.convergence->course);
+  return sensitivity_of(result).history;
 }
 
 /// Effects on each response in the order of importance.
@@ -223,7 +227,7 @@ Lines effects_over_samples(const StoredResult& result, const EstimateCourse& cou
 }
 
 void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  Section& section = add_how_sure(page, "How sure are the indices", result.sensitivity.conf_level);
+  Section& section = add_how_sure(page, "How sure are the indices", sensitivity_of(result).conf_level);
   if (const std::optional<EstimateCourse> course = course_of(result)) {
     section.paragraph(
         "What a study with fewer samples would have found: curves that have become flat, with narrow bands, would not "
@@ -264,7 +268,7 @@ void add_tolerances(const StoredResult& result, Page& page) {
   Section& section = page.add_section("tolerances", "How tight must each be");
   const std::size_t response = response_named(result, default_ranking(result));
   const std::string& name = result.responses[response].name;
-  const std::optional<ReferenceError>& reference = result.tolerance_reference[response];
+  const std::optional<ReferenceError>& reference = sensitivity_of(result).tolerance_reference[response];
   if (!reference) {
     section.paragraph(fmt::format("No error has an effect on {}, so nothing can be said about tolerances.", name));
     return;
@@ -304,14 +308,14 @@ std::vector<double> largest(const std::vector<double>& measure, std::size_t fact
 }
 
 void add_separation(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (!result.sensitivity.separation) return;
-  const SeparationResult& found = *result.sensitivity.separation;
+  if (!sensitivity_of(result).separation) return;
+  const SeparationResult& found = *sensitivity_of(result).separation;
   Section& section = page.add_section("calibration", "What calibration can remove");
   section.paragraph(fmt::format(
       "To first order, a part of each error's effect enters through the actuated directions, where a correction of the "
       "actuators can take it away. The removable share is what the best correction at each pose removes; what is left "
       "has to be prevented by tolerances. The effect is measured by {}. Of all errors together, {} is removable.",
-      result.separation_measure, percent_text(found.removable_together)));
+      sensitivity_of(result).separation_measure, percent_text(found.removable_together)));
   ArrayPool& pool = page.figures.pool;
   add_figure(
       page, section, "separation",
@@ -322,13 +326,13 @@ void add_separation(const StoredResult& result, std::span<const Table> tables, P
 }
 
 void add_fidelity(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (!result.sensitivity.fidelity) return;
-  const FidelityResult& found = *result.sensitivity.fidelity;
+  if (!sensitivity_of(result).fidelity) return;
+  const FidelityResult& found = *sensitivity_of(result).fidelity;
   Section& section = page.add_section("linearity", "Is first order enough");
   section.paragraph(
       fmt::format("The study was solved at fidelity \"{}\" and, on the same draws, at \"{}\". An error is linear where "
                   "they differ by no more than {:.3g} % of its largest effect, at the size the study sets.",
-                  result.fidelities[0], result.fidelities[1], 100.0 * found.linearity));
+                  sensitivity_of(result).fidelities[0], sensitivity_of(result).fidelities[1], 100.0 * found.linearity));
   ArrayPool& pool = page.figures.pool;
   const std::size_t factors = result.factors.size();
   add_figure(
@@ -342,7 +346,7 @@ void add_fidelity(const StoredResult& result, std::span<const Table> tables, Pag
 }
 
 void warn_of_unknown_indices(const StoredResult& result, std::vector<std::string>& list) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   std::vector<std::string> unknown;
   for (std::size_t p = 0; p < found.factors; ++p) {
     bool known = true;
@@ -384,7 +388,7 @@ void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
 }
 
 void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>& list) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   const GlobalIndices shown = shown_indices(result);
   std::size_t wide = 0;
   std::size_t all = 0;
@@ -408,30 +412,15 @@ void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>
                   result.responses[widest->second / found.factors].name, percent_text(widest->first)));
 }
 
-SolveTally tally(const StoredResult& result) {
-  const SensitivityResult& found = result.sensitivity;
-  SolveTally made{"error", names_of(result.factors), result.poses.size(), found.solves};
-  if (!found.fidelity) return made;
-  const std::vector<std::uint64_t>& failed = found.fidelity->not_converged;
-  const std::vector<std::uint8_t>& linear = found.fidelity->linear;
-  made.second = {.not_converged = std::accumulate(failed.begin(), failed.end(), std::uint64_t{0}),
-                 .total = made.total().total(),
-                 .not_linear = static_cast<std::size_t>(std::ranges::count(linear, std::uint8_t{0})),
-                 .errors = linear.size()};
-  return made;
-}
-
 Settling settling(const StoredResult& result) {
-  const std::optional<ConvergenceResult>& adaptive = result.sensitivity.convergence;
-  return {"global indices", names_of(result.factors), positions(result.responses.size()),
-          adaptive ? &*adaptive : nullptr};
+  return {"global indices", names_of(result.factors), positions(result.responses.size())};
 }
 
 void warn(const StoredResult& result, std::vector<std::string>& list) {
   warn_of_unknown_indices(result, list);
   warn_of_small_errors(result, list);
   warn_of_sizes(result, list);
-  if (std::string text = not_settled_text(result); !text.empty()) list.push_back(std::move(text));
+  if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
   warn_of_wide_intervals(result, list);
 }
 
@@ -444,22 +433,17 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_fidelity(result, tables, page);
 }
 
-/// On a trajectory curves show the same numbers as the map.
-ShownCells cells(const StoredResult& result) {
-  return shown_cells(result, result.factors.size() * (result.time.empty() ? 1 : 2));
-}
-
 StudyWords words(const StoredResult&) { return {.draws = true}; }
 
 }  // namespace
 
-constinit const ReportKind kSensitivityReport{.name = "sensitivity",
-                                              .tally = tally,
+constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
                                               .tables = sensitivity_tables,
+                                              .two_rankings = two_rankings,
                                               .settling = settling,
                                               .words = words,
                                               .warn = warn,
-                                              .shown_cells = cells,
+                                              .shown_cells = sensitivity_cells,
                                               .page = add_page,
                                               .comparable = comparable_sensitivity,
                                               .compare = compare_sensitivity};

@@ -9,9 +9,9 @@
 #include "engine/base/error.h"
 #include "engine/base/nan.h"
 #include "engine/run/some_poses.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/rank_correlation.h"
 #include "engine/stats/rounding.h"
-#include "engine/stats/sensitivity_index.h"
 
 namespace poesy {
 namespace {

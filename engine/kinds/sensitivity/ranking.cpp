@@ -14,7 +14,7 @@ namespace {
 
 /// What the errors are put in order by, the largest first.
 double key(const StoredResult& result, std::size_t response, std::size_t p, RowOrder order) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   switch (order) {
     case RowOrder::effect:
       return effect(result, response, p);
@@ -30,7 +30,7 @@ double key(const StoredResult& result, std::size_t response, std::size_t p, RowO
 }
 
 std::vector<std::size_t> ordered(const StoredResult& result, std::size_t response, RowOrder order) {
-  std::vector<std::size_t> rows = positions(result.sensitivity.factors);
+  std::vector<std::size_t> rows = positions(sensitivity_of(result).factors);
   if (order == RowOrder::name) {
     std::ranges::stable_sort(rows, {}, [&](std::size_t p) { return result.factors[p].name; });
     return rows;
@@ -44,21 +44,21 @@ std::vector<std::size_t> ordered(const StoredResult& result, std::size_t respons
 
 }  // namespace
 
-bool has_corrected_indices(const StoredResult& result) { return !result.sensitivity.global_corrected.empty(); }
+bool has_corrected_indices(const StoredResult& result) { return !sensitivity_of(result).global_corrected.empty(); }
 
 GlobalIndices published_indices(const StoredResult& result) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   return {found.global, found.global_ci_low, found.global_ci_high};
 }
 
 GlobalIndices shown_indices(const StoredResult& result) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   if (!has_corrected_indices(result)) return published_indices(result);
   return {found.global_corrected, found.global_corrected_ci_low, found.global_corrected_ci_high};
 }
 
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor) {
-  return index_rounding(result.sensitivity, response, result.factor_sigma[factor]);
+  return index_rounding(sensitivity_of(result), response, result.factor_sigma[factor]);
 }
 
 double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor) {
@@ -66,12 +66,12 @@ double without_rounding(const StoredResult& result, double index, std::size_t re
 }
 
 bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor) {
-  return has_effect(shown_indices(result).value[response * result.sensitivity.factors + factor],
+  return has_effect(shown_indices(result).value[response * sensitivity_of(result).factors + factor],
                     index_rounding(result, response, factor));
 }
 
 double effect(const StoredResult& result, std::size_t response, std::size_t factor) {
-  return shown_indices(result).value[response * result.sensitivity.factors + factor] * result.factor_sigma[factor];
+  return shown_indices(result).value[response * sensitivity_of(result).factors + factor] * result.factor_sigma[factor];
 }
 
 FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
@@ -91,7 +91,7 @@ double share_not_converged(const SensitivityResult& result, std::size_t factor) 
 }
 
 RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order) {
-  RankedErrors found{response_named(result, response), {}, std::vector<std::size_t>(result.sensitivity.factors)};
+  RankedErrors found{response_named(result, response), {}, std::vector<std::size_t>(sensitivity_of(result).factors)};
   const std::vector<std::size_t> by_effect = ordered(result, found.response, RowOrder::effect);
   for (std::size_t n = 0; n < by_effect.size(); ++n) found.ranks[by_effect[n]] = n + 1;
   found.rows = order == RowOrder::effect ? by_effect : ordered(result, found.response, order);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -8,21 +7,10 @@
 
 #include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/stored.h"
 #include "engine/report/display.h"
 
 namespace poesy {
-
-/// In which order tables show the errors of a sensitivity result; the largest first.
-enum class RowOrder {
-  effect,        ///< index x sigma: what the error does at the size that the study gives it
-  index,         ///< in the units shown
-  name,          ///< a to z
-  study,         ///< as the study has them
-  not_converged  ///< share of the samples
-};
-
-/// What users call them, in the order of RowOrder.
-inline constexpr std::array<std::string_view, 5> kRowOrders{"effect", "index", "name", "order", "not-converged"};
 
 /// The errors of a sensitivity result, put in order by one response. Equal ones stay in the order of the study, and
 /// what is not known comes last.

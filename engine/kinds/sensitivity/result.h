@@ -36,7 +36,7 @@ struct FidelityResult {
 
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined. global is the
 /// published estimator; global_corrected is what tables and figures call the index, free of what sampling adds to
-/// global (stats/sensitivity_index.h), and NaN where the error is too small for its effect to be told from rounding
+/// global (stats/indices.h), and NaN where the error is too small for its effect to be told from rounding
 /// (stats/rounding.h). Files of older versions have neither this nor rounding: they are empty.
 struct SensitivityResult {
   std::size_t responses = 0;  ///< R
@@ -71,7 +71,7 @@ struct SensitivityResult {
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
   /// The global indices after fewer samples, where it has a fixed number of them, with intervals: each is what a study
-  /// with exactly so many samples at each pose (engine/kinds/sensitivity/history_points.h) would find, bit by bit. The
+  /// with exactly so many samples at each pose (engine/run/history_points.h) would find, bit by bit. The
   /// last is the result's. Not in files of older versions.
   std::optional<EstimateCourse> history;
 

@@ -6,13 +6,14 @@
 
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/kinds/sensitivity/fidelity.h"
-#include "engine/kinds/sensitivity/history_points.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/points_radius.h"
 #include "engine/kinds/sensitivity/separation.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
+#include "engine/run/history_points.h"
 #include "engine/run/pending_units.h"
 #include "engine/run/rounds.h"
 
@@ -51,15 +52,15 @@ class CellWork {
     return pending_->size();
   }
   UnitEvaluator worker() const { return {plan_, model_}; }
-  SensitivityUnit solve(UnitEvaluator& evaluate, std::size_t n) const { return evaluate((*pending_)[n]); }
-  const SolveCounts& merge(std::size_t n, const SensitivityUnit& found) {
+  CellUnit solve(UnitEvaluator& evaluate, std::size_t n) const { return evaluate((*pending_)[n]); }
+  const SolveCounts& merge(std::size_t n, const CellUnit& found) {
     collect_.add((*pending_)[n], found);
     return found.solves;
   }
-  static void write(std::size_t, const SensitivityUnit& found, ByteWriter& to) { found.write(to); }
-  SensitivityUnit read(std::size_t n, ByteReader& from) const {
+  static void write(std::size_t, const CellUnit& found, ByteWriter& to) { found.write(to); }
+  CellUnit read(std::size_t n, ByteReader& from) const {
     const WorkUnit unit = (*pending_)[n];
-    return SensitivityUnit::read(from, responses_, unit.first.value, points_within(unit, points_).size());
+    return CellUnit::read(from, responses_, unit.first.value, points_within(unit, points_).size());
   }
   SolveCounts solved() const { return collect_.total(); }
   std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
@@ -134,8 +135,9 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
   const std::unique_ptr<Model> other = build_model(at_compared_fidelity(run.study.mechanism));
   const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
   if (!first || !second) return std::nullopt;
-  first->fidelity = compare_fidelities(*first, *second, response_dimensions(run.study.model()),
-                                       standard_deviations(run.study), analysis.linearity);
+  first->fidelity =
+      compare_fidelities(*first, *second, response_dimensions(run.study.model()), standard_deviations(run.study),
+                         asked_of<SensitivityOptions>(analysis).linearity);
   return first;
 }
 
@@ -156,7 +158,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   if (run.model.description().separation) {
     result->separation = separate_errors(run.model, plan.poses(), plan.factors(), standard_deviations(run.study));
   }
-  return StudyResult{*std::move(result), std::nullopt};
+  return StudyResult{*std::move(result), std::nullopt, {}};
 }
 
 std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }

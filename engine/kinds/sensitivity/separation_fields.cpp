@@ -2,6 +2,7 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/stored.h"
 
 namespace poesy {
 namespace {
@@ -32,9 +33,9 @@ const Group<SeparationResult> kSeparation{
       "1 - root of the sum of (sigma x residual)^2 over root of the sum of (sigma x effect)^2"}}};
 
 /// The published classes that occur, in the order of their first errors.
-std::vector<std::string> classes_of(const StoredResult& result) {
+std::vector<std::string> classes_of(const std::vector<std::string>& of_errors) {
   std::vector<std::string> classes;
-  for (const std::string& published : result.published_class) {
+  for (const std::string& published : of_errors) {
     if (!published.empty() && std::ranges::find(classes, published) == classes.end()) classes.push_back(published);
   }
   return classes;
@@ -45,10 +46,10 @@ CsvTable share_table(const StoredResult& result, const SeparationResult& found) 
   for (const FieldRow<SeparationResult>& field : kSeparation.fields) {
     if (field.axes == kByFactor) table.columns.push_back(field_column(field.name, field, found));
   }
-  for (const std::string& published : classes_of(result)) {
-    table.columns.push_back({"published_" + published, [&result, published](std::size_t p) {
-                               return result.published_class[p] == published ? 1.0 : 0.0;
-                             }});
+  const std::vector<std::string>& of_errors = sensitivity_of(result).published_class;
+  for (const std::string& published : classes_of(of_errors)) {
+    table.columns.push_back({"published_" + published,
+                             [&of_errors, published](std::size_t p) { return of_errors[p] == published ? 1.0 : 0.0; }});
   }
   return table;
 }
@@ -66,16 +67,16 @@ void add_separation(ResultBuilder& result, const Study& study, const std::option
              {"1", "Class of the error in the literature; empty where it gives none"});
 }
 
-void read_separation(const h5::File& file, StoredResult& result) {
+void read_separation(const h5::File& file, StoredSensitivity& found) {
   if (!file.exists("/separation")) return;
-  read_group(file, kSeparation, result.sensitivity.separation.emplace());
-  result.separation_measure = file.attribute<std::string>("/separation", "measure").at(0);
-  result.published_class = read_along<std::string>(file, "/separation/published", {"factor"});
+  read_group(file, kSeparation, found.separation.emplace());
+  found.separation_measure = file.attribute<std::string>("/separation", "measure").at(0);
+  found.published_class = read_along<std::string>(file, "/separation/published", {"factor"});
 }
 
 void append_separation_tables(CsvTables& tables, const StoredResult& result) {
-  if (!result.sensitivity.separation) return;
-  const SeparationResult& found = *result.sensitivity.separation;
+  if (!sensitivity_of(result).separation) return;
+  const SeparationResult& found = *sensitivity_of(result).separation;
   tables.push_back(share_table(result, found));
   for (const FieldRow<SeparationResult>& field : kSeparation.fields) {
     if (field.axes != kByFactorPose) continue;

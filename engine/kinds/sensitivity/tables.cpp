@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/kinds/sensitivity/index_change.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
@@ -64,14 +65,14 @@ Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
   }
   if (has_index_changes(result)) {
     list.push_back({percent_column("index_change", "at a tenth", kIndexChange), [&result, response](std::size_t p) {
-                      return change_cell(result.sensitivity.index_change[response * result.factors.size() + p]);
+                      return change_cell(sensitivity_of(result).index_change[response * result.factors.size() + p]);
                     }});
   }
   list.push_back({percent_column("not_converged", "not converged", kNotConverged),
-                  [&](std::size_t p) { return percent_cell(share_not_converged(result.sensitivity, p)); }});
+                  [&](std::size_t p) { return percent_cell(share_not_converged(sensitivity_of(result), p)); }});
   if (has_corrected_indices(result)) {
     list.push_back(
-        index_column(result, result.sensitivity.global, response, "index_published", "published", dispensable));
+        index_column(result, sensitivity_of(result).global, response, "index_published", "published", dispensable));
   }
   return list;
 }
@@ -80,7 +81,7 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
   std::vector<std::string> list{fmt::format(
       "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
       "between them; low, high: its {:.3g} % interval",
-      result.responses[ranked.response].name, 100.0 * result.sensitivity.conf_level)};
+      result.responses[ranked.response].name, 100.0 * sensitivity_of(result).conf_level)};
   if (has_corrected_indices(result)) {
     list.emplace_back(
         "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
@@ -106,7 +107,7 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
 
 /// How the ranking changes with the points of the platform's metric; empty where the result does not say it.
 std::string radius_note(const StoredResult& result, std::size_t response) {
-  const std::vector<double>& tau = result.sensitivity.radius_tau;
+  const std::vector<double>& tau = sensitivity_of(result).radius_tau;
   const std::size_t responses = result.responses.size();
   if (tau.empty() || std::isnan(tau[response]) || std::isnan(tau[responses + response])) return {};
   return fmt::format(
@@ -142,11 +143,11 @@ Table ranked_table(const StoredResult& result, const RankedErrors& ranked) {
 }
 
 Table separation_table(const StoredResult& result, const RankedErrors& ranked) {
-  const SeparationResult& found = *result.sensitivity.separation;
+  const SeparationResult& found = *sensitivity_of(result).separation;
   Table table{.name = "separation",
               .caption = "What calibration can remove of each error's effect, to first order, over the poses",
               .columns = {},
-              .notes = {"effect: " + result.separation_measure,
+              .notes = {"effect: " + sensitivity_of(result).separation_measure,
                         fmt::format("all errors together, at the size the study sets: {} of the effect is removable",
                                     percent_text(found.removable_together))},
               .ranked = true};
@@ -154,7 +155,7 @@ Table separation_table(const StoredResult& result, const RankedErrors& ranked) {
        {rank_column(ranked, 2),
         name_column(result.factors, "error"),
         {text_column("published_class", "published class", 1),
-         [&](std::size_t p) { return text_cell(result.published_class[p]); }},
+         [&](std::size_t p) { return text_cell(sensitivity_of(result).published_class[p]); }},
         {percent_column("drive_share", "drive share"),
          [&](std::size_t p) { return percent_cell(found.drive_share[p]); }},
         {percent_column("removable", "removable by calibration"),
@@ -176,8 +177,8 @@ std::optional<std::size_t> largest(const std::vector<double>& measure, std::size
 void add_largest(Columns& columns, const StoredResult& result, const std::vector<double>& measure,
                  const std::string& name, int dispensable) {
   const auto value = [&result, &measure](std::size_t p) {
-    const auto at = largest(measure, p, result.sensitivity.factors);
-    return at ? measure[*at * result.sensitivity.factors + p] : std::numeric_limits<double>::quiet_NaN();
+    const auto at = largest(measure, p, sensitivity_of(result).factors);
+    return at ? measure[*at * sensitivity_of(result).factors + p] : std::numeric_limits<double>::quiet_NaN();
   };
   columns.push_back({percent_column(name, name), [value](std::size_t p) {
                        return std::isinf(value(p)) ? text_cell("no effect") : percent_cell(value(p));
@@ -185,7 +186,7 @@ void add_largest(Columns& columns, const StoredResult& result, const std::vector
   columns.push_back(
       {text_column(name + "_response", "largest for", dispensable), [&result, &measure, value](std::size_t p) {
          if (std::isinf(value(p))) return text_cell("by the first");
-         const auto at = largest(measure, p, result.sensitivity.factors);
+         const auto at = largest(measure, p, sensitivity_of(result).factors);
          return text_cell(at ? result.responses[*at].name : "");
        }});
 }
@@ -206,16 +207,16 @@ std::vector<std::string> fidelity_notes(const StoredResult& result, const Fideli
   const auto failed = std::accumulate(found.not_converged.begin(), found.not_converged.end(), std::uint64_t{0});
   if (failed > 0) {
     list.push_back(fmt::format("{} at fidelity \"{}\" did not converge", counted(failed, "solve", "solves"),
-                               result.fidelities[1]));
+                               sensitivity_of(result).fidelities[1]));
   }
   return list;
 }
 
 Table fidelity_table(const StoredResult& result, const RankedErrors& ranked) {
-  const FidelityResult& found = *result.sensitivity.fidelity;
+  const FidelityResult& found = *sensitivity_of(result).fidelity;
   Table table{.name = "fidelity",
-              .caption = fmt::format("Fidelity \"{}\" against \"{}\" on the same draws", result.fidelities[1],
-                                     result.fidelities[0]),
+              .caption = fmt::format("Fidelity \"{}\" against \"{}\" on the same draws",
+                                     sensitivity_of(result).fidelities[1], sensitivity_of(result).fidelities[0]),
               .columns = {},
               .notes = fidelity_notes(result, found),
               .ranked = true};
@@ -232,9 +233,8 @@ Table fidelity_table(const StoredResult& result, const RankedErrors& ranked) {
 std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options) {
   const RankedErrors ranked = ranked_errors(result, options.ranked_by, options.order);
   std::vector<Table> tables{ranked_table(result, ranked)};
-  if (result.sensitivity.separation) tables.push_back(separation_table(result, ranked));
-  if (result.sensitivity.fidelity) tables.push_back(fidelity_table(result, ranked));
-  if (std::optional<Table> convergence = convergence_table(result)) tables.push_back(std::move(*convergence));
+  if (sensitivity_of(result).separation) tables.push_back(separation_table(result, ranked));
+  if (sensitivity_of(result).fidelity) tables.push_back(fidelity_table(result, ranked));
   return tables;
 }
 

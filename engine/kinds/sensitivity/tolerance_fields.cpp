@@ -6,7 +6,9 @@
 #include "engine/base/nan.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/stored.h"
 #include "engine/kinds/sensitivity/tolerance_files.h"
 
 namespace poesy {
@@ -73,7 +75,7 @@ const Group<ToleranceGroup> kToleranceGroup{
 /// The study's reference, or the error of smallest effect at one unit of those in which people read it.
 std::optional<ReferenceError> reference_for(const Study& study, const SensitivityResult& found, std::size_t response) {
   const std::vector<FactorIndex>& factors = study.analysis.factors;
-  if (const auto& chosen = study.analysis.reference) {
+  if (const auto& chosen = asked_of<SensitivityOptions>(study.analysis).reference) {
     const auto at = std::ranges::find(factors, chosen->factor);
     return ReferenceError{static_cast<std::size_t>(at - factors.begin()), chosen->tolerance};
   }
@@ -120,7 +122,7 @@ std::vector<ToleranceList> lists_of(const ResponseTolerances& tolerances) {
 template <class Heading>
 void append_tolerance_columns(CsvTable& table, const StoredResult& result, const ResponseTolerances& tolerances,
                               const Heading& heading) {
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   const std::size_t first = tolerances.response * found.factors;
   const std::string index_unit = csv_unit(kIndexUnit, result, &result.responses[tolerances.response]);
   table.columns.push_back(list_column(heading("index", index_unit, ""), found.global, first));
@@ -162,40 +164,41 @@ void add_tolerances(ResultBuilder& result, const Study& study, const Sensitivity
   write_fields(result, "/tolerances", kReadFields, group);
 }
 
-void read_tolerances(const h5::File& file, StoredResult& result) {
+void read_tolerances(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found) {
   if (!file.exists("/tolerances")) return;
   ToleranceGroup group;
   read_fields(file, "/tolerances", kReadFields, group);
-  result.factor_limb = group.limb;
-  result.mean_square_bound = group.mean_square_bound;
+  found.factor_limb = group.limb;
+  found.mean_square_bound = group.mean_square_bound;
   for (std::size_t r = 0; r < group.reference.size(); ++r) {
     const std::string& name = group.reference[r];
-    const auto at = std::ranges::find(result.factors, name, &NamedUnit::name);
-    const auto factor = static_cast<std::size_t>(at - result.factors.begin());
-    if (at == result.factors.end() && !name.empty()) throw h5::Error("its reference error is none of its factors");
+    const auto at = std::ranges::find(factors, name, &NamedUnit::name);
+    const auto factor = static_cast<std::size_t>(at - factors.begin());
+    if (at == factors.end() && !name.empty()) throw h5::Error("its reference error is none of its factors");
     const ReferenceError reference{factor, group.reference_tolerance[r]};
-    result.tolerance_reference.push_back(name.empty() ? std::nullopt : std::optional(reference));
+    found.tolerance_reference.push_back(name.empty() ? std::nullopt : std::optional(reference));
   }
 }
 
 bool has_tolerances(const StoredResult& result) {
-  return !result.factor_limb.empty() && !result.sensitivity.background.empty();
+  const StoredSensitivity& found = sensitivity_of(result);
+  return !found.factor_limb.empty() && !found.background.empty();
 }
 
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response) {
-  return {response,
-          response_tolerances(result.sensitivity, result.factor_sigma, response, result.tolerance_reference[response]),
+  const StoredSensitivity& found = sensitivity_of(result);
+  return {response, response_tolerances(found, result.factor_sigma, response, found.tolerance_reference[response]),
           std::nullopt};
 }
 
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result) {
   if (!has_tolerances(result)) return;
-  for (std::size_t r = 0; r < result.tolerance_reference.size(); ++r) {
+  for (std::size_t r = 0; r < sensitivity_of(result).tolerance_reference.size(); ++r) {
     CsvTable table = lines_of_factors(result, "tolerances_" + result.responses[r].name);
     table.columns.push_back({"angular", [&](std::size_t p) {
                                return dimension_of(result.factors[p].unit) == Dimension::angle ? 1.0 : 0.0;
                              }});
-    table.columns.push_back(list_column("limb", result.factor_limb));
+    table.columns.push_back(list_column("limb", sensitivity_of(result).factor_limb));
     const auto heading = [](const std::string& name, const std::string& unit, const char*) {
       return with_unit(name, unit);
     };
@@ -213,7 +216,7 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
     const NamedUnit& factor = result.factors[p];
     const std::string shape = result.factor_distribution.empty() ? "unknown" : result.factor_distribution[p];
     return fmt::format("{},{},{},{},{},{}/{},{}", factor.name, error_kind(dimension_of(factor.unit)),
-                       result.factor_limb[p], factor.unit, display(factor).name,
+                       sensitivity_of(result).factor_limb[p], factor.unit, display(factor).name,
                        result.responses[tolerances.response].unit, factor.unit, shape);
   };
   const auto heading = [](const std::string& name, const std::string&, const char* suffix) { return name + suffix; };

@@ -6,9 +6,10 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/files/csv_table.h"
-#include "engine/study/error_words.h"
 #include "engine/files/file_writer.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/registry.h"
+#include "engine/kinds/study_file.h"
+#include "engine/study/error_words.h"
 
 namespace poesy {
 namespace {
@@ -38,8 +39,8 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   if (study.analysis.factors.size() != result.factors.size()) {
     throw FileError("the study in the result", "does not fit the result's factors", "run the study again");
   }
-  study.analysis.kind = Analysis::Kind::monte_carlo;
-  study.analysis.reference.reset();
+  study.analysis.kind = &find_kind("monte-carlo")->study;
+  study.analysis.asked.reset();
   const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
   if (along_file) study.poses.select = PoseSelection::Select::file;
   study.mechanism.compared.reset();
@@ -108,7 +109,6 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
   make_folder(folder);
   if (study.poses.select == PoseSelection::Select::file) write_poses(folder, result);
   study.analysis.limits = {{tolerances.response, tolerances.limit->limit}};
-  study.analysis.judge = Judge::rms;
   const ErrorModel as_studied = study.errors;
   const NamedUnit& response = result.responses[tolerances.response];
   const std::string limit = response.unit == "1"

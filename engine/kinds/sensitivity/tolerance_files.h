@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/files/output_folder.h"
-#include "engine/files/result_file.h"
+#include "engine/kinds/sensitivity/stored.h"
 #include "engine/model/catalog.h"
 #include "engine/stats/tolerance.h"
 

@@ -52,8 +52,8 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
 
 /// How much the limit may be exceeded although the study was made at small errors.
 void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
-  if (!tolerances.limit || result.mean_square_bound.empty()) return;
-  const double bound = std::sqrt(result.mean_square_bound[tolerances.response]);
+  if (!tolerances.limit || sensitivity_of(result).mean_square_bound.empty()) return;
+  const double bound = std::sqrt(sensitivity_of(result).mean_square_bound[tolerances.response]);
   if (bound == 1.0) return;
   const NamedUnit& response = result.responses[tolerances.response];
   notes.push_back(
@@ -122,14 +122,14 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
       "index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
       "tolerances are counted from it as published; share: of what the errors add to the mean square of the "
       "response over samples and poses, the quantity that a limit limits, at the size the study sets",
-      100.0 * result.sensitivity.conf_level));
+      100.0 * sensitivity_of(result).conf_level));
   return list;
 }
 
 /// Refers to both.
 std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
   const std::size_t r = tolerances.response;
-  const SensitivityResult& found = result.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result);
   const auto tolerance = [&result](std::string name, std::string heading, const std::vector<double>& values) {
     return FilledColumn{number_column(std::move(name), std::move(heading)), [&result, &values](std::size_t p) {
                           return tolerance_cell(values[p], display(result.factors[p]));
@@ -139,7 +139,8 @@ std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTole
       name_column(result.factors, "error"),
       {text_column("kind", "kind", 4),
        [&](std::size_t p) { return text_cell(error_kind(dimension_of(result.factors[p].unit))); }},
-      {number_column("limb", "limb", "", 3), [&](std::size_t p) { return count_cell(result.factor_limb[p]); }},
+      {number_column("limb", "limb", "", 3),
+       [&](std::size_t p) { return count_cell(sensitivity_of(result).factor_limb[p]); }},
       tolerance("equal_effect", "equal effect", tolerances.all.equal_effect)};
   if (tolerances.limit) {
     list.push_back(tolerance("limit_equal_effect", "limit, equal effect", tolerances.limit->equal_effect));

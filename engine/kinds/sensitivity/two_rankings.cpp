@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/report/display.h"
-#include "engine/report/tables.h"
 #include "engine/stats/rank_correlation.h"
 
 namespace poesy {
@@ -101,22 +101,6 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
 
 }  // namespace
 
-void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
-                      const std::string& path_b) {
-  const auto check = [&](std::string_view what, const std::string& of_a, const std::string& of_b) {
-    if (of_a == of_b) return;
-    throw InputError({.file = path_b},
-                     fmt::format("cannot be compared with {}: its {} is '{}', not '{}'", path_a, what, of_b, of_a),
-                     "compare two results of one kind and mechanism, or look at each alone");
-  };
-  check("kind", a.kind, b.kind);
-  check("mechanism", a.model, b.model);
-}
-
-bool differ_in_metric(const StoredResult& a, const StoredResult& b) {
-  return !a.metric.empty() && !b.metric.empty() && a.metric != b.metric;
-}
-
 TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order) {
   check_comparable(a.result, a.path, b.result, b.path);
   std::vector<std::size_t> of_a;
@@ -139,16 +123,6 @@ TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder 
   fill(table, positions(of_a.size()), columns);
   const double tau = kendall_tau(first.effects, second.effects);
   return {std::move(table), tau, remarks(a, b, tau, known_in_both(first, second))};
-}
-
-std::string ranked_text(char letter, const RankedResult& ranked) {
-  const StoredResult& result = ranked.result;
-  const SolveCounts solves = tally_of(result).total();
-  std::string text = result.title.empty() ? fmt::format("{}: {}", letter, ranked.path)
-                                          : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
-  if (!result.metric.empty()) text += "; metric: " + metric_text(result);
-  return text + fmt::format("; ranked by {}; {} of {} did not converge", ranked.response,
-                            count_text(solves.not_converged()), counted(solves.total(), "solve", "solves"));
 }
 
 }  // namespace poesy

@@ -8,7 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
-#include "engine/kinds/report_kind.h"
+#include "engine/report/report_kind.h"
 
 namespace poesy {
 namespace {
@@ -198,10 +198,10 @@ void add_quantity(Comparable& to, const StoredResult& result, std::string label,
   to.quantities.push_back(std::move(quantity));
 }
 
-Comparison comparison(const ReportedResult& a, const ReportedResult& b) {
+Comparison comparison(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b) {
   if (common(names_of(a.stored.responses), names_of(b.stored.responses)).empty()) refuse(b, a, "response");
-  const Comparable all_a = kind_of(a.stored).comparable(a.stored, b.stored);
-  const Comparable all_b = kind_of(b.stored).comparable(b.stored, a.stored);
+  const Comparable all_a = kind.comparable(a.stored, b.stored);
+  const Comparable all_b = kind.comparable(b.stored, a.stored);
   if (all_a.item_word != all_b.item_word) refuse(b, a, "case");
   const Common options = common(all_a.options, all_b.options);
   if (options.empty()) refuse(b, a, all_a.option_word);

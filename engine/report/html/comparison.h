@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/report/html/page.h"
-#include "engine/kinds/report.h"
+#include "engine/report/html/parts.h"
 
 namespace poesy {
 
@@ -48,9 +48,11 @@ struct Comparison {
   std::vector<std::string> only_b;  ///< items of the second alone
 };
 
-/// What there is to compare of two results of one kind and mechanism. Throws InputError where they have nothing in
+struct ReportKind;
+
+/// What there is to compare of two results of this kind and one mechanism. Throws InputError where they have nothing in
 /// common.
-Comparison comparison(const ReportedResult& a, const ReportedResult& b);
+Comparison comparison(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b);
 
 /// Adds figures and tables of a comparison to a page, as sections.
 void add_comparison(const Comparison& compared, Page& page);

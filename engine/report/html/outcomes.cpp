@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include "engine/report/display.h"
-#include "engine/report/html/parts.h"
 #include "engine/report/html/sections.h"
-#include "engine/report/solves.h"
 
 namespace poesy {
 namespace {
@@ -29,8 +27,8 @@ Table failures_table(const ReportedResult& result) {
                           text_column("replay", "replay it with")},
               .notes = {fmt::format("At most {} of each error at a pose are listed, and {} in all.",
                                     FailedSamples::kMost, count_text(kMostFailuresListed))}};
-  for (const Failure& failure : listed_failures(result.stored)) {
-    const std::string error = varied_name(result.stored, failure.slot);
+  for (const Failure& failure : result.stored.failures) {
+    const std::string& error = result.stored.varied[failure.slot];
     const std::uint64_t sample = failure.failed.sample.value;
     table.rows.push_back(
         {text_cell(error), count_cell(failure.pose.value),
@@ -59,10 +57,11 @@ void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
                          others == 0 ? "" : fmt::format("; {} more had none", count_text(others))));
 }
 
-void add_figures(const StoredResult& result, const SolveTally& outcomes, Page& page, Section& section) {
+void add_figures(const ReportKind& kind, const StoredResult& result, const SolveTally& outcomes, Page& page,
+                 Section& section) {
   add_bars(outcomes, page, section);
   if (outcomes.poses < 2 || outcomes.poses != result.poses.size()) return;
-  const PoseFigures figures(result, page);
+  const PoseFigures figures(result, kind.shown_cells(result), page);
   std::vector<Field> fields{figures.not_converged(outcomes.shares_by_pose())};
   figures.add_condition(fields);
   figures.add_workspace(section, std::move(fields), "Where solves did not converge: each dot is a pose.",
@@ -71,11 +70,11 @@ void add_figures(const StoredResult& result, const SolveTally& outcomes, Page& p
 
 }  // namespace
 
-void add_outcomes(const ReportedResult& result, Page& page) {
+void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page) {
   const StoredResult& stored = result.stored;
-  const SolveTally outcomes = tally_of(stored);
+  const SolveTally outcomes = kind.tally(stored);
   const SolveCounts total = outcomes.total();
-  const std::string at_first = at_first_fidelity(stored);
+  const std::string at_first = at_first_fidelity(outcomes);
   Section& section = page.add_section("not-solved", "What was not solved");
   if (total.not_converged() == 0) {
     section.paragraph(fmt::format("All {} solves{} converged.", count_text(total.total()), at_first));
@@ -83,19 +82,20 @@ void add_outcomes(const ReportedResult& result, Page& page) {
     section.paragraph(unsolved_text(stored, outcomes) +
                       " Each is counted where it happened. Whether the numbers above leave such solves out is the "
                       "study's choice, not_converged under [solver].");
-    if (many_not_converged(stored, total.not_converged(), total.total())) add_figures(stored, outcomes, page, section);
+    if (many_not_converged(stored, total.not_converged(), total.total()))
+      add_figures(kind, stored, outcomes, page, section);
   }
   if (const std::optional<SecondFidelity>& second = outcomes.second) {
     const std::string solves = count_text(second->total);
     section.paragraph(
         second->not_converged == 0
-            ? fmt::format("All {} solves at fidelity \"{}\" converged.", solves, stored.fidelities[1])
+            ? fmt::format("All {} solves at fidelity \"{}\" converged.", solves, second->second)
             : fmt::format(
                   "At fidelity \"{}\", {} of {} solves did not converge: what is said of it rests on the others.",
-                  stored.fidelities[1], count_text(second->not_converged), solves));
+                  second->second, count_text(second->not_converged), solves));
   }
   section.table(status_table(total, at_first));
-  if (!listed_failures(stored).empty()) {
+  if (!stored.failures.empty()) {
     section.folded("Samples that did not converge, and how to replay them", failures_table(result));
   }
 }

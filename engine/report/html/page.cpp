@@ -6,7 +6,6 @@
 
 #include "engine/files/version.h"
 #include "engine/report/html/markup.h"
-#include "engine/kinds/report.h"
 
 namespace poesy {
 namespace {

@@ -12,6 +12,9 @@
 
 namespace poesy {
 
+/// What tells a report from other pages; it stands in the first kilobyte of its file.
+inline constexpr std::string_view kReportMark = "<meta name=\"generator\" content=\"poesy report\">";
+
 /// What a report's page is made of, with its own text: "d3.js", "plot.js", "report.js" (to be run in this order) and
 /// "report.css". Each may stand inside a script or style element as it is; scripts of others begin with their licences.
 /// Another name is a broken contract, and empty where contracts are not checked.

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "engine/report/display.h"
-#include "engine/kinds/report_kind.h"
+#include "engine/report/tables.h"
 
 namespace poesy {
 
@@ -89,8 +89,8 @@ ShownCells shown_cells(const StoredResult& result, std::size_t rows,
   return shown;
 }
 
-PoseFigures::PoseFigures(const StoredResult& result, Page& page)
-    : result_(result), page_(page), shown_(kind_of(result).shown_cells(result)) {}
+PoseFigures::PoseFigures(const StoredResult& result, ShownCells shown, Page& page)
+    : result_(result), page_(page), shown_(std::move(shown)) {}
 
 void PoseFigures::add_note(Section& section) const {
   if (const std::string note = shown_.note(); !note.empty()) section.paragraph(note);

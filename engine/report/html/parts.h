@@ -14,6 +14,12 @@
 /// What the sections of all kinds of results share.
 namespace poesy {
 
+/// A result and the file where it was found, as the reader may name it.
+struct ReportedResult {
+  StoredResult stored;  ///< what it says
+  std::string path;     ///< where it was read from
+};
+
 /// The names at these positions.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
 /// The headline's responses, the one that ranks errors first (default_ranking).
@@ -58,11 +64,11 @@ inline constexpr std::size_t kSummaryRows = 4;
 ShownCells shown_cells(const StoredResult& result, std::size_t rows,
                        std::optional<std::vector<std::size_t>> responses = std::nullopt);
 
-/// Makes the figures by pose of a result, of the cells that its kind shows. Refers to the result and the page.
+/// Makes the figures by pose of a result, of the cells shown. Refers to the result and the page.
 class PoseFigures {
  public:
   /// For one page.
-  PoseFigures(const StoredResult& result, Page& page);
+  PoseFigures(const StoredResult& result, ShownCells shown, Page& page);
 
   /// Positions of the responses shown.
   const std::vector<std::size_t>& responses() const { return shown_.responses; }

@@ -5,17 +5,16 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/report/html/page.h"
-#include "engine/kinds/report.h"
+#include "engine/report/report_kind.h"
 
-/// The sections that results of all kinds have.
+/// The sections that results of all kinds have; `kind` is that of the result, or of both.
 namespace poesy {
 
 /// What a reader of this result must not miss, a sentence or two each: content that was changed, samples that did not
 /// converge, where they are many (report/solves.h), and where they are, errors and poses without a solved sample,
 /// intervals that are wide or were not reached, poses close to singular ones, a first-order fidelity, a commit with
 /// changes of its own.
-std::vector<std::string> warnings(const ReportedResult& result);
+std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& result);
 
 /// A pose with a larger condition number is called ill-conditioned; a study refuses those above 1e8.
 inline constexpr double kIllConditioned = 1e4;
@@ -30,10 +29,10 @@ void add_glossary(const StoredResult& result, Page& page);
 
 /// The section that tells what was not solved: how solves ended, which rows and poses have how many that did not
 /// converge, and the listed failures with the commands that replay them.
-void add_outcomes(const ReportedResult& result, Page& page);
+void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page);
 
 /// The section that tells what was run, of one result, or of two side by side: what differs, and folded what does not.
-void add_what_was_run(std::span<const ReportedResult> results, Page& page);
+void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page);
 
 /// "A" and "B" of two results.
 inline constexpr std::string_view kLetters[] = {"A", "B"};

@@ -5,7 +5,6 @@
 
 #include "engine/report/display.h"
 #include "engine/report/html/sections.h"
-#include "engine/kinds/report_kind.h"
 #include "engine/report/study_settings.h"
 
 namespace poesy {
@@ -35,7 +34,7 @@ void warn_of_unsolved(const StoredResult& result, const SolveTally& tally, Warni
   if (!second || !many_not_converged(result, second->not_converged, second->total)) return;
   const double share = static_cast<double>(second->not_converged) / static_cast<double>(second->total);
   list.push_back(fmt::format("{} of {} solves at fidelity \"{}\" ({}) did not converge.",
-                             count_text(second->not_converged), count_text(second->total), result.fidelities[1],
+                             count_text(second->not_converged), count_text(second->total), second->second,
                              percent_text(share)));
 }
 
@@ -66,7 +65,7 @@ void warn_of_fidelity(const StoredResult& result, const SolveTally& tally, Warni
     list.push_back(
         fmt::format("{} of {} errors are not linear at the size the study sets: fidelity \"{}\" does not "
                     "stand for \"{}\" there.",
-                    tally.second->not_linear, tally.second->errors, result.fidelities[1], result.fidelities[0]));
+                    tally.second->not_linear, tally.second->errors, tally.second->second, tally.second->first));
   }
   if (!tally.second && readable_setting(result.study_text, "mechanism", "fidelity") == "first-order") {
     list.push_back(
@@ -77,10 +76,9 @@ void warn_of_fidelity(const StoredResult& result, const SolveTally& tally, Warni
 
 }  // namespace
 
-std::vector<std::string> warnings(const ReportedResult& result) {
+std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& result) {
   const StoredResult& stored = result.stored;
-  const ReportKind& kind = kind_of(stored);
-  const SolveTally tally = tally_of(stored);
+  const SolveTally tally = kind.tally(stored);
   Warnings list;
   warn_of_changes(result, list);
   warn_of_unsolved(stored, tally, list);

@@ -5,7 +5,6 @@
 
 #include "engine/report/display.h"
 #include "engine/report/html/sections.h"
-#include "engine/kinds/report_kind.h"
 #include "engine/report/study_settings.h"
 
 namespace poesy {
@@ -61,11 +60,11 @@ std::string speed_text(const RunFacts& run) {
 }
 
 /// How and where the result came into being: the same labels in the same order for every result.
-std::vector<RunFact> run_facts(const ReportedResult& reported) {
+std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& reported) {
   const StoredResult& result = reported.stored;
   const RunFacts& run = result.facts;
   const Settings setting(result);
-  const StudyWords words = kind_of(result).words(result);
+  const StudyWords words = kind.words(result);
   const std::string tolerance_unit = result.metric == "platform" ? "of the reach" : "rad, m";
   return {
       {"result file", reported.path},
@@ -102,7 +101,7 @@ std::vector<RunFact> run_facts(const ReportedResult& reported) {
 }
 
 /// The facts of one result, or of two where they agree (same) or do not.
-Table facts_table(std::span<const ReportedResult> results, bool same) {
+Table facts_table(const ReportKind& kind, std::span<const ReportedResult> results, bool same) {
   const bool two = results.size() == 2;
   Table table{.name = same ? "what_was_run_alike" : "what_was_run",
               .caption = !two   ? "What was run"
@@ -113,7 +112,7 @@ Table facts_table(std::span<const ReportedResult> results, bool same) {
   for (const ReportedResult& result : results) {
     const std::string letter(two ? kLetters[facts.size()] : "value");
     table.columns.push_back(text_column(letter, letter));
-    facts.push_back(run_facts(result));
+    facts.push_back(run_facts(kind, result));
   }
   for (std::size_t n = 0; n < facts.front().size(); ++n) {
     if (two && (facts[0][n].second == facts[1][n].second) != same) continue;
@@ -133,12 +132,12 @@ constexpr std::string_view kOfTables =
 
 }  // namespace
 
-void add_what_was_run(std::span<const ReportedResult> results, Page& page) {
+void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page) {
   const StoredResult& first = results.front().stored;
   Section& section = page.add_section("what-was-run", "What was run");
-  section.paragraph(kind_of(first).words(first).from_tables ? kOfTables : kOfStudies);
-  section.table(facts_table(results, false));
-  if (results.size() == 2) section.folded("What is the same in both", facts_table(results, true));
+  section.paragraph(kind.words(first).from_tables ? kOfTables : kOfStudies);
+  section.table(facts_table(kind, results, false));
+  if (results.size() == 2) section.folded("What is the same in both", facts_table(kind, results, true));
   for (std::size_t n = 0; n < results.size(); ++n) {
     const std::string name = results.size() == 2 ? fmt::format("The study of {}", kLetters[n]) : "The study";
     section.folded_text(name + ", resolved", results[n].stored.study_text);

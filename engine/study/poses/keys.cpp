@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
@@ -140,9 +141,8 @@ TimeRange part_of(const StudySection& section, const Trajectory& trajectory, con
 std::vector<double> read_origin(const StudyValue& value, const std::vector<PoseCoordinate>& coordinates) {
   const std::vector<StudyValue> list = value.list();
   if (list.size() != coordinates.size()) {
-    std::string wanted;
-    for (const PoseCoordinate& coordinate : coordinates) wanted += (wanted.empty() ? "" : ", ") + coordinate.name;
-    value.fail("has " + std::to_string(list.size()) + " values", "write one for each of " + wanted);
+    value.fail("has " + std::to_string(list.size()) + " values",
+               fmt::format("write one for each of {}", fmt::join(names(coordinates), ", ")));
   }
   std::vector<double> origin;
   for (std::size_t c = 0; c < list.size(); ++c) origin.push_back(list[c].quantity(coordinates[c].dimension));
@@ -237,6 +237,66 @@ std::string trajectory_line(const Study& study) {
   return "trajectory = { " + text + " }\n";
 }
 
+/// With "# count = { z = 5, beta = 5 }".
+std::string shown_count(const TemplateLines& lines, const Study& study) {
+  std::string grid;
+  for (const PoseCoordinate& coordinate : study.model().pose_coordinates) {
+    grid += fmt::format("{}{} = 5", grid.empty() ? "" : ", ", coordinate.name);
+  }
+  return lines.usual("poses", "count") + "# count = { " + grid + " }\n";
+}
+
+/// The model's own.
+std::vector<Range> usual_workspace(const ModelDescription& model) {
+  std::vector<Range> workspace;
+  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
+    workspace.push_back({model.pose_lower[c], model.pose_upper[c]});
+  }
+  return workspace;
+}
+
+std::string shown_workspace(const TemplateLines& lines, const Study& study) {
+  const ModelDescription& model = study.model();
+  std::string text = lines.explanation_lines("poses", "workspace");
+  for (const PoseCoordinate& coordinate : model.pose_coordinates) {
+    text += comment("  " + coordinate.name + ": " + coordinate.description);
+  }
+  if (!model.workspace_note.empty()) text += comment(model.workspace_note);
+  return text + "workspace = " + workspace_text(usual_workspace(model), model, readable_value) + "\n";
+}
+
+/// The joints, and the range of one.
+std::string shown_limits(const TemplateLines& lines, const Study& study) {
+  const std::vector<JointDisplacement>& joints = study.model().joints;
+  if (joints.empty()) return {};
+  std::string list = "Joints:";
+  for (const JointDisplacement& joint : joints) {
+    list += fmt::format(" {} ({})", joint.name, name(joint.dimension));
+  }
+  const JointDisplacement& joint = joints.front();
+  const std::string_view range =
+      joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]";
+  return comment(list) + lines.explained("poses", "limits", fmt::format("# limits = {{ {} = {} }}", joint.name, range));
+}
+
+std::string curve_example(const NamedCurve& curve, const ModelDescription& model) {
+  std::string origin;
+  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
+    const Dimension dimension = model.charts[curve.chart].coordinates[c].dimension;
+    origin += (c > 0 ? ", " : "") + readable_value(curve.origin[c], dimension);
+  }
+  return fmt::format("# trajectory = {{ curve = {}, origin = [{}], points = {}, time = [{}, {}] }}  # {}\n",
+                     in_quotes(curve.name), origin, kCurvePoints, readable_value(curve.start, Dimension::time),
+                     readable_value(curve.end, Dimension::time), curve.description);
+}
+
+std::string shown_trajectory(const TemplateLines& lines, const Study& study) {
+  std::string text = lines.explanation_lines("poses", "trajectory") + lines.keys_lines("poses.trajectory");
+  for (const NamedCurve& curve : study.model().curves) text += curve_example(curve, study.model());
+  return text + fmt::format("# trajectory = {{ file = \"curve.csv\", points = {}, time = [\"0 s\", \"2 s\"] }}\n",
+                            kCurvePoints);
+}
+
 StudyRow select_row() {
   return {.name = "select",
           .value = word_at<Select>(
@@ -265,7 +325,8 @@ std::vector<StudyRow> box_rows() {
                .meaning = "How many poses; of a grid so many of its points, or all points with a number for every pose "
                           "coordinate.",
                .reader = read_count,
-               .lines = count_line},
+               .lines = count_line,
+               .shown = shown_count},
       StudyRow{.name = "workspace",
                .value = {.type = "table"},
                .usual = "the model's own workspace",
@@ -275,20 +336,23 @@ std::vector<StudyRow> box_rows() {
                .lines =
                    [](const Study& study) {
                      return "workspace = " + workspace_text(study.poses.workspace, study.model(), exact_value) + "\n";
-                   }},
+                   },
+               .shown = shown_workspace},
       StudyRow{.name = "limits",
                .value = {.type = "table"},
                .usual = "none",
                .only_for = of_box,
                .meaning = "Ranges of joint displacements from home; poses that leave them are rejected.",
                .reader = read_limits,
-               .lines = limits_line},
+               .lines = limits_line,
+               .shown = shown_limits},
       StudyRow{.name = "max_condition",
                .value = number_at(above_one("1e6"), &Study::poses, &PoseSelection::max_condition),
                .only_for = of_model,
                .meaning = "A pose whose condition number is above it counts as singular: it is rejected, or on a "
                           "trajectory an error.",
-               .late = 1}};
+               .late = 1,
+               .commented = true}};
 }
 
 StudyRow file_row() {
@@ -298,7 +362,8 @@ StudyRow file_row() {
           .example = "\"poses.csv\"",
           .only_for = {name(Select::file)},
           .meaning = "CSV file of poses, relative to the study's folder.",
-          .reader = read_pose_file};
+          .reader = read_pose_file,
+          .commented = true};
 }
 
 StudyRow trajectory_row() {
@@ -308,7 +373,8 @@ StudyRow trajectory_row() {
           .only_for = {name(Select::trajectory)},
           .meaning = "The curve: one of the model's, or a file.",
           .reader = read_trajectory_key,
-          .lines = trajectory_line};
+          .lines = trajectory_line,
+          .shown = shown_trajectory};
 }
 
 StudyTable grid_table() {
@@ -374,10 +440,7 @@ void read_poses_section(Study& study, const Reading& reading) {
   if (section.find("workspace") || !holds_for(row_of(poses_keys(), "workspace").only_for, name(study.poses.select))) {
     return;
   }
-  const ModelDescription& model = study.model();
-  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
-    study.poses.workspace.push_back({model.pose_lower[c], model.pose_upper[c]});
-  }
+  study.poses.workspace = usual_workspace(study.model());
 }
 
 }  // namespace poesy

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,13 @@ TEST(Printable, TakesEachCodePointInItsShortestFormAlone) {
       ASSERT_EQ(printable(bytes), expected) << length << " bytes, code point " << code;
     }
   }
+}
+
+TEST(Either, JoinsTheLastByOr) {
+  const std::vector<std::string_view> words{"a", "b", "c"};
+  EXPECT_EQ(either(words), "a, b or c");
+  EXPECT_EQ(either(std::span(words).first(2)), "a or b");
+  EXPECT_EQ(either(std::span(words).first(1)), "a");
 }
 
 TEST(Printable, RefusesBytesThatBeginNoCharacter) {

@@ -9,6 +9,7 @@
 #include "engine/files/checkpoint_files.h"
 #include "engine/files/sha256.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -163,17 +164,17 @@ TEST(CheckpointIdentity, LeavesTheLimitOnFailuresOpen) {
 TEST(CheckpointIdentity, LeavesLimitsOpenButNotTheirShare) {
   Example example;
   Analysis& analysis = example.study.analysis;
-  analysis.kind = Analysis::Kind::monte_carlo;
+  analysis.kind = &kMonteCarloStudy;
   const CheckpointIdentity without = identity_of(example.study, example.poses.poses);
   analysis.limits = {{0, 1e-3}};
   EXPECT_EQ(identity_of(example.study, example.poses.poses), without);
-  analysis.judge = Judge::share;
-  analysis.share = 0.99;
+  asked_of<MonteCarloOptions>(analysis).judge = Judge::share;
+  asked_of<MonteCarloOptions>(analysis).share = 0.99;
   const CheckpointIdentity at_99 = identity_of(example.study, example.poses.poses);
   EXPECT_FALSE(at_99 == without);
   analysis.limits = {{0, 2e-3}, {1, 1e-2}};
   EXPECT_EQ(identity_of(example.study, example.poses.poses), at_99);
-  analysis.share = 0.95;
+  asked_of<MonteCarloOptions>(analysis).share = 0.95;
   EXPECT_FALSE(identity_of(example.study, example.poses.poses) == at_99);
 }
 

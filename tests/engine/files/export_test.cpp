@@ -180,8 +180,8 @@ TEST_F(Export, LabelsOfRowsComeBack) {
   write_evaluation(folder_ / "l.h5", example_.study, example_.poses, errors, Pairing::every_pose_with_every_row, found,
                    example_.facts);
   const StoredResult stored = read_result(folder_ / "l.h5");
-  EXPECT_EQ(stored.labels.column, "part");
-  EXPECT_EQ(stored.labels.names, errors.labels.names);
+  EXPECT_EQ(evaluation_of(stored).labels.column, "part");
+  EXPECT_EQ(evaluation_of(stored).labels.names, errors.labels.names);
   export_tables(stored, folder_.path());
   const auto solves = read_table(folder_ / "evaluate.csv");
   EXPECT_EQ(Cells(solves[0].begin(), solves[0].begin() + 4),
@@ -210,7 +210,7 @@ TEST_F(Export, ErrorsOfAnExportAreReadAgain) {
 TEST_F(Export, WholeNumbersHaveAllTheirDigits) {
   MonteCarloResult found = example_.monte_carlo();
   found.overall_count.assign(found.overall_count.size(), 100'000);
-  write_monte_carlo(folder_ / "m.h5", example_.study, example_.poses, found, example_.facts);
+  write_result(folder_ / "m.h5", example_.study, example_.poses, found, example_.facts);
   export_tables(folder_ / "m.h5", folder_.path());
   const auto overall = read_table(folder_ / "overall.csv");
   const auto count = std::ranges::find(overall[0], "count") - overall[0].begin();

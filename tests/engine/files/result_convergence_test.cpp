@@ -56,12 +56,12 @@ TEST_F(ConvergenceFile, OfASensitivityResult) {
                         .reached = {1, 0, 1, 1},
                         .relative_half_width = {0.125, 1.0 / 3.0, 0.25, 0.0625},
                         .samples = {1000, 2500}};
-  write_sensitivity(path_, example_.study, example_.poses, result, example_.facts);
+  write_result(path_, example_.study, example_.poses, result, example_.facts);
   EXPECT_TRUE(verify_result(path_).matches());
   const StoredResult stored = read_result(path_);
-  ASSERT_TRUE(stored.sensitivity.convergence);
-  expect_same(*stored.sensitivity.convergence, *result.convergence);
-  EXPECT_FALSE(stored.sensitivity.history);
+  ASSERT_TRUE(stored.convergence);
+  expect_same(*stored.convergence, *result.convergence);
+  EXPECT_FALSE(sensitivity_of(stored).history);
   EXPECT_FALSE(h5::File::open(path_).exists("/sensitivity/history"));
   EXPECT_NE(stored.study_text.find("samples.relative_error = 0.25\n"), std::string::npos) << stored.study_text;
 
@@ -87,11 +87,11 @@ TEST_F(ConvergenceFile, OfAMonteCarloResult) {
                         .reached = {1, 1},
                         .relative_half_width = {0.0625, 0.125},
                         .samples = {2000}};
-  write_monte_carlo(path_, example_.study, example_.poses, result, example_.facts);
+  write_result(path_, example_.study, example_.poses, result, example_.facts);
   EXPECT_TRUE(verify_result(path_).matches());
   const StoredResult stored = read_result(path_);
-  ASSERT_TRUE(stored.monte_carlo.convergence);
-  expect_same(*stored.monte_carlo.convergence, *result.convergence);
+  ASSERT_TRUE(stored.convergence);
+  expect_same(*stored.convergence, *result.convergence);
   const h5::File file = h5::File::open(path_);
   EXPECT_TRUE(file.exists("/convergence/mean"));
   EXPECT_EQ(file.shape("/convergence/half_width").size(), 2u);
@@ -104,7 +104,7 @@ TEST_F(ConvergenceFile, OfAMonteCarloResult) {
 TEST_F(ConvergenceFile, FixedSamplesHaveNone) {
   test::Example fixed;
   fixed.write_sensitivity(path_);
-  EXPECT_FALSE(read_result(path_).sensitivity.convergence);
+  EXPECT_FALSE(read_result(path_).convergence);
   EXPECT_FALSE(h5::File::open(path_).exists("/convergence"));
 }
 

@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/version.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
@@ -48,7 +49,7 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   example.write_sensitivity(folder / "r.h5");
   const StoredResult stored = read_result(folder / "r.h5");
   const SensitivityResult expected = example.sensitivity();
-  const SensitivityResult& found = stored.sensitivity;
+  const SensitivityResult& found = sensitivity_of(stored);
 
   EXPECT_EQ(stored.kind, "sensitivity");
   EXPECT_EQ(stored.title, example.study.title);
@@ -86,7 +87,7 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   expect_same(found.history->value, expected.history->value, "history global");
   expect_same(found.history->ci_low, expected.history->ci_low, "history global_ci_low");
   expect_same(found.history->ci_high, expected.history->ci_high, "history global_ci_high");
-  EXPECT_EQ(found.failures, expected.failures);
+  EXPECT_EQ(stored.failures, expected.failures);
   ASSERT_EQ(found.solves.size(), expected.solves.size());
   for (std::size_t cell = 0; cell < found.solves.size(); ++cell) {
     EXPECT_EQ(found.solves[cell].by_status, expected.solves[cell].by_status) << cell;
@@ -100,8 +101,8 @@ TEST(ResultFile, OfAnOlderVersionSaysNothingOfOtherSizes) {
   Example example;
   SensitivityResult result = example.sensitivity();
   result.index_change.clear();
-  write_sensitivity(folder / "r.h5", example.study, example.poses, result, example.facts);
-  EXPECT_TRUE(read_result(folder / "r.h5").sensitivity.index_change.empty());
+  write_result(folder / "r.h5", example.study, example.poses, result, example.facts);
+  EXPECT_TRUE(sensitivity_of(read_result(folder / "r.h5")).index_change.empty());
 }
 
 TEST(ResultFile, SaysWhatErrorsAndResponsesAre) {
@@ -141,19 +142,20 @@ TEST_P(EvaluationFile, ReadsBackAsWritten) {
   example.write_evaluation(folder / "e.h5", GetParam());
   const StoredResult stored = read_result(folder / "e.h5");
   const EvaluationResult expected = example.evaluation(GetParam());
-  const EvaluationResult& found = stored.evaluation;
+  const StoredEvaluation& evaluation = evaluation_of(stored);
+  const EvaluationResult& found = evaluation.evaluation;
 
   EXPECT_EQ(stored.kind, "evaluate");
-  EXPECT_EQ(stored.pairing, GetParam());
+  EXPECT_EQ(evaluation.pairing, GetParam());
   EXPECT_EQ(names_with_units(stored.factors), (Names{"delta_2 m", "epsilon_1 rad"}));
-  EXPECT_EQ(stored.joints, (Names{"q_1", "q_2"}));
+  EXPECT_EQ(evaluation.joints, (Names{"q_1", "q_2"}));
   expect_same(stored.poses, example.poses.poses);
   EXPECT_EQ(stored.condition, example.poses.condition);
-  expect_same(stored.errors, example.errors(GetParam()).values, "errors");
-  ASSERT_EQ(stored.details.size(), 3U);
-  EXPECT_EQ(stored.details[2].name, "twist_32");
-  EXPECT_EQ(stored.details[2].unit, "rad,rad,m");
-  EXPECT_EQ(stored.details[2].components, (Names{"omega_x", "omega_y", "v_z"}));
+  expect_same(evaluation.errors, example.errors(GetParam()).values, "errors");
+  ASSERT_EQ(evaluation.details.size(), 3U);
+  EXPECT_EQ(evaluation.details[2].name, "twist_32");
+  EXPECT_EQ(evaluation.details[2].unit, "rad,rad,m");
+  EXPECT_EQ(evaluation.details[2].components, (Names{"omega_x", "omega_y", "v_z"}));
 
   EXPECT_EQ(found.poses, expected.poses);
   EXPECT_EQ(found.samples, expected.samples);

@@ -8,11 +8,15 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/stored.h"
 #include "engine/kinds/identification/identification.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/stored.h"
 #include "engine/run/evaluation.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy::test {
 
@@ -37,6 +41,7 @@ class Example {
     study.poses.workspace = {{-0.3, -0.18}, {-0.5, 0.5}, {-0.6, 0.6}};
     study.errors.by_factor.assign(3, Distribution::normal(0.001));
     study.errors.by_factor[1] = Distribution::uniform(0.5);
+    study.analysis.kind = &kSensitivityStudy;
     study.analysis.factors = {FactorIndex(1), FactorIndex(0)};
     study.analysis.samples = 100;
     std::vector<double> coordinates;
@@ -98,14 +103,14 @@ class Example {
 
   /// Two quantiles; sets the study's kind and levels to match. Numbers count on through the arrays.
   MonteCarloResult monte_carlo() {
-    study.analysis.kind = Analysis::Kind::monte_carlo;
-    study.analysis.quantiles = {0.05, 0.995};
+    study.analysis.kind = &kMonteCarloStudy;
+    asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.05, 0.995};
     MonteCarloResult result;
     result.responses = 2;
     result.poses = kPoses;
     result.conf_level = 0.9;
     result.quantile_relative_error = 1.0 / 512.0;
-    result.levels = study.analysis.quantiles;
+    result.levels = asked_of<MonteCarloOptions>(study.analysis).quantiles;
     double next = 0.0;
     const auto fill = [&](std::vector<double>& values, std::size_t length) {
       for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
@@ -126,8 +131,8 @@ class Example {
     for (auto* values : {&result.overall_quantiles_ci_low, &result.overall_quantiles_ci_high}) fill(*values, 4);
     result.histogram_edges = {0.0, 1.0, 2.0, 4.0, 4.0, 1.0, 2.0, 3.0, 4.0, 5.0};
     result.histogram_counts = {100, 200, 82, 0, 300, 0, 60, 6};
-    study.analysis.judge = Judge::share;
-    study.analysis.share = 0.9973;
+    asked_of<MonteCarloOptions>(study.analysis).judge = Judge::share;
+    asked_of<MonteCarloOptions>(study.analysis).share = 0.9973;
     study.analysis.limits = {{0, 0.5}, {1, 0.25}};
     fill(result.share_magnitude, 2 * kPoses);
     result.verdicts = verdicts();
@@ -174,9 +179,9 @@ class Example {
   /// Two sizes, two sources; sets the study to match. Numbers count on through the arrays.
   CouplingResult coupling() {
     Analysis& analysis = study.analysis;
-    analysis.kind = Analysis::Kind::coupling;
+    analysis.kind = &kCouplingStudy;
     analysis.factors = {FactorIndex(0), FactorIndex(2)};
-    analysis.coupling = {{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
+    asked_of<CouplingStudy>(analysis) = {{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
     CouplingResult result;
     result.responses = 2;
     result.sizes = 2;
@@ -202,8 +207,8 @@ class Example {
 
   /// Two errors in two groups; sets the study to match.
   IdentificationResult identification() {
-    study.analysis.kind = Analysis::Kind::identification;
-    study.analysis.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+    study.analysis.kind = &kIdentificationStudy;
+    asked_of<IdentificationOptions>(study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
     IdentificationResult result;
     result.factors = 2;
     result.groups = 2;
@@ -226,8 +231,8 @@ class Example {
 
   /// Two cases, all details kept; sets the study to match.
   CaseResult cases() {
-    study.analysis.kind = Analysis::Kind::evaluate;
-    study.analysis.cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
+    study.analysis.kind = &kEvaluateStudy;
+    asked_of<CaseOptions>(study.analysis).cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
     EvaluationResult all = evaluation(Pairing::every_pose_with_every_row);
     const std::size_t cells = 2 * kPoses;
     all.samples = 2;
@@ -262,23 +267,23 @@ class Example {
   }
 
   void write_sensitivity(const std::string& path) const {
-    poesy::write_sensitivity(path, study, poses, sensitivity(), facts);
+    poesy::write_result(path, study, poses, sensitivity(), facts);
   }
   void write_monte_carlo(const std::string& path) {
     const MonteCarloResult result = monte_carlo();
-    poesy::write_monte_carlo(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_coupling(const std::string& path) {
     const CouplingResult result = coupling();
-    poesy::write_coupling(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_cases(const std::string& path) {
     const CaseResult result = cases();
-    poesy::write_cases(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_identification(const std::string& path) {
     const IdentificationResult result = identification();
-    poesy::write_identification(path, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_evaluation(const std::string& path, Pairing pairing) const {
     poesy::write_evaluation(path, study, poses, errors(pairing), pairing, evaluation(pairing), facts);

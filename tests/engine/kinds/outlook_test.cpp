@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/kinds/study_kinds.h"
+#include "tests/support/kinds.h"
 
 namespace poesy::test {
 namespace {
@@ -15,7 +16,7 @@ std::vector<double> first_pieces(const std::vector<WorkOutlook>& all) {
 }
 
 TEST(Outlook, CountsTheSolvesOfASensitivityStudy) {
-  const Prepared prepared(study_of(Kind::sensitivity, 400));
+  const Prepared prepared(study_of(&kSensitivityStudy, 400));
   const Outlook expected = outlook(prepared.study, *prepared.model, prepared.plan.poses());
   EXPECT_EQ(expected.solves, "2 errors x 3 poses x 400 samples = 2400 solves");
   EXPECT_EQ(expected.least, 1.0);
@@ -26,7 +27,7 @@ TEST(Outlook, CountsTheSolvesOfASensitivityStudy) {
 }
 
 TEST(Outlook, NamesBothEndsOfAdaptiveSamples) {
-  Study study = study_of(Kind::monte_carlo, 4000);
+  Study study = study_of(&kMonteCarloStudy, 4000);
   study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
   const Prepared prepared(study);
   const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
@@ -37,9 +38,9 @@ TEST(Outlook, NamesBothEndsOfAdaptiveSamples) {
 }
 
 TEST(Outlook, TriesAFewPosesOfATable) {
-  Study study = study_of(Kind::evaluate, 0);
-  study.analysis.cases = {{"one", {1e-3, 0.0, 0.0}}};
-  const Prepared prepared(study_of(Kind::sensitivity, 10));
+  Study study = study_of(&kEvaluateStudy, 0);
+  asked_of<CaseOptions>(study.analysis).cases = {{"one", {1e-3, 0.0, 0.0}}};
+  const Prepared prepared(study_of(&kSensitivityStudy, 10));
   const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
   EXPECT_EQ(expected.solves, "1 cases x 3 poses = 3 solves");
   EXPECT_EQ(first_pieces(expected.shared), std::vector{1.0});

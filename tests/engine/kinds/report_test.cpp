@@ -1,5 +1,6 @@
-#include "engine/kinds/report.h"
+#include "engine/report/html/report.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/report/html/report.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
 
@@ -16,8 +17,10 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/files/result_file.h"
+#include "engine/kinds/identification/stored.h"
+#include "engine/report/display.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/engine/kinds/stored.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -167,10 +170,12 @@ class HtmlReport : public testing::Test {
     return stored();
   }
 
-  static std::string report(const ReportedResult& result) { return html_report({&result, 1}); }
+  static std::string report(const ReportedResult& result) {
+    return html_report(kind_of(result.stored).report, {&result, 1});
+  }
   static std::string report(const ReportedResult& a, const ReportedResult& b) {
     const std::vector<ReportedResult> both{a, b};
-    return html_report(both);
+    return html_report(kind_of(both[0].stored).report, both);
   }
 
   test::TempFolder folder;
@@ -193,23 +198,24 @@ TEST_F(HtmlReport, OfEveryKindIsWhole) {
 TEST_F(HtmlReport, OfAnIdentificationIsWhole) {
   ReportedResult result = sensitivity();
   result.stored.kind = "identification";
-  result.stored.groups = {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}};
-  result.stored.identification = {.factors = 2,
-                                  .groups = 2,
-                                  .poses = 4,
-                                  .rounding = 1e-14,
-                                  .required_poses = 4,
-                                  .single_below = {4, 0, 4, 1},
-                                  .single_max = {0.0, 1e-3, 0.0, 1e-2},
-                                  .not_solved = {0, 0, 0, 0},
-                                  .coupled_below = {4, 4, 2, 4},
-                                  .coupled_reduced = {0, 0, 2, 0},
-                                  .single_by_group = {0, 1, 0, 1},
-                                  .coupled_by_group = {0, 1, 0, 1},
-                                  .single = {0, 1},
-                                  .coupled = {0, 1},
-                                  .couplings = {},
-                                  .solves = {}};
+  StoredIdentification found{{.factors = 2,
+                              .groups = 2,
+                              .poses = 4,
+                              .rounding = 1e-14,
+                              .required_poses = 4,
+                              .single_below = {4, 0, 4, 1},
+                              .single_max = {0.0, 1e-3, 0.0, 1e-2},
+                              .not_solved = {0, 0, 0, 0},
+                              .coupled_below = {4, 4, 2, 4},
+                              .coupled_reduced = {0, 0, 2, 0},
+                              .single_by_group = {0, 1, 0, 1},
+                              .coupled_by_group = {0, 1, 0, 1},
+                              .single = {0, 1},
+                              .coupled = {0, 1},
+                              .couplings = {},
+                              .solves = {}},
+                             {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}}};
+  result.stored.found = found;
   const std::string html = report(result);
   check_page(html);
   const Json page = data(html);
@@ -228,7 +234,7 @@ TEST_F(HtmlReport, OfATrajectoryHasCurvesOverTime) {
 
 TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
   const ReportedResult result = sensitivity();
-  const SensitivityResult& found = result.stored.sensitivity;
+  const SensitivityResult& found = sensitivity_of(result.stored);
   const Json page = data(report(result));
   const Json& ranking = page["figures"]["ranking"]["quantities"][0];
   const Json& heat = page["figures"]["heat"];
@@ -282,9 +288,9 @@ TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.factor_sigma = {1.0, 1.0};
-  stored.sensitivity.global = stored.sensitivity.global_corrected = {0.1, 1.0, 0.1, 1.0};
-  for (std::size_t at = 0; at < stored.sensitivity.local.size(); ++at) {
-    stored.sensitivity.local[at] = at % 4 == 3 ? 5.0 : 1.0;  // the last pose is the worst, 2.5 times the mean
+  sensitivity_in(stored).global = sensitivity_in(stored).global_corrected = {0.1, 1.0, 0.1, 1.0};
+  for (std::size_t at = 0; at < sensitivity_in(stored).local.size(); ++at) {
+    sensitivity_in(stored).local[at] = at % 4 == 3 ? 5.0 : 1.0;  // the last pose is the worst, 2.5 times the mean
   }
   const std::string html = report(result);
   const Json page = data(html);
@@ -299,15 +305,15 @@ TEST_F(HtmlReport, PutsPosesInTheOrderThatExplainsTheEffects) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.poses = PoseSet(3, {-0.2, 0.1, -0.6, -0.3, 0.3, 0.1, -0.1, -0.2, 0.4, -0.4, 0.5, -0.3});
-  for (std::size_t at = 0; at < stored.sensitivity.local.size(); ++at) {
-    stored.sensitivity.local[at] = std::exp(std::abs(stored.poses[PoseIndex(at % 4)][2]));
+  for (std::size_t at = 0; at < sensitivity_in(stored).local.size(); ++at) {
+    sensitivity_in(stored).local[at] = std::exp(std::abs(stored.poses[PoseIndex(at % 4)][2]));
   }
   const std::string html = report(result);
   EXPECT_EQ(data(html)["figures"]["heat"]["columns"]["order"], "|gamma|");
   EXPECT_NE(html.find("grows with |gamma|: their rank correlation over the poses is 1.00."), std::string::npos);
-  for (double& value : stored.sensitivity.local) value = 1.0 / value;
+  for (double& value : sensitivity_in(stored).local) value = 1.0 / value;
   EXPECT_NE(report(result).find("falls with |gamma|"), std::string::npos);
-  stored.sensitivity.local = {2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5};
+  sensitivity_in(stored).local = {2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5, 2.0, 3.0, 1.0, 2.5};
   EXPECT_EQ(report(result).find("with |gamma|:"), std::string::npos);
   stored.time = {0.0, 1.0, 2.0, 3.0};
   EXPECT_FALSE(data(report(result))["figures"]["heat"]["columns"].contains("order"));
@@ -315,8 +321,8 @@ TEST_F(HtmlReport, PutsPosesInTheOrderThatExplainsTheEffects) {
 
 /// Of so many solves in each of 8 cells, one does not converge.
 ReportedResult with_one_failure(ReportedResult result, std::uint64_t solves) {
-  for (SolveCounts& cell : result.stored.sensitivity.solves) cell.by_status = {solves, 0, 0, 0, 0};
-  result.stored.sensitivity.solves[5].by_status = {solves - 1, 0, 1, 0, 0};
+  for (SolveCounts& cell : sensitivity_in(result.stored).solves) cell.by_status = {solves, 0, 0, 0, 0};
+  sensitivity_in(result.stored).solves[5].by_status = {solves - 1, 0, 1, 0, 0};
   return result;
 }
 
@@ -375,10 +381,10 @@ TEST_F(HtmlReport, SaysWhichErrorsMakeTheMeanSquare) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.factor_sigma = {1.0, 1.0};
-  stored.sensitivity.global = {5.0, 4.0, 5.0, 4.0};
-  stored.sensitivity.background.assign(8, 0.0);
-  stored.sensitivity.std.assign(16, 0.0);
-  for (std::size_t cell = 0; cell < 16; ++cell) stored.sensitivity.mean[cell] = cell / 4 % 2 == 0 ? 0.3 : 4.0;
+  sensitivity_in(stored).global = {5.0, 4.0, 5.0, 4.0};
+  sensitivity_in(stored).background.assign(8, 0.0);
+  sensitivity_in(stored).std.assign(16, 0.0);
+  for (std::size_t cell = 0; cell < 16; ++cell) sensitivity_in(stored).mean[cell] = cell / 4 % 2 == 0 ? 0.3 : 4.0;
   const std::string html = report(result);
   const std::string response = default_ranking(stored);
   EXPECT_NE(html.find("1 of 2 errors makes 99 % of what the study&#39;s sizes add to the mean square of " + response +
@@ -390,8 +396,8 @@ TEST_F(HtmlReport, SaysWhichErrorsMakeTheMeanSquare) {
 TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
-  stored.fidelities = {"one", "two"};
-  FidelityResult& compared = stored.sensitivity.fidelity.emplace();
+  sensitivity_in(stored).fidelities = {"one", "two"};
+  FidelityResult& compared = sensitivity_in(stored).fidelity.emplace();
   for (auto* values :
        {&compared.global, &compared.discrepancy, &compared.relative_discrepancy, &compared.nonlinearity}) {
     values->assign(4, 0.0);
@@ -399,7 +405,7 @@ TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
   compared.linear = {1, 1};
   compared.not_converged.assign(8, 0);
   compared.not_converged[5] = 7;
-  for (SolveCounts& solves : stored.sensitivity.solves) solves.by_status = {100, 0, 0, 0, 0};
+  for (SolveCounts& solves : sensitivity_in(stored).solves) solves.by_status = {100, 0, 0, 0, 0};
   const std::string page = body(report(result));
   EXPECT_NE(page.find("All 800 solves at fidelity &quot;one&quot; converged."), std::string::npos);
   EXPECT_NE(page.find("At fidelity &quot;two&quot;, 7 of 800 solves did not converge:"), std::string::npos);
@@ -409,8 +415,8 @@ TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
 TEST_F(HtmlReport, TakesRoundingForNoDifference) {
   const ReportedResult a = sensitivity();
   ReportedResult b = a;
-  for (double& value : b.stored.sensitivity.global_corrected) value *= 1.0 + 1e-13;
-  for (double& value : b.stored.sensitivity.local) value += 1e-12;
+  for (double& value : sensitivity_in(b.stored).global_corrected) value *= 1.0 + 1e-13;
+  for (double& value : sensitivity_in(b.stored).local) value += 1e-12;
   const std::string html = report(a, b);
   const Json page = data(html);
   for (const float value : array(page, page["figures"]["heat"]["layers"][0]["value"])) {
@@ -424,12 +430,12 @@ TEST_F(HtmlReport, TakesRoundingForNoDifference) {
 TEST_F(HtmlReport, OfTwoHasTheirRankingsBesideEachOther) {
   ReportedResult a = sensitivity();
   a.stored.factor_sigma = {1.0, 1.0};
-  a.stored.sensitivity.global_corrected = {1.0, 2.0, 1.0, 2.0};
+  sensitivity_in(a.stored).global_corrected = {1.0, 2.0, 1.0, 2.0};
   ReportedResult b = a;
   EXPECT_NE(body(report(a, b)).find("Kendall&#39;s tau of the two rankings is 1, over 2 errors"), std::string::npos);
   a.stored.metric = "published";
   b.stored.metric = "platform";
-  b.stored.sensitivity.global_corrected = {2.0, 1.0, 2.0, 1.0};
+  sensitivity_in(b.stored).global_corrected = {2.0, 1.0, 2.0, 1.0};
   const std::string page = body(report(a, b));
   check_page(report(a, b));
   EXPECT_NE(page.find("Kendall&#39;s tau of the two rankings is -1, over 2 errors"), std::string::npos);
@@ -442,19 +448,19 @@ TEST_F(HtmlReport, OfCoupledSourcesOpensAtTheLastSize) {
   example.write_coupling(path);
   const ReportedResult result = stored();
   const std::string label = data(report(result))["figures"]["sources"]["panels"][0]["label"];
-  EXPECT_TRUE(label.ends_with(" at " + result.stored.coupling.size_names.back())) << label;
+  EXPECT_TRUE(label.ends_with(" at " + coupling_of(result.stored).size_names.back())) << label;
 }
 
 TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
   ReportedResult result = sensitivity();
-  result.stored.sensitivity.history.reset();
+  sensitivity_in(result.stored).history.reset();
   const std::string without = report(result);
   EXPECT_FALSE(data(without)["figures"].contains("convergence"));
   EXPECT_NE(without.find("did not keep how its indices settled"), std::string::npos);
   EstimateCourse history{
       {10, 100}, std::vector<double>(8, 0.5), std::vector<double>(8, 0.25), std::vector<double>(8, 1.0)};
-  result.stored.sensitivity.history = history;
-  result.stored.sensitivity.global_corrected.assign(4, 0.5);
+  sensitivity_in(result.stored).history = history;
+  sensitivity_in(result.stored).global_corrected.assign(4, 0.5);
   const std::string html = report(result);
   check_page(html);
   const Json page = data(html);
@@ -489,7 +495,7 @@ TEST_F(HtmlReport, WarnsOfWhatAReaderMustNotMiss) {
   ReportedResult result = sensitivity();
   result.stored.changed = true;
   result.stored.git_commit = "abc-dirty";
-  result.stored.sensitivity.count.assign(16, 1.0);
+  sensitivity_in(result.stored).count.assign(16, 1.0);
   const std::string page = body(report(result));
   for (const char* text : {"was changed since it was written", "(abc-dirty)", "did not converge",
                            "That is more than 1 %", "fewer than two samples", "close to singular"}) {
@@ -501,7 +507,7 @@ TEST_F(HtmlReport, WarnsOfIndicesThatHoldAtNoOtherSize) {
   ReportedResult result = sensitivity();
   constexpr const char* kWarning = "Some indices say something about the size of the errors in this study and no other";
   EXPECT_EQ(body(report(result)).find(kWarning), std::string::npos);
-  result.stored.sensitivity.index_change = {0.0, 0.0, -0.9, 0.0};
+  sensitivity_in(result.stored).index_change = {0.0, 0.0, -0.9, 0.0};
   const std::string page = body(report(result));
   EXPECT_NE(page.find(kWarning), std::string::npos);
   EXPECT_NE(page.find("not for epsilon_1 (-90.0 %)"), std::string::npos);
@@ -512,11 +518,11 @@ TEST_F(HtmlReport, HasNoSectionOfWarningsWithoutAny) {
   StoredResult& stored = result.stored;
   stored.git_commit = "abc";
   stored.condition = {1.0, 1.0, 1.0, 1.0};
-  SensitivityResult& found = stored.sensitivity;
+  SensitivityResult& found = sensitivity_in(stored);
   found.global = {1.0, 1.0, 1.0, 1.0};
   found.global_corrected = found.global_corrected_ci_low = found.global_corrected_ci_high = found.global;
   for (SolveCounts& solves : found.solves) solves.by_status = {100, 0, 0, 0, 0};
-  found.failures.clear();
+  stored.failures.clear();
   EXPECT_EQ(body(report(result)).find("id=\"warnings\""), std::string::npos);
 }
 
@@ -524,7 +530,7 @@ TEST_F(HtmlReport, ThinsPosesOfALargeResultAndSaysSo) {
   constexpr std::size_t kPoses = 400'000;
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
-  SensitivityResult& found = stored.sensitivity;
+  SensitivityResult& found = sensitivity_in(stored);
   found.poses = kPoses;
   for (auto* values :
        {&found.local, &found.local_ci_low, &found.local_ci_high, &found.count, &found.mean, &found.std}) {
@@ -550,7 +556,7 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   const ReportedResult a = sensitivity();
   ReportedResult b = a;
   b.path = "b.h5";
-  b.stored.sensitivity.global_corrected[0] += 10.0;
+  sensitivity_in(b.stored).global_corrected[0] += 10.0;
   b.stored.factors[1].name = "another";
   const std::string html = report(a, b);
   check_page(html);
@@ -560,8 +566,8 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   const double scale = a.stored.factor_sigma[0] / display(a.stored.responses[0]).si;
   const std::vector<std::string> responses = page["figures"]["side-by-side"]["choices"][0]["options"];
   const std::size_t r = responses[0] == a.stored.responses[0].name ? 0 : 1;
-  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(a.stored.sensitivity.global_corrected[0] * scale));
-  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(b.stored.sensitivity.global_corrected[0] * scale));
+  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(sensitivity_of(a.stored).global_corrected[0] * scale));
+  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(sensitivity_of(b.stored).global_corrected[0] * scale));
   EXPECT_NE(html.find("Only in B: another."), std::string::npos);
   for (const Json& layer : page["figures"]["heat"]["layers"]) EXPECT_TRUE(layer["signed"]);
 }
@@ -599,14 +605,14 @@ TEST_F(HtmlReport, OfTwoResultsSaysFirstHowTheStudiesDiffer) {
 
 TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
   ReportedResult a = sensitivity();
-  a.stored.sensitivity.global.assign(4, 1.0);  // every error is known to have an effect
-  a.stored.sensitivity.count.assign(16, 1000.0);
-  a.stored.sensitivity.background.assign(8, 0.0);
-  a.stored.sensitivity.mean.assign(16, 3e-3);
-  a.stored.sensitivity.std.assign(16, 4e-3);
+  sensitivity_in(a.stored).global.assign(4, 1.0);  // every error is known to have an effect
+  sensitivity_in(a.stored).count.assign(16, 1000.0);
+  sensitivity_in(a.stored).background.assign(8, 0.0);
+  sensitivity_in(a.stored).mean.assign(16, 3e-3);
+  sensitivity_in(a.stored).std.assign(16, 4e-3);
   ReportedResult b = a;
-  for (auto* values : {&b.stored.sensitivity.mean, &b.stored.sensitivity.std}) values->assign(16, 0.0);
-  b.stored.sensitivity.mean.assign(16, 0.5e-3);
+  for (auto* values : {&sensitivity_in(b.stored).mean, &sensitivity_in(b.stored).std}) values->assign(16, 0.0);
+  sensitivity_in(b.stored).mean.assign(16, 0.5e-3);
   const std::string rows = table(report(a, b), "totals");
   // Two errors: sqrt(2 (3^2 + 4^2 999 / 1000)) = 7.069 mm, and sqrt(2) 0.5 mm.
   EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\">7.069</td>"), std::string::npos)
@@ -618,7 +624,7 @@ TEST_F(HtmlReport, ComparesByTheEstimatorThatBothResultsHave) {
   const ReportedResult newer = sensitivity();
   ReportedResult older = newer;
   older.path = "b.h5";
-  SensitivityResult& found = older.stored.sensitivity;
+  SensitivityResult& found = sensitivity_in(older.stored);
   for (auto* values :
        {&found.global_corrected, &found.global_corrected_ci_low, &found.global_corrected_ci_high, &found.rounding}) {
     values->clear();
@@ -631,7 +637,7 @@ TEST_F(HtmlReport, ComparesByTheEstimatorThatBothResultsHave) {
     const std::size_t r = responses[0] == newer.stored.responses[0].name ? 0 : 1;
     const double scale = newer.stored.factor_sigma[0] / display(newer.stored.responses[0]).si;
     for (const std::size_t at : {r * 2, 4 + r * 2}) {
-      EXPECT_FLOAT_EQ(effects.at(at), static_cast<float>(newer.stored.sensitivity.global[0] * scale)) << at;
+      EXPECT_FLOAT_EQ(effects.at(at), static_cast<float>(sensitivity_of(newer.stored).global[0] * scale)) << at;
     }
   }
 }
@@ -641,7 +647,7 @@ TEST_F(HtmlReport, WarnsOfErrorsTooSmallToTell) {
   EXPECT_EQ(report(result).find("so small in this study"), std::string::npos);
   StoredResult& stored = result.stored;
   stored.factor_sigma[1] = 1e-12;
-  stored.sensitivity.global_corrected[1] = stored.sensitivity.global_corrected[3] = std::nan("");
+  sensitivity_in(stored).global_corrected[1] = sensitivity_in(stored).global_corrected[3] = std::nan("");
   EXPECT_NE(report(result).find("1 error is so small in this study that an effect cannot be told from the rounding of "
                                 "the solves: " +
                                 stored.factors[1].name + ". Study larger errors."),

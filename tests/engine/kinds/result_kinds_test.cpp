@@ -6,6 +6,7 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/identification/identification.h"
+#include "engine/kinds/identification/stored.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
@@ -16,7 +17,7 @@ namespace {
 class CasesFile : public testing::Test {
  protected:
   CasesFile() : result_(example_.cases()), path_(folder_.file("cases.h5")) {
-    write_cases(path_, example_.study, example_.poses, result_, example_.facts);
+    write_result(path_, example_.study, example_.poses, result_, example_.facts);
   }
 
   test::TempFolder folder_;
@@ -40,23 +41,24 @@ TEST_F(CasesFile, KeepsSolvesCaseByCase) {
 TEST_F(CasesFile, IsReadBackAsItWas) {
   const StoredResult stored = read_result(path_);
   EXPECT_EQ(stored.kind, "evaluate");
-  EXPECT_EQ(stored.cases, (std::vector<std::string>{"fine", "coarse"}));
-  EXPECT_EQ(stored.evaluation.response, result_.evaluation.response);
-  EXPECT_EQ(stored.evaluation.detail, result_.evaluation.detail);
-  EXPECT_EQ(stored.evaluation.status, result_.evaluation.status);
-  EXPECT_EQ(stored.evaluation.iterations, result_.evaluation.iterations);
-  EXPECT_EQ(stored.evaluation.joint_displacement, result_.evaluation.joint_displacement);
-  EXPECT_EQ(stored.case_result.mean, result_.mean);
-  EXPECT_EQ(stored.case_result.max, result_.max);
-  EXPECT_EQ(stored.case_result.count, result_.count);
-  EXPECT_EQ(stored.errors, (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}));
+  const StoredEvaluation& found = evaluation_of(stored);
+  EXPECT_EQ(found.cases, (std::vector<std::string>{"fine", "coarse"}));
+  EXPECT_EQ(found.evaluation.response, result_.evaluation.response);
+  EXPECT_EQ(found.evaluation.detail, result_.evaluation.detail);
+  EXPECT_EQ(found.evaluation.status, result_.evaluation.status);
+  EXPECT_EQ(found.evaluation.iterations, result_.evaluation.iterations);
+  EXPECT_EQ(found.evaluation.joint_displacement, result_.evaluation.joint_displacement);
+  EXPECT_EQ(found.mean, result_.mean);
+  EXPECT_EQ(found.max, result_.max);
+  EXPECT_EQ(found.count, result_.count);
+  EXPECT_EQ(found.errors, (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}));
   EXPECT_TRUE(verify_result(path_).matches());
 }
 
 TEST_F(CasesFile, KeepsTheTimesOfATrajectory) {
   EXPECT_TRUE(read_result(path_).time.empty());
   example_.poses.time = {0.0, 0.25, 0.5, 1.5};
-  write_cases(path_, example_.study, example_.poses, result_, example_.facts);
+  write_result(path_, example_.study, example_.poses, result_, example_.facts);
   EXPECT_TRUE(verify_result(path_).matches());
   EXPECT_EQ(read_result(path_).time, example_.poses.time);
   EXPECT_EQ(h5::File::open(path_).attribute<std::string>("/poses/time", "unit").at(0), "s");
@@ -94,7 +96,7 @@ class IdentificationFile : public testing::Test {
   IdentificationFile() : path_(folder_.file("identification.h5")) {}
 
   StoredResult stored(const IdentificationResult& result) {
-    write_identification(path_, example_.study, example_.poses, result, example_.facts);
+    write_result(path_, example_.study, example_.poses, result, example_.facts);
     return read_result(path_);
   }
 
@@ -106,10 +108,10 @@ class IdentificationFile : public testing::Test {
 TEST_F(IdentificationFile, IsReadBackAsItWas) {
   const IdentificationResult written = example_.identification();
   const StoredResult read = stored(written);
-  const IdentificationResult& found = read.identification;
+  const StoredIdentification& found = identification_of(read);
   EXPECT_EQ(read.kind, "identification");
-  EXPECT_EQ(read.groups[1].name, "small");
-  EXPECT_EQ(read.groups[1].angular, 4e-4);
+  EXPECT_EQ(found.sizes[1].name, "small");
+  EXPECT_EQ(found.sizes[1].angular, 4e-4);
   EXPECT_EQ(found.poses, written.poses);
   EXPECT_EQ(found.rounding, written.rounding);
   EXPECT_EQ(found.required_poses, written.required_poses);
@@ -132,7 +134,7 @@ TEST_F(IdentificationFile, IsReadBackAsItWas) {
 TEST_F(IdentificationFile, MayHaveNoCouplings) {
   IdentificationResult none = example_.identification();
   none.couplings.clear();
-  EXPECT_TRUE(stored(none).identification.couplings.empty());
+  EXPECT_TRUE(identification_of(stored(none)).couplings.empty());
 }
 
 TEST_F(IdentificationFile, IsExportedGroupByGroup) {

@@ -13,17 +13,16 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy::test {
-
-using Kind = Analysis::Kind;
 
 inline const Catalog& catalog() {
   static const Catalog failing = failing_catalog();
   return failing;
 }
 
-inline Study study_of(Kind kind, std::size_t samples) {
+inline Study study_of(KindOfStudy kind, std::size_t samples) {
   Study study;
   study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
   study.errors.by_factor.assign(3, Distribution::normal(1e-3));
@@ -32,7 +31,7 @@ inline Study study_of(Kind kind, std::size_t samples) {
   study.analysis.kind = kind;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1)};
   study.analysis.samples = samples;
-  study.analysis.quantiles = {0.1, 0.9};
+  set_quantiles(study.analysis, {0.1, 0.9});
   study.seed = 3;
   return study;
 }
@@ -111,27 +110,23 @@ inline std::optional<Bits> run(const Prepared& prepared, const RunOptions& optio
                           options);
   };
   const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
-  switch (prepared.study.analysis.kind) {
-    case Kind::sensitivity:
-      return bits(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
-    case Kind::monte_carlo:
-      return bits(run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options));
-    case Kind::identification: {
-      Analysis analysis = prepared.study.analysis;
-      analysis.groups = {{"one", 1e-3, 1e-3}, {"two", 2e-3, 2e-3}};
-      analysis.pose_share = 0.9;
-      return bits(identify(analysis, prepared.model->description(), table));
-    }
-    default: {
-      ErrorTable errors{{FactorIndex(0), FactorIndex(1)}, {}, 700};
-      for (std::size_t k = 0; k < 2 * errors.rows; ++k) errors.values.push_back(1e-6 * static_cast<double>(k));
-      return bits(table(errors));
-    }
+  const KindOfStudy kind = prepared.study.analysis.kind;
+  if (kind == &kSensitivityStudy) return bits(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
+  if (kind == &kMonteCarloStudy) {
+    return bits(run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options));
   }
+  if (kind == &kIdentificationStudy) {
+    Analysis analysis = prepared.study.analysis;
+    analysis.asked = IdentificationOptions{{{"one", 1e-3, 1e-3}, {"two", 2e-3, 2e-3}}, 0.9};
+    return bits(identify(analysis, prepared.model->description(), table));
+  }
+  ErrorTable errors{{FactorIndex(0), FactorIndex(1)}, {}, 700};
+  for (std::size_t k = 0; k < 2 * errors.rows; ++k) errors.values.push_back(1e-6 * static_cast<double>(k));
+  return bits(table(errors));
 }
 
-inline std::string kind_name(const testing::TestParamInfo<Kind>& info) {
-  std::string text(name(info.param));
+inline std::string kind_name(const testing::TestParamInfo<KindOfStudy>& info) {
+  std::string text(info.param->name);
   std::erase(text, '-');
   return text;
 }

@@ -2,9 +2,10 @@
 
 #include <numbers>
 
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -35,7 +36,7 @@ errors = { delta_1 = "-0.5 mm", linear = "1 mm", deforming = { linear = "2 mm", 
 [[analysis.cases]]
 errors = { epsilon_1 = "1 deg" }
 )");
-  const std::vector<ErrorCase>& cases = study.analysis.cases;
+  const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
   ASSERT_EQ(cases.size(), 3u);
   EXPECT_EQ(cases[0].name, "all");
   EXPECT_EQ(cases[0].errors, (std::vector<double>{1e-3, kDegree, 1e-3}));
@@ -49,14 +50,14 @@ TEST(StudyOfCases, LetsANarrowerSetWinWhateverItsPlaceInTheModel) {
 [[analysis.cases]]
 errors = { all = { linear = "1 mm", angular = "1 deg" }, deforming = { linear = "2 mm" } }
 )");
-  EXPECT_EQ(study.analysis.cases[0].errors, (std::vector<double>{2e-3, kDegree, 1e-3}));
+  EXPECT_EQ(asked_of<CaseOptions>(study.analysis).cases[0].errors, (std::vector<double>{2e-3, kDegree, 1e-3}));
   Catalog wide_last = test::fake_catalog();
   std::swap(wide_last.front().description.factor_sets[0], wide_last.front().description.factor_sets[1]);
   const test::TempFolder folder;
   const std::string path = folder.write(
       "study.toml", with_analysis("kind = \"evaluate\"\ncases = [{ errors = { all = { linear = \"1 mm\" }, deforming = "
                                   "{ linear = \"2 mm\" } } }]\n"));
-  EXPECT_EQ(read_study(path, wide_last, StudyUse::run).analysis.cases[0].errors,
+  EXPECT_EQ(asked_of<CaseOptions>(read_study(path, wide_last, StudyUse::run).analysis).cases[0].errors,
             (std::vector<double>{2e-3, 0.0, 1e-3}));
 }
 
@@ -73,7 +74,8 @@ TEST(StudyOfCases, RefusesSetsThatOverlap) {
 }
 
 TEST(StudyOfCases, NeedsNoCasesForATableOfErrors) {
-  EXPECT_TRUE(study_of("kind = \"evaluate\"\n", StudyUse::evaluate).analysis.cases.empty());
+  const Study study = study_of("kind = \"evaluate\"\n", StudyUse::evaluate);
+  EXPECT_TRUE(asked_of<CaseOptions>(study.analysis).cases.empty());
 }
 
 TEST(StudyOfIdentification, TakesGroupsAndShare) {
@@ -81,19 +83,19 @@ TEST(StudyOfIdentification, TakesGroupsAndShare) {
 pose_share = 0.9
 groups = [{ name = "large", linear = "5 mm", angular = "0.005 rad" }, { linear = "1 mm", angular = "1 deg" }]
 )");
-  ASSERT_EQ(study.analysis.groups.size(), 2u);
-  EXPECT_EQ(study.analysis.groups[0].name, "large");
-  EXPECT_EQ(study.analysis.groups[0].angular, 0.005);
-  EXPECT_EQ(study.analysis.groups[1].name, "group 2");
-  EXPECT_EQ(study.analysis.pose_share, 0.9);
+  ASSERT_EQ(asked_of<IdentificationOptions>(study.analysis).groups.size(), 2u);
+  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].name, "large");
+  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].angular, 0.005);
+  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[1].name, "group 2");
+  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).pose_share, 0.9);
   EXPECT_EQ(study.analysis.factors.size(), 3u);
 }
 
 TEST(StudyOfIdentification, HasOneGroupUnlessToldOtherwise) {
   const Study study = study_of("kind = \"identification\"\n");
-  ASSERT_EQ(study.analysis.groups.size(), 1u);
-  EXPECT_EQ(study.analysis.groups[0].linear, 1e-3);
-  EXPECT_DOUBLE_EQ(study.analysis.groups[0].angular, kDegree);
+  ASSERT_EQ(asked_of<IdentificationOptions>(study.analysis).groups.size(), 1u);
+  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].linear, 1e-3);
+  EXPECT_DOUBLE_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].angular, kDegree);
 }
 
 TEST(StudyOfIdentification, NeedsAModelInWhichSomethingDeforms) {
@@ -106,9 +108,10 @@ TEST(StudyOfIdentification, NeedsAModelInWhichSomethingDeforms) {
 }
 
 TEST(StudyOfMonteCarlo, TakesQuantilesAndVariesAll) {
-  EXPECT_EQ(study_of("kind = \"monte-carlo\"\n").analysis.quantiles, (std::vector<double>{0.05, 0.5, 0.95}));
+  const Study usual = study_of("kind = \"monte-carlo\"\n");
+  EXPECT_EQ(asked_of<MonteCarloOptions>(usual.analysis).quantiles, (std::vector<double>{0.05, 0.5, 0.95}));
   const Study study = study_of("kind = \"monte-carlo\"\nquantiles = [0.01, 0.99]\n");
-  EXPECT_EQ(study.analysis.quantiles, (std::vector<double>{0.01, 0.99}));
+  EXPECT_EQ(asked_of<MonteCarloOptions>(study.analysis).quantiles, (std::vector<double>{0.01, 0.99}));
   EXPECT_EQ(study.analysis.factors.size(), 3u);
 }
 
@@ -124,10 +127,11 @@ TEST(StudyOfMonteCarlo, SolvesSamplesAtEachPoseWhateverItsQuantiles) {
 
 TEST(StudyOfSensitivity, TakesAReference) {
   const Study study = study_of("reference = { factor = \"epsilon_1\", tolerance = \"2 deg\" }\n");
-  ASSERT_TRUE(study.analysis.reference);
-  EXPECT_EQ(study.analysis.reference->factor, FactorIndex(1));
-  EXPECT_DOUBLE_EQ(study.analysis.reference->tolerance, 2 * kDegree);
-  EXPECT_EQ(study_of("reference = { factor = \"delta_1\" }\n").analysis.reference->tolerance, 1e-3);
+  ASSERT_TRUE(asked_of<SensitivityOptions>(study.analysis).reference);
+  EXPECT_EQ(asked_of<SensitivityOptions>(study.analysis).reference->factor, FactorIndex(1));
+  EXPECT_DOUBLE_EQ(asked_of<SensitivityOptions>(study.analysis).reference->tolerance, 2 * kDegree);
+  const Study usual = study_of("reference = { factor = \"delta_1\" }\n");
+  EXPECT_EQ(asked_of<SensitivityOptions>(usual.analysis).reference->tolerance, 1e-3);
 }
 
 TEST(StudyOfAnyKind, KeepsFactorsAndSamplesOfAnother) {
@@ -137,18 +141,25 @@ TEST(StudyOfAnyKind, KeepsFactorsAndSamplesOfAnother) {
   study_of("kind = \"evaluate\"\nsamples = 7\nfactors = \"all\"\ncases = [{ errors = { linear = \"1 mm\" } }]\n");
 }
 
+TEST(StudyKinds, HaveNames) {
+  EXPECT_EQ(names(study_kinds()),
+            (std::vector<std::string_view>{"sensitivity", "identification", "evaluate", "monte-carlo", "coupling"}));
+  EXPECT_EQ(find(study_kinds(), "monte-carlo"), &kMonteCarloStudy);
+  EXPECT_EQ(find(study_kinds(), "monte_carlo"), nullptr);
+}
+
 TEST(Template, RunsForEveryKind) {
   const test::TempFolder folder;
-  for (const Analysis::Kind kind : kKinds) {
-    const std::string path = folder.write("study.toml", template_text(kCatalog.front(), kind));
+  for (const StudyKind* kind : study_kinds().all) {
+    const std::string path = folder.write("study.toml", template_text(kCatalog.front(), *kind));
     EXPECT_EQ(read_study(path, kCatalog, StudyUse::run).analysis.kind, kind);
   }
 }
 
 TEST(ResolvedTextOfAnyKind, ReadsBack) {
   const test::TempFolder folder;
-  for (const Analysis::Kind kind : kKinds) {
-    const std::string path = folder.write("study.toml", template_text(kCatalog.front(), kind));
+  for (const StudyKind* kind : study_kinds().all) {
+    const std::string path = folder.write("study.toml", template_text(kCatalog.front(), *kind));
     const std::string text = resolved_text(read_study(path, kCatalog, StudyUse::run));
     EXPECT_EQ(resolved_text(read_study(folder.write("again.toml", text), kCatalog, StudyUse::run)), text);
   }

@@ -7,19 +7,20 @@
 
 #include "engine/base/error.h"
 #include "tests/engine/kinds/study_kinds.h"
+#include "tests/support/kinds.h"
 
 namespace poesy::test {
 namespace {
 
 Study with_cases() {
-  Study study = study_of(Kind::evaluate, 0);
-  study.analysis.cases = {{"one", {1e-3, 0.0, 0.0}}, {"two", {0.0, 1e-3, 0.0}}};
+  Study study = study_of(&kEvaluateStudy, 0);
+  asked_of<CaseOptions>(study.analysis).cases = {{"one", {1e-3, 0.0, 0.0}}, {"two", {0.0, 1e-3, 0.0}}};
   study.analysis.limits = {{0, 1e-9}};
   return study;
 }
 
 TEST(RunStudy, FindsASensitivityStudysResultAndItsChanges) {
-  const Prepared prepared(study_of(Kind::sensitivity, 200));
+  const Prepared prepared(study_of(&kSensitivityStudy, 200));
   const auto result = run_study(prepared.study);
   ASSERT_TRUE(result);
   const auto& found = result->as<SensitivityResult>();
@@ -29,7 +30,7 @@ TEST(RunStudy, FindsASensitivityStudysResultAndItsChanges) {
 }
 
 TEST(RunStudy, FindsWhatTheRunOfAMonteCarloStudyFinds) {
-  const Prepared prepared(study_of(Kind::monte_carlo, 200));
+  const Prepared prepared(study_of(&kMonteCarloStudy, 200));
   const auto result = run_study(prepared.study, *prepared.model, prepared.plan.poses(), {.threads = 2});
   ASSERT_TRUE(result);
   EXPECT_EQ(bits_of(result->as<MonteCarloResult>()), run(prepared, {}));
@@ -45,27 +46,27 @@ TEST(RunStudy, JudgesTheLimitsOfCases) {
 
 TEST(RunStudy, GivesNothingWhenItIsStopped) {
   const std::atomic<bool> stop = true;
-  for (const Study& study : {study_of(Kind::sensitivity, 200), study_of(Kind::monte_carlo, 200), with_cases()}) {
-    EXPECT_FALSE(run_study(study, {.stop = &stop})) << name(study.analysis.kind);
+  for (const Study& study : {study_of(&kSensitivityStudy, 200), study_of(&kMonteCarloStudy, 200), with_cases()}) {
+    EXPECT_FALSE(run_study(study, {.stop = &stop})) << study.analysis.kind->name;
   }
 }
 
 TEST(RunStudy, GivesNothingForAShard) {
-  EXPECT_FALSE(run_study(study_of(Kind::monte_carlo, 200), {.shard = Shard{0, 2}}));
+  EXPECT_FALSE(run_study(study_of(&kMonteCarloStudy, 200), {.shard = Shard{0, 2}}));
 }
 
 TEST(CheckShard, TakesAsManyShardsAsTheStudyHasCellsOrPoses) {
-  EXPECT_NO_THROW(check_shard({0, 6}, study_of(Kind::sensitivity, 200), 3));
-  EXPECT_THROW(check_shard({0, 7}, study_of(Kind::sensitivity, 200), 3), InputError);
-  EXPECT_NO_THROW(check_shard({2, 3}, study_of(Kind::monte_carlo, 200), 3));
-  EXPECT_THROW(check_shard({3, 4}, study_of(Kind::monte_carlo, 200), 3), InputError);
+  EXPECT_NO_THROW(check_shard({0, 6}, study_of(&kSensitivityStudy, 200), 3));
+  EXPECT_THROW(check_shard({0, 7}, study_of(&kSensitivityStudy, 200), 3), InputError);
+  EXPECT_NO_THROW(check_shard({2, 3}, study_of(&kMonteCarloStudy, 200), 3));
+  EXPECT_THROW(check_shard({3, 4}, study_of(&kMonteCarloStudy, 200), 3), InputError);
 }
 
 TEST(CheckShard, RefusesAStudyThatNeedsAllPosesAtOnce) {
-  Study adaptive = study_of(Kind::sensitivity, 4000);
+  Study adaptive = study_of(&kSensitivityStudy, 4000);
   adaptive.analysis.adaptive = AdaptiveSamples{1000, 0.05};
   EXPECT_THROW(check_shard({0, 2}, adaptive, 3), InputError);
-  EXPECT_THROW(check_shard({0, 2}, study_of(Kind::identification, 200), 3), InputError);
+  EXPECT_THROW(check_shard({0, 2}, study_of(&kIdentificationStudy, 200), 3), InputError);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using nlohmann::json;
 TEST(JsonTables, HaveEveryCellAsValueAndAsText) {
   const StoredResult result = ranked_result();
   const std::vector<Table> tables = result_tables(result, "x");
-  const json all = json::parse(json_of(result, tables));
+  const json all = json::parse(json_of(result, tally_of(result).total(), tables));
   ASSERT_EQ(all["tables"].size(), tables.size());
   for (std::size_t t = 0; t < tables.size(); ++t) {
     const json& table = all["tables"][t];
@@ -53,7 +53,7 @@ TEST(JsonTables, NameEachColumnOnce) {
 TEST(JsonTables, SayWhatEachErrorAndResponseIs) {
   StoredResult result = ranked_result();
   result.factors[1].description = "a bolt that is too long";
-  const json all = json::parse(json_of(result, {}));
+  const json all = json::parse(json_of(result, tally_of(result).total(), {}));
   ASSERT_EQ(all["errors"].size(), result.factors.size());
   EXPECT_EQ(all["errors"][1]["name"], result.factors[1].name);
   EXPECT_EQ(all["errors"][1]["unit"], result.factors[1].unit);
@@ -64,7 +64,7 @@ TEST(JsonTables, SayWhatEachErrorAndResponseIs) {
 TEST(JsonTables, HaveTheSummary) {
   StoredResult result = ranked_result();
   result.title = "not UTF-8: \xFF";
-  const json all = json::parse(json_of(result, {}));
+  const json all = json::parse(json_of(result, tally_of(result).total(), {}));
   EXPECT_EQ(all["kind"], "sensitivity");
   EXPECT_EQ(all["seed"].get<std::uint64_t>(), 18446744073709551615U);
   EXPECT_EQ(all["content_sha256"], "abc");
@@ -72,7 +72,7 @@ TEST(JsonTables, HaveTheSummary) {
   EXPECT_EQ(all["solves"]["not_converged"], 6);
   EXPECT_EQ(all["solves"]["by_status"]["iteration_cap"], 6);
   result.study_text.clear();
-  EXPECT_TRUE(json::parse(json_of(result, {}))["seed"].is_null());
+  EXPECT_TRUE(json::parse(json_of(result, tally_of(result).total(), {}))["seed"].is_null());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/stats/moments.h"
 #include "tests/engine/run/adaptive_study.h"
+#include "tests/support/kinds.h"
 
 /// Stopping at a time that the samples choose could favour samples that make an interval narrow by chance. So the
 /// intervals at the end are held against the truth, over many seeds.
@@ -24,7 +25,7 @@ constexpr double kAlpha = 0.001;
 const double kFoldedStd = std::sqrt(1.0 - 2.0 / std::numbers::pi);
 const double kFoldedMean = std::sqrt(2.0 / std::numbers::pi);
 
-Study study_of(Analysis::Kind kind, std::size_t poses, double relative_error) {
+Study study_of(test::KindOfStudy kind, std::size_t poses, double relative_error) {
   Study study = test::adaptive_study(kind, relative_error, 1'000'000);
   study.errors.by_factor.assign(3, Distribution::normal(1e-3));
   study.analysis.factors = {FactorIndex(0)};
@@ -67,7 +68,7 @@ bool inside(double value, double low, double high) { return low <= value && valu
 
 Tally sensitivity_tally(std::size_t poses, double relative_error) {
   Tally tally;
-  Study study = study_of(Analysis::Kind::sensitivity, poses, relative_error);
+  Study study = study_of(&kSensitivityStudy, poses, relative_error);
   for (std::size_t n = 0; n < kRepetitions; ++n) {
     study.seed = 1000 + n;
     const test::AdaptiveRun run(study);
@@ -89,7 +90,7 @@ Tally sensitivity_tally(std::size_t poses, double relative_error) {
 
 Tally monte_carlo_tally(std::size_t poses, double relative_error) {
   Tally tally;
-  Study study = study_of(Analysis::Kind::monte_carlo, poses, relative_error);
+  Study study = study_of(&kMonteCarloStudy, poses, relative_error);
   for (std::size_t n = 0; n < kRepetitions; ++n) {
     study.seed = 1000 + n;
     const test::AdaptiveRun run(study);

@@ -7,12 +7,13 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/run/prepared.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy::test {
 
 /// An adaptive study of the fake mechanism with all three errors, of which the last has no effect. The two with an
 /// effect come to their end at different milestones, for a uniform error has less kurtosis than a normal one.
-inline Study adaptive_study(Analysis::Kind kind, double relative_error, std::size_t max) {
+inline Study adaptive_study(KindOfStudy kind, double relative_error, std::size_t max) {
   static const Catalog catalog = fake_catalog();
   Study study;
   study.mechanism = {&catalog.front(), {FakeModel::kArm}, 0, {}};
@@ -23,7 +24,7 @@ inline Study adaptive_study(Analysis::Kind kind, double relative_error, std::siz
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   study.analysis.samples = max;
   study.analysis.adaptive = AdaptiveSamples{1000, relative_error};
-  study.analysis.quantiles = {0.1, 0.9};
+  set_quantiles(study.analysis, {0.1, 0.9});
   study.seed = 3;
   return study;
 }

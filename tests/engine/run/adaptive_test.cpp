@@ -11,11 +11,11 @@
 #include "engine/stats/tolerance.h"
 #include "engine/study/milestones.h"
 #include "tests/engine/run/adaptive_study.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
 
-using Kind = Analysis::Kind;
 using test::adaptive_study;
 using test::AdaptiveRun;
 using Bits = std::vector<std::uint64_t>;
@@ -58,7 +58,8 @@ Bits bits_of(const MonteCarloResult& found) {
 /// The bits of a study's result; nothing when it was stopped.
 std::optional<Bits> run(const AdaptiveRun& run, const RunOptions& options) {
   const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
-  return run.study.analysis.kind == Kind::sensitivity ? bits(run.sensitivity(options)) : bits(run.monte_carlo(options));
+  return run.study.analysis.kind == &kSensitivityStudy ? bits(run.sensitivity(options))
+                                                       : bits(run.monte_carlo(options));
 }
 
 RunOptions on_threads(std::size_t threads) {
@@ -68,7 +69,7 @@ RunOptions on_threads(std::size_t threads) {
 }
 
 TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
-  const AdaptiveRun study(adaptive_study(Kind::sensitivity, 0.015, 100'000));
+  const AdaptiveRun study(adaptive_study(&kSensitivityStudy, 0.015, 100'000));
   const SensitivityResult found = study.sensitivity({}).value();
   const ConvergenceResult& end = found.convergence.value();
   const std::size_t milestones = end.course.samples.size();
@@ -102,7 +103,7 @@ TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
 }
 
 TEST(AdaptiveSensitivity, GivesTheBitsOfAsManyFixedSamples) {
-  Study study = adaptive_study(Kind::sensitivity, 0.015, 100'000);
+  Study study = adaptive_study(&kSensitivityStudy, 0.015, 100'000);
   const SensitivityResult found = AdaptiveRun(study).sensitivity({}).value();
   study.analysis.samples = found.convergence->samples[0];
   study.analysis.adaptive.reset();
@@ -114,7 +115,7 @@ TEST(AdaptiveSensitivity, GivesTheBitsOfAsManyFixedSamples) {
 }
 
 TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
-  const AdaptiveRun study(adaptive_study(Kind::sensitivity, 0.001, 4300));
+  const AdaptiveRun study(adaptive_study(&kSensitivityStudy, 0.001, 4300));
   const SensitivityResult found = study.sensitivity({}).value();
   const ConvergenceResult& end = found.convergence.value();
   EXPECT_EQ(end.course.samples, (std::vector<std::uint64_t>{1000, 2000, 3000, 4300}));
@@ -125,7 +126,7 @@ TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
 }
 
 TEST(AdaptiveSensitivity, FewerThanTheFirstMilestoneAreOneRound) {
-  Study study = adaptive_study(Kind::sensitivity, 0.5, 700);
+  Study study = adaptive_study(&kSensitivityStudy, 0.5, 700);
   study.analysis.adaptive->min = 2;
   const ConvergenceResult end = AdaptiveRun(study).sensitivity({})->convergence.value();
   EXPECT_EQ(end.course.samples, (std::vector<std::uint64_t>{700}));
@@ -133,7 +134,7 @@ TEST(AdaptiveSensitivity, FewerThanTheFirstMilestoneAreOneRound) {
 }
 
 TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
-  const AdaptiveRun study(adaptive_study(Kind::monte_carlo, 0.01, 100'000));
+  const AdaptiveRun study(adaptive_study(&kMonteCarloStudy, 0.01, 100'000));
   const MonteCarloResult found = study.monte_carlo({}).value();
   const ConvergenceResult& end = found.convergence.value();
   ASSERT_EQ(end.samples.size(), 1u);
@@ -154,7 +155,7 @@ TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
 }
 
 TEST(Rounds, ResponsesThatDoNotDecideAreReportedOnly) {
-  const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 4000));
+  const AdaptiveRun run(adaptive_study(&kMonteCarloStudy, 0.01, 4000));
   Rounds rounds(run.plan, {2, {0}, 0.95, {0.0}});
   EXPECT_FALSE(rounds.go_on([](std::size_t) {
     return std::vector<Estimate>{{1.0, {0.995, 1.005}}, {1.0, {0.0, 2.0}}};
@@ -163,7 +164,7 @@ TEST(Rounds, ResponsesThatDoNotDecideAreReportedOnly) {
 }
 
 TEST(Rounds, ExpectTheSolvesThatTheHalfWidthsAskFor) {
-  Study study = adaptive_study(Kind::monte_carlo, 0.01, 100'000);
+  Study study = adaptive_study(&kMonteCarloStudy, 0.01, 100'000);
   const AdaptiveRun run(study);
   Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
   EXPECT_EQ(rounds.samples(0), 1000u);
@@ -175,7 +176,7 @@ TEST(Rounds, ExpectTheSolvesThatTheHalfWidthsAskFor) {
 }
 
 TEST(Rounds, WhatIsUnknownIsNotReached) {
-  const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 3000));
+  const AdaptiveRun run(adaptive_study(&kMonteCarloStudy, 0.01, 3000));
   const double nan = std::nan("");
   for (const Estimate& unknown : {Estimate{nan, {nan, nan}}, Estimate{1.0, {nan, nan}}, Estimate{1.0, {1.0, nan}}}) {
     Rounds rounds(run.plan, {1, {0}, 0.95, {kIndexRounding}});
@@ -187,7 +188,7 @@ TEST(Rounds, WhatIsUnknownIsNotReached) {
 }
 
 TEST(Rounds, BothEndsOfAnIntervalCount) {
-  const AdaptiveRun run(adaptive_study(Kind::monte_carlo, 0.01, 3000));
+  const AdaptiveRun run(adaptive_study(&kMonteCarloStudy, 0.01, 3000));
   for (const Estimate& wide :
        {Estimate{1.0, {0.98, 1.001}}, Estimate{1.0, {0.999, 1.02}}, Estimate{-1.0, {-1.02, -1.0}}}) {
     Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
@@ -199,7 +200,7 @@ TEST(Rounds, BothEndsOfAnIntervalCount) {
 
 struct Case {
   const char* name;
-  Kind kind;
+  test::KindOfStudy kind;
   double relative_error;
   std::size_t max;
 };
@@ -295,10 +296,10 @@ TEST_P(Adaptive, TakesOrRefusesOtherBytes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Adaptive,
-                         testing::Values(Case{"SensitivityReached", Kind::sensitivity, 0.02, 20'000},
-                                         Case{"SensitivityMax", Kind::sensitivity, 0.012, 4300},
-                                         Case{"MonteCarloReached", Kind::monte_carlo, 0.015, 20'000},
-                                         Case{"MonteCarloMax", Kind::monte_carlo, 0.006, 4300}),
+                         testing::Values(Case{"SensitivityReached", &kSensitivityStudy, 0.02, 20'000},
+                                         Case{"SensitivityMax", &kSensitivityStudy, 0.012, 4300},
+                                         Case{"MonteCarloReached", &kMonteCarloStudy, 0.015, 20'000},
+                                         Case{"MonteCarloMax", &kMonteCarloStudy, 0.006, 4300}),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace

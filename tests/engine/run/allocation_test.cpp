@@ -15,6 +15,7 @@
 #include "engine/run/pose_unit.h"
 #include "models/registry.h"
 #include "tests/models/chain/block_samples.h"
+#include "tests/support/kinds.h"
 
 namespace {
 
@@ -132,7 +133,7 @@ TEST(Allocation, NoneInAWarmHybridMachine) {
 
 /// But for the list of failed samples, in the units that have any.
 template <class UnitOfWork>
-std::size_t allocations_per_unit(Analysis::Kind kind, std::size_t samples) {
+std::size_t allocations_per_unit(test::KindOfStudy kind, std::size_t samples) {
   Study study = bench::published_study(4, samples);
   study.analysis.kind = kind;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
@@ -154,7 +155,7 @@ std::size_t allocations_per_unit(Analysis::Kind kind, std::size_t samples) {
 TEST(Allocation, NonePerSampleInAUnit) {
   // The pose's nominal displacements, the three moments that are handed on, and the indices within the unit.
   const auto count = [](std::size_t samples) {
-    return allocations_per_unit<UnitEvaluator>(Analysis::Kind::sensitivity, samples);
+    return allocations_per_unit<UnitEvaluator>(&kSensitivityStudy, samples);
   };
   EXPECT_LE(count(Plan::kUnitSamples), 5u);
   EXPECT_EQ(count(101), count(Plan::kUnitSamples));
@@ -163,7 +164,7 @@ TEST(Allocation, NonePerSampleInAUnit) {
 TEST(Allocation, NonePerSampleInAMonteCarloUnit) {
   // Besides, the buckets of the numbers of the three responses that are handed on.
   const auto count = [](std::size_t samples) {
-    return allocations_per_unit<PoseUnitEvaluator>(Analysis::Kind::monte_carlo, samples);
+    return allocations_per_unit<PoseUnitEvaluator>(&kMonteCarloStudy, samples);
   };
   EXPECT_LE(count(Plan::kUnitSamples), 7u);
   EXPECT_EQ(count(10), count(Plan::kUnitSamples));

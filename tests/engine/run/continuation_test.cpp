@@ -2,13 +2,12 @@
 
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/study_kinds.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
 
 using namespace test;
-using Kind = Analysis::Kind;
-
 using States = std::vector<Bytes>;
 
 /// The states of the stages at each moment at which a run could have been stopped, and its result.
@@ -31,7 +30,7 @@ Recorded record(const Prepared& prepared, States start = {}) {
   return recorded;
 }
 
-class Continuation : public testing::TestWithParam<Kind> {};
+class Continuation : public testing::TestWithParam<KindOfStudy> {};
 
 TEST_P(Continuation, GivesTheSameBits) {
   for (const std::size_t samples : {2 * Plan::kUnitSamples, 2 * Plan::kUnitSamples + 300, std::size_t{300}}) {
@@ -75,10 +74,10 @@ TEST_P(Continuation, StopsInAStateToContinue) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Continuation,
-                         testing::Values(Kind::sensitivity, Kind::monte_carlo, Kind::evaluate, Kind::identification),
+                         testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy, &kIdentificationStudy),
                          kind_name);
 
-class Extension : public testing::TestWithParam<Kind> {};
+class Extension : public testing::TestWithParam<KindOfStudy> {};
 
 TEST_P(Extension, GivesTheBitsOfAFreshRun) {
   const std::size_t unit = Plan::kUnitSamples;
@@ -114,7 +113,7 @@ TEST_P(Extension, NeverGivesFewerSamples) {
   EXPECT_THROW(record(Prepared(study_of(GetParam(), 2200)), longer.states.back()), BytesError);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Extension, testing::Values(Kind::sensitivity, Kind::monte_carlo), kind_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, Extension, testing::Values(&kSensitivityStudy, &kMonteCarloStudy), kind_name);
 
 /// The states that one shard of a study leaves.
 States run_shard(const Prepared& prepared, const Shard& shard) {
@@ -128,7 +127,7 @@ States run_shard(const Prepared& prepared, const Shard& shard) {
   return {checkpoints.stages().begin(), checkpoints.stages().end()};
 }
 
-class Sharding : public testing::TestWithParam<Kind> {};
+class Sharding : public testing::TestWithParam<KindOfStudy> {};
 
 TEST_P(Sharding, TogetherHasTheBitsOfTheWhole) {
   for (const std::size_t samples : {2 * Plan::kUnitSamples, Plan::kUnitSamples + 300, std::size_t{300}}) {
@@ -158,7 +157,7 @@ TEST_P(Sharding, RefusesAShardTwice) {
   EXPECT_THROW(record(prepared, states), BytesError);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Sharding, testing::Values(Kind::sensitivity, Kind::monte_carlo, Kind::evaluate),
+INSTANTIATE_TEST_SUITE_P(Kinds, Sharding, testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy),
                          kind_name);
 
 TEST(Shard, PartsFollowEachOther) {
@@ -236,8 +235,8 @@ TEST_P(Sharding, MergesOrRefusesAnyOtherBytes) {
 }
 
 TEST(Continuation, RefusesAStateOfAnotherKind) {
-  const Prepared sensitivity(study_of(Kind::sensitivity, 300));
-  const Prepared monte_carlo(study_of(Kind::monte_carlo, 300));
+  const Prepared sensitivity(study_of(&kSensitivityStudy, 300));
+  const Prepared monte_carlo(study_of(&kMonteCarloStudy, 300));
   EXPECT_FALSE(accepted(sensitivity, record(monte_carlo).states.back()));
   EXPECT_FALSE(accepted(monte_carlo, record(sensitivity).states.back()));
 }

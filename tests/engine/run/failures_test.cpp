@@ -10,13 +10,12 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
 
 using test::Prepared;
-
-using Kind = Analysis::Kind;
 
 FailedSamples failing(std::initializer_list<std::size_t> samples) {
   FailedSamples cell;
@@ -62,7 +61,7 @@ TEST(FailedSamples, ReadBackWhatTheyWrote) {
   EXPECT_THROW(read(3, 4, 1000), BytesError);
 }
 
-Study study_of(Kind kind, std::size_t samples, std::size_t poses, double sigma = 1e-3) {
+Study study_of(test::KindOfStudy kind, std::size_t samples, std::size_t poses, double sigma = 1e-3) {
   static const Catalog catalog = test::failing_catalog();
   Study study;
   study.mechanism = {&catalog.front(), {test::FakeModel::kArm}, 0, {}};
@@ -108,7 +107,7 @@ std::vector<Failure> expected_failures(const Prepared& prepared) {
 }
 
 std::optional<std::vector<Failure>> run(const Prepared& prepared, const RunOptions& options) {
-  if (prepared.study.analysis.kind == Kind::monte_carlo) {
+  if (prepared.study.analysis.kind == &kMonteCarloStudy) {
     const auto result = run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options);
     return result ? std::optional(result->failures) : std::nullopt;
   }
@@ -116,7 +115,7 @@ std::optional<std::vector<Failure>> run(const Prepared& prepared, const RunOptio
   return result ? std::optional(result->failures) : std::nullopt;
 }
 
-class Failures : public testing::TestWithParam<Kind> {};
+class Failures : public testing::TestWithParam<test::KindOfStudy> {};
 
 TEST_P(Failures, AreTheFirstOfEachCellForAnyThreads) {
   const Prepared prepared(study_of(GetParam(), 3300, 3));
@@ -163,8 +162,9 @@ TEST_P(Failures, ReplayToTheirStatusAndDraws) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Failures, testing::Values(Kind::sensitivity, Kind::monte_carlo),
-                         [](const auto& made) { return made.param == Kind::sensitivity ? "sensitivity" : "together"; });
+INSTANTIATE_TEST_SUITE_P(Kinds, Failures, testing::Values(&kSensitivityStudy, &kMonteCarloStudy), [](const auto& made) {
+  return made.param == &kSensitivityStudy ? "sensitivity" : "together";
+});
 
 }  // namespace
 }  // namespace poesy

@@ -15,6 +15,7 @@
 #include "engine/stats/quantile_interval.h"
 #include "tests/engine/stats/plain_sort.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
@@ -33,10 +34,10 @@ Study study_of(std::size_t poses, std::size_t samples) {
   for (const double sigma : {1e-3, 2e-3, 5e-3}) study.errors.by_factor.push_back(Distribution::normal(sigma));
   study.poses.count = poses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
-  study.analysis.kind = Analysis::Kind::monte_carlo;
+  study.analysis.kind = &kMonteCarloStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(2), FactorIndex(1)};
   study.analysis.samples = samples;
-  study.analysis.quantiles = {0.05, 0.5, 0.9, 0.99};
+  asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.05, 0.5, 0.9, 0.99};
   study.seed = 3;
   return study;
 }
@@ -101,12 +102,12 @@ TEST(RunMonteCarlo, AgreesWithAllSamplesSorted) {
       EXPECT_EQ(found.min[cell], std::ranges::min(samples));
       EXPECT_EQ(found.max[cell], std::ranges::max(samples));
       for (std::size_t q = 0; q < 4; ++q) {
-        const double truth = test::sorted_quantile(samples, study.analysis.quantiles[q]);
+        const double truth = test::sorted_quantile(samples, asked_of<MonteCarloOptions>(study.analysis).quantiles[q]);
         EXPECT_NEAR(found.quantiles[cell * 4 + q], truth, found.quantile_relative_error * truth);
       }
     }
     for (std::size_t q = 0; q < 4; ++q) {
-      const double truth = test::sorted_quantile(overall[r], study.analysis.quantiles[q]);
+      const double truth = test::sorted_quantile(overall[r], asked_of<MonteCarloOptions>(study.analysis).quantiles[q]);
       EXPECT_NEAR(found.overall_quantiles[r * 4 + q], truth, found.quantile_relative_error * truth);
     }
     EXPECT_EQ(found.overall_count[r], overall[r].size());
@@ -134,8 +135,8 @@ Plain plain(std::vector<double> samples, double conf_level) {
 
 TEST(RunMonteCarlo, HasRootMeanSquaresAndIntervalsOfItsSamples) {
   Study study = study_of(3, 2 * Plan::kUnitSamples + 77);
-  study.analysis.judge = Judge::share;
-  study.analysis.share = 0.99;
+  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::share;
+  asked_of<MonteCarloOptions>(study.analysis).share = 0.99;
   study.analysis.limits = {{0, 1e9}, {1, 1e-9}};
   const test::FakeModel model;
   const PoseSet poses = select_poses(study.poses, model).poses;
@@ -190,7 +191,7 @@ TEST(RunMonteCarlo, FindsTheFoldedNormal) {
       // The folded normal's kurtosis is 3.87.
       EXPECT_NEAR(found.std[cell], std, kErrors * std * std::sqrt((3.87 - 1.0) / (4.0 * n)));
       for (std::size_t q = 0; q < 4; ++q) {
-        const double level = study.analysis.quantiles[q];
+        const double level = asked_of<MonteCarloOptions>(study.analysis).quantiles[q];
         const double error = std::sqrt(level * (1.0 - level) / n) / (2.0 * normal_density(kFolded[q]));
         EXPECT_NEAR(found.quantiles[cell * 4 + q], s * kFolded[q],
                     s * (kErrors * error + found.quantile_relative_error * kFolded[q]));
@@ -240,7 +241,7 @@ TEST(RunMonteCarlo, OfOneErrorDrawsWhatASensitivityStudyDraws) {
   study.analysis.factors = {FactorIndex(1)};
   const test::FakeModel model;
   const MonteCarloResult together = run(study, model, 2);
-  study.analysis.kind = Analysis::Kind::sensitivity;
+  study.analysis.kind = &kSensitivityStudy;
   const auto alone =
       run_sensitivity(Plan(study, select_poses(study.poses, model).poses), model, study.analysis.conf_level, {})
           .value();

@@ -7,13 +7,12 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
 
 using namespace test;
-using Kind = Analysis::Kind;
-
 RunOptions options_of(Team& team, std::size_t threads = 1) {
   RunOptions options;
   options.threads = threads;
@@ -85,9 +84,9 @@ std::vector<std::size_t> up_to(std::size_t count) {
 
 void doze() { std::this_thread::sleep_for(std::chrono::microseconds(300)); }
 
-class RanksOf : public testing::TestWithParam<std::tuple<Kind, std::size_t>> {
+class RanksOf : public testing::TestWithParam<std::tuple<KindOfStudy, std::size_t>> {
  protected:
-  static Kind kind() { return std::get<0>(GetParam()); }
+  static KindOfStudy kind() { return std::get<0>(GetParam()); }
   static std::size_t size() { return std::get<1>(GetParam()); }
 };
 
@@ -136,13 +135,13 @@ TEST_P(RanksOf, ContinueOneProcessAndViceVersa) {
   for (const auto& bits : found) EXPECT_EQ(bits, expected);
 }
 
-std::string kind_and_size(const testing::TestParamInfo<std::tuple<Kind, std::size_t>>& tested) {
+std::string kind_and_size(const testing::TestParamInfo<std::tuple<KindOfStudy, std::size_t>>& tested) {
   return kind_name({std::get<0>(tested.param), 0}) + "_on_" + std::to_string(std::get<1>(tested.param));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RanksOf,
-                         testing::Combine(testing::Values(Kind::sensitivity, Kind::monte_carlo, Kind::evaluate,
-                                                          Kind::identification),
+                         testing::Combine(testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy,
+                                                          &kIdentificationStudy),
                                           testing::Values(1, 2, 3, 4)),
                          kind_and_size);
 

@@ -10,6 +10,7 @@
 
 #include "engine/run/evaluate_unit.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
@@ -26,6 +27,7 @@ Study study_of(std::size_t poses, std::size_t samples) {
   study.errors.by_factor = {normal, normal, normal};
   study.poses.count = poses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
+  study.analysis.kind = &kSensitivityStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(2), FactorIndex(1)};
   study.analysis.samples = samples;
   study.seed = 3;

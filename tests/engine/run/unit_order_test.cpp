@@ -5,9 +5,9 @@
 #include <random>
 
 #include "bench/published_study.h"
-#include "engine/files/result_file.h"
-#include "engine/run/evaluate_unit.h"
+#include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/run/evaluate_unit.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -26,9 +26,8 @@ std::string hash_of(const Study& study, const Model& model, const std::vector<st
     cells[unit.slot * plan.poses().size() + unit.pose.value].merge(stats[u]);
   }
   const test::TempFolder folder;
-  write_sensitivity(folder / "r.h5", study, poses,
-                    sensitivity_result(plan, cells, background_responses(plan, model), response_rounding(model), 0.95),
-                    {});
+  write_result(folder / "r.h5", study, poses,
+               sensitivity_result(plan, cells, background_responses(plan, model), response_rounding(model), 0.95), {});
   return verify_result(folder / "r.h5").computed;
 }
 

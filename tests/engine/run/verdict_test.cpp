@@ -35,16 +35,13 @@ std::vector<QuantileSketch> overall() {
   return sketches;
 }
 
-Analysis limited(Judge judge, double first, double second) {
-  Analysis analysis;
-  analysis.judge = judge;
-  analysis.share = 0.5;
-  analysis.limits = {{0, first}, {1, second}};
-  return analysis;
+LimitVerdicts judged(Judge judge, double first, double second, const MonteCarloResult& found = draws()) {
+  const std::vector<ResponseLimit> limits{{0, first}, {1, second}};
+  return judge_draws(limits, judge, 0.5, found, overall());
 }
 
 TEST(JudgeDraws, ByRootMeanSquareUpToTheLimitItself) {
-  const LimitVerdicts verdicts = judge_draws(limited(Judge::rms, 2.0, 0.49), draws(), overall());
+  const LimitVerdicts verdicts = judged(Judge::rms, 2.0, 0.49);
   ASSERT_EQ(verdicts.limits.size(), 2u);
   EXPECT_TRUE(verdicts.limits[0].passed);
   EXPECT_EQ(verdicts.limits[0].value, 2.0);
@@ -52,11 +49,11 @@ TEST(JudgeDraws, ByRootMeanSquareUpToTheLimitItself) {
   EXPECT_FALSE(verdicts.limits[0].pose);
   EXPECT_FALSE(verdicts.limits[1].passed);
   EXPECT_FALSE(verdicts.passed());
-  EXPECT_TRUE(judge_draws(limited(Judge::rms, 2.0, 0.5), draws(), overall()).passed());
+  EXPECT_TRUE(judged(Judge::rms, 2.0, 0.5).passed());
 }
 
 TEST(JudgeDraws, ByTheWorstPoseOfAShare) {
-  const LimitVerdicts verdicts = judge_draws(limited(Judge::share, 3.5, 1.0), draws(), overall());
+  const LimitVerdicts verdicts = judged(Judge::share, 3.5, 1.0);
   EXPECT_FALSE(verdicts.limits[0].passed);
   EXPECT_EQ(verdicts.limits[0].value, 4.0);
   EXPECT_EQ(verdicts.limits[0].pose, 1u);
@@ -66,7 +63,7 @@ TEST(JudgeDraws, ByTheWorstPoseOfAShare) {
 
 /// Of all draws, by magnitude; the one that was not solved is not within.
 TEST(JudgeDraws, CountsTheDrawsWithinTheLimit) {
-  const LimitVerdicts verdicts = judge_draws(limited(Judge::rms, 2.5, 0.375), draws(), overall());
+  const LimitVerdicts verdicts = judged(Judge::rms, 2.5, 0.375);
   EXPECT_EQ(verdicts.limits[0].tried, 8u);
   EXPECT_EQ(verdicts.limits[0].within, 6u);
   EXPECT_EQ(verdicts.limits[1].within, 4u);
@@ -75,9 +72,9 @@ TEST(JudgeDraws, CountsTheDrawsWithinTheLimit) {
 TEST(JudgeDraws, RefusesWhatIsNotKnown) {
   MonteCarloResult found = draws();
   found.overall_rms[0] = kNaN;
-  EXPECT_FALSE(judge_draws(limited(Judge::rms, 1e9, 1.0), found, overall()).limits[0].passed);
+  EXPECT_FALSE(judged(Judge::rms, 1e9, 1.0, found).limits[0].passed);
   found.share_magnitude[1] = kInfinity;
-  EXPECT_FALSE(judge_draws(limited(Judge::share, 1e9, 1.0), found, overall()).limits[0].passed);
+  EXPECT_FALSE(judged(Judge::share, 1e9, 1.0, found).limits[0].passed);
 }
 
 /// Three poses, two rows; row 1 is the larger one, with both signs.

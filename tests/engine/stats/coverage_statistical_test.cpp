@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 
 // How often a 95 % interval holds the truth, in repeated experiments with known truth and fixed seeds. A correct
 // interval fails a two-sided check with probability alpha = 0.001 (|z| > 3.291), a one-sided one likewise (z < -3.090),

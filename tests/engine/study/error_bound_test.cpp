@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/table_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"

@@ -5,16 +5,22 @@
 #include <string>
 #include <tuple>
 
+#include "engine/study/study_kind.h"
 #include "tests/support/fake_model.h"
 
 namespace poesy {
 namespace {
+
+constexpr StudyKind kOneByOne{
+    .name = "one by one", .asks = "", .keys = {}, .varies = Varies::one_by_one, .at_pose = {}};
+constexpr StudyKind kTogether{.name = "together", .asks = "", .keys = {}, .varies = Varies::together, .at_pose = {}};
 
 /// Factors 2 and 0 of the fake mechanism (in this order), each with its own distribution.
 Study study_with(const CatalogEntry& entry, std::size_t samples) {
   Study study;
   study.mechanism.entry = &entry;
   for (const double sigma : {1e-3, 2e-3, 3e-3}) study.errors.by_factor.push_back(Distribution::normal(sigma));
+  study.analysis.kind = &kOneByOne;
   study.analysis.factors = {FactorIndex(2), FactorIndex(0)};
   study.analysis.samples = samples;
   study.analysis.background = Background{{FactorIndex(1), FactorIndex(2)}, 1e-3, 2e-2};
@@ -59,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, PlanOfSize,
 TEST(Plan, HasOneSlotWhereAllErrorsVaryTogether) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_with(catalog[0], 2500);
-  study.analysis.kind = Analysis::Kind::monte_carlo;
+  study.analysis.kind = &kTogether;
   const Plan plan(study, some_poses(4));
   EXPECT_EQ(plan.slots(), 1u);
   EXPECT_EQ(plan.factors().size(), 2u);

@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_text.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -58,10 +59,10 @@ TEST(Fidelity, StandsInTheResolvedText) {
 }
 
 TEST(Fidelity, StandsInTheTemplate) {
-  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
+  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
   EXPECT_NE(text.find("\nfidelity = \"exact\"\n"), std::string::npos) << text;
   EXPECT_EQ(study_of(text).mechanism.fidelity, 0u);
-  EXPECT_EQ(template_text(test::fake_catalog()[0], Analysis::Kind::sensitivity).find("fidelity"), std::string::npos);
+  EXPECT_EQ(template_text(test::fake_catalog()[0], kSensitivityStudy).find("fidelity"), std::string::npos);
 }
 
 TEST(Fidelity, UnknownOneIsRefusedWithASuggestion) {
@@ -76,7 +77,7 @@ TEST(BothFidelities, AreReadAndWritten) {
   const Study study = study_of(study_with("fidelity = \"both\"\n"));
   EXPECT_EQ(study.mechanism.fidelity, 0u);
   EXPECT_EQ(study.mechanism.compared, 1u);
-  EXPECT_EQ(study.analysis.linearity, 0.01);
+  EXPECT_EQ(asked_of<SensitivityOptions>(study.analysis).linearity, 0.01);
   const std::string text = resolved_text(study);
   EXPECT_NE(text.find("\nfidelity = \"both\"\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\nlinearity = 0.01\n"), std::string::npos) << text;
@@ -86,8 +87,10 @@ TEST(BothFidelities, AreReadAndWritten) {
 
 TEST(BothFidelities, LinearityIsRead) {
   const std::string text = study_with("fidelity = \"both\"\n") + "[analysis]\nlinearity = 0.05\n";
-  EXPECT_EQ(study_of(text).analysis.linearity, 0.05);
-  EXPECT_EQ(study_of(resolved_text(study_of(text))).analysis.linearity, 0.05);
+  const Study study = study_of(text);
+  EXPECT_EQ(asked_of<SensitivityOptions>(study.analysis).linearity, 0.05);
+  const Study again = study_of(resolved_text(study));
+  EXPECT_EQ(asked_of<SensitivityOptions>(again.analysis).linearity, 0.05);
 }
 
 TEST(BothFidelities, SecondIsSolvedAlone) {
@@ -99,11 +102,11 @@ TEST(BothFidelities, SecondIsSolvedAlone) {
 }
 
 TEST(BothFidelities, StandInTheTemplateOfSensitivityAlone) {
-  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
+  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
   EXPECT_NE(text.find("# fidelity = \"both\""), std::string::npos) << text;
   EXPECT_NE(text.find("# linearity = 0.01"), std::string::npos) << text;
-  EXPECT_EQ(template_text(kCatalog[0], Analysis::Kind::monte_carlo).find("fidelity = \"both\""), std::string::npos);
-  EXPECT_EQ(template_text(test::fake_catalog()[0], Analysis::Kind::sensitivity).find("linearity"), std::string::npos);
+  EXPECT_EQ(template_text(kCatalog[0], kMonteCarloStudy).find("fidelity = \"both\""), std::string::npos);
+  EXPECT_EQ(template_text(test::fake_catalog()[0], kSensitivityStudy).find("linearity"), std::string::npos);
 }
 
 void expect_refusal(const std::string& marked, const Catalog& catalog, const std::vector<std::string>& words) {

@@ -1,4 +1,4 @@
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include "tests/engine/study/valid_study.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -47,7 +48,7 @@ TEST(ReadStudy, TakesEveryValue) {
   EXPECT_DOUBLE_EQ(study.errors.by_factor[1].half_width(), 0.5 * kDegree);
   EXPECT_EQ(study.errors.by_factor[2].shape(), Distribution::Shape::truncated_normal);
   EXPECT_EQ(study.errors.by_factor[2].half_width(), 2e-3);
-  EXPECT_EQ(study.analysis.kind, Analysis::Kind::sensitivity);
+  EXPECT_EQ(study.analysis.kind, &kSensitivityStudy);
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(1), FactorIndex(0)}));
   EXPECT_EQ(study.analysis.samples, 100u);
   EXPECT_EQ(study.analysis.conf_level, 0.9);
@@ -153,7 +154,7 @@ TEST(ReadStudyToEvaluate, NeedsTheNameOfAFileOfPoses) {
 
 TEST(ReadStudyToEvaluate, PassesOverKeysOfAnotherKind) {
   const std::string text = changed("kind = \"sensitivity\"", "kind = \"sensitivity\"\ngroups = []\nsources = []");
-  EXPECT_TRUE(study_of(text, StudyUse::evaluate).analysis.groups.empty());
+  EXPECT_FALSE(study_of(text, StudyUse::evaluate).analysis.asked.has_value());
 }
 
 TEST(ReadStudyToEvaluate, TakesKindsAndPosesThatCannotBeRunYet) {
@@ -163,7 +164,7 @@ TEST(ReadStudyToEvaluate, TakesKindsAndPosesThatCannotBeRunYet) {
   }
   for (const std::string kind : {"identification", "evaluate", "monte-carlo"}) {
     const std::string text = changed("\"sensitivity\"", "\"" + kind + "\"");
-    EXPECT_EQ(name(study_of(text, StudyUse::evaluate).analysis.kind), kind);
+    EXPECT_EQ(study_of(text, StudyUse::evaluate).analysis.kind->name, kind);
   }
   study_of(changed("kind = \"sensitivity\"",
                    "kind = \"evaluate\"\ncases = [{ name = \"group 1\", errors = { linear = \"1 mm\", angular = "
@@ -506,12 +507,12 @@ TEST(StudyFile, TakesLimitsInTheOrderOfTheModelsResponses) {
   EXPECT_DOUBLE_EQ(by_rms.limits[0].most, 0.5 * kDegree);
   EXPECT_EQ(by_rms.limits[1].response, 1u);
   EXPECT_DOUBLE_EQ(by_rms.limits[1].most, 0.03e-3);
-  EXPECT_EQ(by_rms.judge, Judge::rms);
+  EXPECT_EQ(asked_of<MonteCarloOptions>(by_rms).judge, Judge::rms);
   const Analysis by_share =
       study_of(with_limits("monte-carlo", "judge = \"share\"\nshare = 0.9973\nlimits.linear_deformation = \"1 mm\""))
           .analysis;
-  EXPECT_EQ(by_share.judge, Judge::share);
-  EXPECT_EQ(by_share.share, 0.9973);
+  EXPECT_EQ(asked_of<MonteCarloOptions>(by_share).judge, Judge::share);
+  EXPECT_EQ(asked_of<MonteCarloOptions>(by_share).share, 0.9973);
   EXPECT_TRUE(study_of(test::kValidStudy).analysis.limits.empty());
 }
 

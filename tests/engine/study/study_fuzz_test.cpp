@@ -2,10 +2,11 @@
 
 #include <random>
 
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/table_file.h"
 #include "tests/engine/study/valid_study.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -74,8 +75,8 @@ TEST(DamagedTemplate, IsAStudyOrAnInputErrorWhateverBytesChange) {
   const Catalog catalog = test::fake_catalog();
   Damage damage([&](const std::string& path) { read_study(path, catalog, StudyUse::run); });
   std::mt19937_64 random(20240608);
-  for (const Analysis::Kind kind : kKinds) {
-    const std::string text = template_text(catalog[0], kind);
+  for (const StudyKind* kind : study_kinds().all) {
+    const std::string text = template_text(catalog[0], *kind);
     for (int k = 0; k < 500; ++k) damage.try_text(with_changed_bytes(text, random));
   }
   EXPECT_GT(damage.refused(), 100);

@@ -1,3 +1,4 @@
+#include "engine/kinds/study_file.h"
 #include "engine/study/keys.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@
 
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -167,7 +169,7 @@ std::vector<Use> uses() {
     toml::table study = toml::parse(texts[s]);
     std::size_t visited = 0;
     visit(study, "", [&](toml::table& table, const std::string& path) {
-      const StudyTable* described = find_table(study_tables(), path);
+      const StudyTable* described = find_table(study_kinds().tables, path);
       if (described == nullptr) throw std::logic_error("no description of [" + path + "]");
       const std::string word = word_of(table, *described);
       for (auto&& [key, value] : table) {
@@ -229,7 +231,7 @@ TEST(StudyKeys, AreAllUsedByTheStudiesOfThisTest) {
     used.insert({use.key, ""});
     used.insert({use.key, use.word});
   }
-  for (const StudyTable& table : study_tables()) {
+  for (const StudyTable& table : study_kinds().tables) {
     for (const StudyKey& key : table.keys) {
       EXPECT_TRUE(used.contains({&key, ""})) << table.paths.front() << " " << key.name;
       for (const std::string_view word : key.only_for) {
@@ -268,7 +270,7 @@ TEST(StudyKeys, HaveTheDefaultsThatTheyName) {
     const std::string usual = literal(use.key->usual);
     EXPECT_EQ(read(without), read(usual.empty() ? without : changed(use, usual))) << use.full_name;
   }
-  for (const StudyTable& table : study_tables()) {
+  for (const StudyTable& table : study_kinds().tables) {
     for (const StudyKey& key : table.keys) {
       EXPECT_FALSE(key.required && !key.usual.empty()) << table.paths.front() << " " << key.name;
       EXPECT_EQ(left_out.contains(&key), !key.usual.empty()) << table.paths.front() << " " << key.name;
@@ -319,12 +321,13 @@ TEST(StudyKeys, HaveTheBoundsThatTheyName) {
 }
 
 TEST(StudyKeys, AreFoundAtEveryPathOfAStudy) {
-  EXPECT_EQ(find_table(study_tables(), "errors.override.delta_1"), find_table(study_tables(), "errors.linear"));
-  EXPECT_EQ(find_table(study_tables(), "analysis.cases[12].errors.all"),
-            find_table(study_tables(), "analysis.cases.errors.SET"));
-  EXPECT_EQ(find_table(study_tables(), "")->keys.front().name, "format");
-  EXPECT_EQ(find_table(study_tables(), "analysis.cases.errors.all.more"), nullptr);
-  EXPECT_EQ(find_table(study_tables(), "analysi"), nullptr);
+  EXPECT_EQ(find_table(study_kinds().tables, "errors.override.delta_1"),
+            find_table(study_kinds().tables, "errors.linear"));
+  EXPECT_EQ(find_table(study_kinds().tables, "analysis.cases[12].errors.all"),
+            find_table(study_kinds().tables, "analysis.cases.errors.SET"));
+  EXPECT_EQ(find_table(study_kinds().tables, "")->keys.front().name, "format");
+  EXPECT_EQ(find_table(study_kinds().tables, "analysis.cases.errors.all.more"), nullptr);
+  EXPECT_EQ(find_table(study_kinds().tables, "analysi"), nullptr);
 }
 
 /// Without comment signs and with single spaces.
@@ -344,8 +347,8 @@ bool in_templates(const StudyTable& table, const StudyKey& key) {
 
 TEST(Template, ExplainsEveryKeyInTheWordsOfItsDescription) {
   std::string all;
-  for (const Analysis::Kind kind : kKinds) all += words_of(template_text(kCatalog.front(), kind));
-  for (const StudyTable& table : study_tables()) {
+  for (const StudyKind* kind : study_kinds().all) all += words_of(template_text(kCatalog.front(), *kind));
+  for (const StudyTable& table : study_kinds().tables) {
     for (const StudyKey& key : table.keys) {
       if (!in_templates(table, key)) continue;
       EXPECT_NE(all.find(words_of(explanation(table, key))), std::string::npos)
@@ -362,7 +365,7 @@ TEST(Reference, HasEveryKeyAndNoUndividedRow) {
     EXPECT_TRUE(line.empty() || line.back() != ' ') << line;
   }
   std::size_t keys = 0;
-  for (const StudyTable& table : study_tables()) keys += table.keys.size();
+  for (const StudyTable& table : study_kinds().tables) keys += table.keys.size();
   EXPECT_EQ(rows, keys);
 }
 

@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
 #include "engine/files/checkpoint.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -57,8 +58,8 @@ TEST(AdaptiveSamples, StandInTheResolvedText) {
 }
 
 TEST(AdaptiveSamples, StandInTheTemplate) {
-  for (const Analysis::Kind kind : {Analysis::Kind::sensitivity, Analysis::Kind::monte_carlo}) {
-    std::string text = template_text(kCatalog[0], kind);
+  for (const test::KindOfStudy kind : {&kSensitivityStudy, &kMonteCarloStudy}) {
+    std::string text = template_text(kCatalog[0], *kind);
     const std::string_view fixed = "\nsamples = 1000";
     const std::string_view shown = "\n# samples = {";
     ASSERT_NE(text.find(shown), std::string::npos) << text;
@@ -66,7 +67,7 @@ TEST(AdaptiveSamples, StandInTheTemplate) {
     text.replace(text.find(fixed), 1, "\n# ");
     EXPECT_EQ(study_of(text).analysis.adaptive->relative_error, 0.01);
   }
-  EXPECT_EQ(template_text(kCatalog[0], Analysis::Kind::evaluate).find("relative_error"), std::string::npos);
+  EXPECT_EQ(template_text(kCatalog[0], kEvaluateStudy).find("relative_error"), std::string::npos);
 }
 
 TEST(AdaptiveSamples, WrongOnesAreRefused) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 
@@ -35,6 +37,19 @@ TEST(BackgroundErrors, ApplyByDimensionAndOnlyToTheirFactors) {
   EXPECT_EQ(background_errors(study.analysis.background, study.model()), (std::vector<double>{0.0, 2e-2, 1e-3}));
 }
 
+TEST(AskedOf, GivesDefaultsUntilSomethingIsAsked) {
+  struct Options {
+    int number = 3;
+  };
+  Analysis analysis;
+  EXPECT_EQ(asked_of<Options>(std::as_const(analysis)).number, 3);
+  EXPECT_FALSE(analysis.asked.has_value());
+  asked_of<Options>(analysis).number = 4;
+  const Analysis copy = analysis;
+  asked_of<Options>(analysis).number = 5;
+  EXPECT_EQ(asked_of<Options>(copy).number, 4);
+}
+
 TEST(Names, AreThoseOfTheStudyFile) {
   using Select = PoseSelection::Select;
   EXPECT_EQ(name(Select::interior), "interior");
@@ -42,11 +57,6 @@ TEST(Names, AreThoseOfTheStudyFile) {
   EXPECT_EQ(name(Select::boundary), "boundary");
   EXPECT_EQ(name(Select::grid), "grid");
   EXPECT_EQ(name(Select::trajectory), "trajectory");
-  EXPECT_EQ(name(Analysis::Kind::sensitivity), "sensitivity");
-  EXPECT_EQ(name(Analysis::Kind::identification), "identification");
-  EXPECT_EQ(name(Analysis::Kind::evaluate), "evaluate");
-  EXPECT_EQ(name(Analysis::Kind::monte_carlo), "monte-carlo");
-  EXPECT_EQ(name(Analysis::Kind::coupling), "coupling");
   EXPECT_EQ(name(NotConverged::exclude), "exclude");
   EXPECT_EQ(name(NotConverged::include), "include");
   EXPECT_EQ(name(SolverOptions::Method::newton), "newton");

@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_text.h"
 #include "tests/engine/study/valid_study.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 #include "tests/support/names.h"
 #include "tests/support/temp_folder.h"
 
@@ -20,6 +21,50 @@ Study study_of(std::string_view text, StudyUse use = StudyUse::run) {
 
 std::string shortest_study(std::string_view rest) {
   return "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n" + std::string(rest);
+}
+
+void expect_same(const IdentificationOptions& a, const IdentificationOptions& b) {
+  EXPECT_EQ(a.pose_share, b.pose_share);
+  ASSERT_EQ(a.groups.size(), b.groups.size());
+  for (std::size_t g = 0; g < a.groups.size(); ++g) {
+    EXPECT_EQ(a.groups[g].name, b.groups[g].name);
+    EXPECT_EQ(a.groups[g].linear, b.groups[g].linear);
+    EXPECT_EQ(a.groups[g].angular, b.groups[g].angular);
+  }
+}
+
+void expect_same(const CaseOptions& a, const CaseOptions& b) {
+  ASSERT_EQ(a.cases.size(), b.cases.size());
+  for (std::size_t c = 0; c < a.cases.size(); ++c) {
+    EXPECT_EQ(a.cases[c].name, b.cases[c].name);
+    EXPECT_EQ(a.cases[c].errors, b.cases[c].errors);
+  }
+}
+
+void expect_same(const SensitivityOptions& a, const SensitivityOptions& b) {
+  EXPECT_EQ(a.linearity, b.linearity);
+  ASSERT_EQ(a.reference.has_value(), b.reference.has_value());
+  if (!a.reference) return;
+  EXPECT_EQ(a.reference->factor, b.reference->factor);
+  EXPECT_EQ(a.reference->tolerance, b.reference->tolerance);
+}
+
+void expect_same(const MonteCarloOptions& a, const MonteCarloOptions& b) {
+  EXPECT_EQ(a.quantiles, b.quantiles);
+  EXPECT_EQ(a.judge, b.judge);
+  EXPECT_EQ(a.share, b.share);
+}
+
+template <class Options>
+void expect_same_options(const Analysis& a, const Analysis& b) {
+  expect_same(asked_of<Options>(a), asked_of<Options>(b));
+}
+
+void expect_same_asked(const Analysis& a, const Analysis& b) {
+  if (a.kind == &kSensitivityStudy) expect_same_options<SensitivityOptions>(a, b);
+  if (a.kind == &kIdentificationStudy) expect_same_options<IdentificationOptions>(a, b);
+  if (a.kind == &kEvaluateStudy) expect_same_options<CaseOptions>(a, b);
+  if (a.kind == &kMonteCarloStudy) expect_same_options<MonteCarloOptions>(a, b);
 }
 
 void expect_same(const Study& a, const Study& b) {
@@ -47,35 +92,16 @@ void expect_same(const Study& a, const Study& b) {
     EXPECT_EQ(a.errors.by_factor[f].half_width(), b.errors.by_factor[f].half_width());
   }
   EXPECT_EQ(a.analysis.kind, b.analysis.kind);
+  expect_same_asked(a.analysis, b.analysis);
   EXPECT_EQ(a.analysis.factors, b.analysis.factors);
   EXPECT_EQ(a.analysis.samples, b.analysis.samples);
   EXPECT_EQ(a.analysis.conf_level, b.analysis.conf_level);
   EXPECT_EQ(background_errors(a.analysis.background, a.model()), background_errors(b.analysis.background, b.model()));
-  EXPECT_EQ(a.analysis.quantiles, b.analysis.quantiles);
-  EXPECT_EQ(a.analysis.pose_share, b.analysis.pose_share);
-  ASSERT_EQ(a.analysis.cases.size(), b.analysis.cases.size());
-  for (std::size_t c = 0; c < a.analysis.cases.size(); ++c) {
-    EXPECT_EQ(a.analysis.cases[c].name, b.analysis.cases[c].name);
-    EXPECT_EQ(a.analysis.cases[c].errors, b.analysis.cases[c].errors);
-  }
-  ASSERT_EQ(a.analysis.groups.size(), b.analysis.groups.size());
-  for (std::size_t g = 0; g < a.analysis.groups.size(); ++g) {
-    EXPECT_EQ(a.analysis.groups[g].name, b.analysis.groups[g].name);
-    EXPECT_EQ(a.analysis.groups[g].linear, b.analysis.groups[g].linear);
-    EXPECT_EQ(a.analysis.groups[g].angular, b.analysis.groups[g].angular);
-  }
-  ASSERT_EQ(a.analysis.reference.has_value(), b.analysis.reference.has_value());
-  if (a.analysis.reference) {
-    EXPECT_EQ(a.analysis.reference->factor, b.analysis.reference->factor);
-    EXPECT_EQ(a.analysis.reference->tolerance, b.analysis.reference->tolerance);
-  }
   ASSERT_EQ(a.analysis.limits.size(), b.analysis.limits.size());
   for (std::size_t k = 0; k < a.analysis.limits.size(); ++k) {
     EXPECT_EQ(a.analysis.limits[k].response, b.analysis.limits[k].response);
     EXPECT_EQ(a.analysis.limits[k].most, b.analysis.limits[k].most);
   }
-  EXPECT_EQ(a.analysis.judge, b.analysis.judge);
-  EXPECT_EQ(a.analysis.share, b.analysis.share);
   EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
   EXPECT_EQ(a.solver.max_iterations, b.solver.max_iterations);
   EXPECT_EQ(a.not_converged, b.not_converged);
@@ -194,7 +220,7 @@ TEST(ReadableValue, IsExactAndShort) {
 }
 
 TEST(Template, RunsAsItIsAndAsksForTheUsualStudy) {
-  const Study study = study_of(template_text(kCatalog[0], Analysis::Kind::sensitivity));
+  const Study study = study_of(template_text(kCatalog[0], kSensitivityStudy));
   const Study usual = study_of("title = \"Sensitivity of fake\"\n" +
                                shortest_study("[poses]\ncount = 158\n[analysis]\nbackground = { factors = "
                                               "\"benign\", linear = \"1 mm\", angular = \"1 deg\" }\n"));
@@ -208,14 +234,14 @@ TEST(Template, RunsForAModelWithoutSetsAndGeometry) {
   catalog[0].description.workspace_note = "two\nlines";
   catalog[0].build = [](std::span<const double>, std::size_t) { return std::make_unique<test::FakeModel>(); };
   const test::TempFolder folder;
-  const std::string path = folder.write("study.toml", template_text(catalog[0], Analysis::Kind::sensitivity));
+  const std::string path = folder.write("study.toml", template_text(catalog[0], kSensitivityStudy));
   const Study study = read_study(path, catalog, StudyUse::run);
   EXPECT_EQ(study.analysis.factors.size(), 3u);
   EXPECT_FALSE(study.analysis.background);
 }
 
 TEST(Template, NamesEveryKey) {
-  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
+  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
   for (const char* key : {"format = ",        "version = ",
                           "title = ",         "model = ",
                           "arm = ",           "select = ",
@@ -243,7 +269,7 @@ TEST(Template, NamesEveryKey) {
 
 /// Each trajectory that a template shows behind a '#' reads in place of the box.
 TEST(Template, ShowsTrajectoriesThatRead) {
-  const std::string text = template_text(kCatalog[0], Analysis::Kind::sensitivity);
+  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
   std::size_t shown = 0;
   for (std::size_t at = text.find("# trajectory = "); at != std::string::npos;
        at = text.find("# trajectory = ", at + 1)) {

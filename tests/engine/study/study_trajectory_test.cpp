@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 #include "tests/support/names.h"

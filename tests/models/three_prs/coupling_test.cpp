@@ -29,7 +29,7 @@ std::unique_ptr<Model> build(std::size_t fidelity) {
 
 CouplingStudy study(const ErrorPattern& pattern, std::vector<double> sizes) {
   CouplingStudy some{std::move(sizes), {}, pattern, {}};
-  for (const CouplingSource& source : kModel.sources) {
+  for (const SourceSet& source : kModel.sources) {
     some.sources.push_back({source.name, kModel.find_set(source.set)->factors});
   }
   return some;
@@ -45,7 +45,7 @@ TEST(LiteratureSources, AreFactorSetsThatDoNotOverlap) {
   ASSERT_EQ(kModel.sources.size(), 4u);
   std::set<FactorIndex> seen;
   std::size_t count = 0;
-  for (const CouplingSource& source : kModel.sources) {
+  for (const SourceSet& source : kModel.sources) {
     const FactorSet* set = kModel.find_set(source.set);
     ASSERT_NE(set, nullptr) << source.name;
     seen.insert(set->factors.begin(), set->factors.end());
@@ -63,7 +63,7 @@ class ByHand {
   template <class Belongs>
   double effect(std::size_t response, std::size_t m, const Belongs& belongs) {
     std::vector<double> errors(kModel.factors.size(), 0.0);
-    for (const CouplingSource& source : kModel.sources) {
+    for (const SourceSet& source : kModel.sources) {
       for (const FactorIndex factor : kModel.find_set(source.set)->factors) {
         if (belongs(source.name, kModel.factors[factor.value])) errors[factor.value] = size_;
       }
@@ -110,7 +110,7 @@ void expect_by_hand(const Model& model, const ErrorPattern& pattern) {
       const double fs = own("FS"), t = own("T"), q = own("R"), l = own("L");
       double worst = 0.0;
       double squares = 0.0;
-      for (const CouplingSource& source : kModel.sources) {
+      for (const SourceSet& source : kModel.sources) {
         std::vector<const Factor*> blocks;  // the first factor of each
         for (const FactorIndex index : kModel.find_set(source.set)->factors) {
           const Factor& factor = kModel.factors[index.value];

@@ -3,11 +3,13 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <variant>
 
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/result_file.h"
+#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -25,6 +27,7 @@ poesy::Study small_study(const poesy::CatalogEntry& entry) {
     study.poses.workspace.push_back({entry.description.pose_lower[c], entry.description.pose_upper[c]});
   }
   study.errors.by_factor.assign(entry.description.factors.size(), poesy::Distribution::normal(1e-4));
+  study.analysis.kind = &poesy::kSensitivityStudy;
   study.analysis.factors = entry.description.factor_sets.front().factors;
   study.analysis.samples = 10;
   return study;
@@ -44,7 +47,7 @@ bool run_file(const std::string& path, const std::string& result_path) {
   const poesy::SelectedPoses poses = poesy::select_poses(study.poses, *model);
   const auto result = poesy::run_study(study, *model, poses.poses);
   if (!result) return false;
-  poesy::write_result(result_path, study, poses, *result, {});
+  poesy::write_result(result_path, study, poses, result->found, {});
   const auto& found = result->as<poesy::SensitivityResult>();
   std::printf("%s: %zu errors at %zu poses\n", path.c_str(), found.factors, found.poses);
   return some_index_is_positive(found);

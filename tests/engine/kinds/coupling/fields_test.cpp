@@ -6,6 +6,7 @@
 #include "engine/files/h5.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/stored.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
@@ -34,7 +35,7 @@ void expect_same(const std::vector<double>& found, const std::vector<double>& ex
 
 TEST_F(CouplingFile, IsReadBackAsItWas) {
   const StoredResult result = read_result(path_);
-  const StoredCoupling& stored = result.coupling;
+  const StoredCoupling& stored = coupling_of(result);
   EXPECT_EQ(result.kind, "coupling");
   EXPECT_EQ(stored.size_names, (std::vector<std::string>{"0.1 mm", "0.2 mm"}));
   EXPECT_EQ(stored.linear, (std::vector<double>{1e-4, 2e-4}));

@@ -3,9 +3,11 @@
 #include <numbers>
 
 #include "engine/kinds/identification/identification.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_file.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -32,7 +34,7 @@ std::string with_analysis(std::string_view analysis) {
 }
 
 CouplingStudy coupling_of(const std::string& analysis, StudyUse use = StudyUse::run) {
-  return study_of_text(with_analysis(analysis), "study.toml", kCatalog, use).analysis.coupling;
+  return asked_of<CouplingStudy>(study_of_text(with_analysis(analysis), "study.toml", kCatalog, use).analysis);
 }
 
 const std::string kSizes = "linear = [\"1 mm\"]\nangular = [\"1 deg\"]\n";
@@ -72,8 +74,8 @@ factors = ["epsilon_1"]
 TEST(StudyOfCoupling, KeepsWhatThePatternLeaves) {
   const Study study =
       study_of_text(with_analysis(kSizes + "components = [\"x\"]\n"), "study.toml", kCatalog, StudyUse::run);
-  EXPECT_EQ(study.analysis.coupling.pattern.axes, std::vector<std::string>{"x"});
-  EXPECT_EQ(study.analysis.coupling.sources[0].factors.size(), 2u);  // as named
+  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).pattern.axes, std::vector<std::string>{"x"});
+  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).sources[0].factors.size(), 2u);  // as named
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(0), FactorIndex(2)}));
 }
 
@@ -105,8 +107,8 @@ TEST(ResolvedTextOfCoupling, ReadsBackToTheSameStudy) {
     const std::string text = resolved_text(study);
     const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
     EXPECT_EQ(resolved_text(again), text);
-    const CouplingStudy& a = study.analysis.coupling;
-    const CouplingStudy& b = again.analysis.coupling;
+    const CouplingStudy& a = asked_of<CouplingStudy>(study.analysis);
+    const CouplingStudy& b = asked_of<CouplingStudy>(again.analysis);
     EXPECT_EQ(a.linear, b.linear);
     EXPECT_EQ(a.angular, b.angular);
     EXPECT_EQ(a.pattern.limbs, b.pattern.limbs);
@@ -214,10 +216,9 @@ TEST(StudyOfCoupling, AsksForSourcesWhereTheModelSuggestsNone) {
   Catalog without = kCatalog;
   without.front().description.sources.clear();
   expect_error_of_section(kSizes, without, {"model \"fake\" suggests none", "2 to 8 [[analysis.sources]]"});
-  EXPECT_EQ(study_of_text(with_analysis("linear = [\"1 mm\"]\n" + kLengths), "study.toml", without, StudyUse::run)
-                .analysis.coupling.sources[1]
-                .name,
-            "source 2");
+  const Study study =
+      study_of_text(with_analysis("linear = [\"1 mm\"]\n" + kLengths), "study.toml", without, StudyUse::run);
+  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).sources[1].name, "source 2");
 }
 
 TEST(StudyOfCoupling, SaysWhichUsualSourceThePatternEmpties) {
@@ -236,12 +237,12 @@ TEST(StudyOfAnotherKind, RefusesTheKeysOfCoupling) {
 }
 
 TEST(TemplateOfCoupling, ShowsTheSizesThatItsSourcesNeed) {
-  const std::string text = template_text(kCatalog.front(), Analysis::Kind::coupling);
+  const std::string text = template_text(kCatalog.front(), kCouplingStudy);
   EXPECT_NE(text.find("\nangular = ["), std::string::npos);
   Catalog lengths = kCatalog;
   lengths.front().description.factor_sets.push_back({"lengths", "", {FactorIndex(0)}});
   lengths.front().description.sources.front().set = "lengths";
-  EXPECT_NE(template_text(lengths.front(), Analysis::Kind::coupling).find("\n# angular = ["), std::string::npos);
+  EXPECT_NE(template_text(lengths.front(), kCouplingStudy).find("\n# angular = ["), std::string::npos);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
+#include "tests/engine/kinds/stored.h"
 
 namespace poesy {
 namespace {
@@ -17,7 +18,7 @@ StoredResult example() {
   result.poses = PoseSet(2, {-0.3, 0.0, -0.25, 0.0, -0.2, 0.0, -0.18, 0.1});
   result.responses = {{"tilt", "rad"}, {"x", "m"}};
   result.signed_headline = {1};
-  StoredCoupling& stored = result.coupling;
+  StoredCoupling& stored = coupling_in(result);
   stored.size_names = {"0.1 mm"};
   stored.linear = {1e-4};
   stored.angular = {std::numeric_limits<double>::quiet_NaN()};
@@ -60,7 +61,7 @@ TEST(CouplingTable, ShowsEachHeadlineResponseAtEachSize) {
 
 TEST(CouplingTable, SaysWherePosesAreLeftOut) {
   StoredResult result = example();
-  result.coupling.found.count[4] = 3;
+  coupling_in(result).found.count[4] = 3;
   const std::string note = coupling_tables(result).back().notes.back();
   EXPECT_NE(note.find("some subsets leave out poses"), std::string::npos) << note;
 }
@@ -69,7 +70,7 @@ TEST(CouplingTable, SaysWhySymmetricSourcesCancel) {
   StoredResult result = example();
   result.study_text = "[analysis]\nlimbs = \"all\"\n";
   EXPECT_EQ(coupling_tables(result).back().notes.size(), 3U) << "every source does something";
-  result.coupling.found.effect_max[4] = 0.0;
+  coupling_in(result).found.effect_max[4] = 0.0;
   EXPECT_TRUE(coupling_tables(result).back().notes.back().starts_with("all limbs have the same error here"));
   result.study_text = "[analysis]\nlimbs = \"independent\"\n";
   EXPECT_EQ(coupling_tables(result).back().notes.size(), 3U);
@@ -77,7 +78,7 @@ TEST(CouplingTable, SaysWhySymmetricSourcesCancel) {
 
 TEST(CouplingTable, NamesNoPoseOfRounding) {
   StoredResult result = example();
-  result.coupling.found.effect_max[4] = 1e-16;
+  coupling_in(result).found.effect_max[4] = 1e-16;
   const std::vector<Cell> row = coupling_tables(result)[0].rows[1];
   EXPECT_EQ(row[1].text, "0");
   EXPECT_EQ(row[2].text, "-");
@@ -86,7 +87,7 @@ TEST(CouplingTable, NamesNoPoseOfRounding) {
 
 TEST(CouplingTable, CallsRoundingZero) {
   StoredResult result = example();
-  result.coupling.found.interaction_max[5] = 1e-15;
+  coupling_in(result).found.interaction_max[5] = 1e-15;
   const Table table = coupling_tables(result)[0];
   const auto column = std::ranges::find(table.columns, "interaction_max", &Column::name) - table.columns.begin();
   const Cell& cell = table.rows[2][static_cast<std::size_t>(column)];

@@ -1,5 +1,6 @@
 #include "engine/kinds/identification/identification.h"
 #include "engine/run/evaluation.h"
+#include "tests/support/kinds.h"
 
 #include <gtest/gtest.h>
 
@@ -49,9 +50,9 @@ SolveTable solver(Deformation deformation) {
 
 Analysis analysis() {
   Analysis identification;
-  identification.kind = Analysis::Kind::identification;
+  identification.kind = &kIdentificationStudy;
   for (std::size_t f = 0; f < 6; ++f) identification.factors.emplace_back(f);
-  identification.groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+  asked_of<IdentificationOptions>(identification).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
   return identification;
 }
 
@@ -113,7 +114,7 @@ TEST(Identify, AsksForAShareOfThePoses) {
 
 TEST(Identify, AsksForOnePoseAtLeast) {
   Analysis hardly = analysis();
-  hardly.pose_share = 0.01;
+  asked_of<IdentificationOptions>(hardly).pose_share = 0.01;
   const IdentificationResult found = identified([](auto e, std::size_t) { return std::abs(e[0]); }, hardly);
   EXPECT_EQ(found.required_poses, 1u);
   EXPECT_EQ(found.single, (Verdicts{1, 0, 0, 0, 0, 0}));

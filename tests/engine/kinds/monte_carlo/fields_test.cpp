@@ -5,6 +5,7 @@
 #include "engine/files/h5.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/stored.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
@@ -33,7 +34,7 @@ void expect_same(const std::vector<double>& found, const std::vector<double>& ex
 TEST_F(MonteCarloFile, IsReadBackAsItWas) {
   const MonteCarloResult written = example_.monte_carlo();
   const StoredResult stored = read_result(path_);
-  const MonteCarloResult& found = stored.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(stored);
   EXPECT_EQ(stored.kind, "monte-carlo");
   EXPECT_EQ(stored.factor_sigma.size(), 2u);
   EXPECT_EQ(found.responses, 2u);
@@ -63,7 +64,7 @@ TEST_F(MonteCarloFile, IsReadBackAsItWas) {
                             &MonteCarloResult::share_magnitude}) {
     expect_same(found.*member, written.*member);
   }
-  EXPECT_EQ(found.failures, written.failures);
+  EXPECT_EQ(stored.failures, written.failures);
   EXPECT_EQ(found.count, written.count);
   EXPECT_EQ(found.histogram_counts, written.histogram_counts);
   EXPECT_EQ(found.overall_count, written.overall_count);
@@ -89,7 +90,7 @@ TEST_F(MonteCarloFile, HasNamedAxesAndStatesItsError) {
 
 TEST_F(MonteCarloFile, KeepsItsVerdicts) {
   const LimitVerdicts written = test::Example::verdicts();
-  const auto found = read_result(path_).monte_carlo.verdicts;
+  const auto found = read_result(path_).verdicts;
   ASSERT_TRUE(found);
   EXPECT_EQ(found->judge, Judge::share);
   EXPECT_EQ(found->share, 0.9973);
@@ -109,10 +110,10 @@ TEST_F(MonteCarloFile, KeepsItsVerdicts) {
 /// It was written before there were root mean squares, intervals of quantiles, histograms and limits.
 TEST(OlderMonteCarloFile, IsReadWithoutWhatItDoesNotHave) {
   const StoredResult stored = read_result(POESY_TEST_DATA "/monte_carlo_0_1.h5");
-  const MonteCarloResult& found = stored.monte_carlo;
+  const MonteCarloResult& found = monte_carlo_of(stored);
   EXPECT_TRUE(found.quantiles_ci_low.empty());
   EXPECT_TRUE(found.histogram_counts.empty());
-  EXPECT_FALSE(found.verdicts);
+  EXPECT_FALSE(stored.verdicts);
   ASSERT_EQ(found.overall_rms.size(), found.responses);
   const double mean = found.overall_mean[0];
   const auto n = static_cast<double>(found.overall_count[0]);

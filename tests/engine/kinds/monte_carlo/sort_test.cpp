@@ -12,6 +12,7 @@
 #include "engine/random/stream.h"
 #include "engine/run/evaluation.h"
 #include "tests/engine/stats/plain_sort.h"
+#include "tests/support/kinds.h"
 #include "tests/support/names.h"
 
 namespace poesy {
@@ -22,14 +23,14 @@ constexpr std::size_t kSamples = 10000;
 
 Study study_of(double scale) {
   Study study = bench::published_study(kPoses, kSamples);
-  study.analysis.kind = Analysis::Kind::monte_carlo;
+  study.analysis.kind = &kMonteCarloStudy;
   study.analysis.background.reset();
   study.analysis.factors.clear();
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     study.analysis.factors.emplace_back(f);
     study.errors.by_factor[f] = Distribution::normal(scale * study.errors.by_factor[f].sigma());
   }
-  study.analysis.quantiles = {0.001, 0.05, 0.25, 0.5, 0.75, 0.95, 0.999};
+  asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.001, 0.05, 0.25, 0.5, 0.75, 0.95, 0.999};
   return study;
 }
 

@@ -6,6 +6,7 @@
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
+#include "tests/engine/kinds/stored.h"
 
 namespace poesy {
 namespace {
@@ -18,7 +19,7 @@ StoredResult example() {
   result.factors = {{"delta_1", "m"}, {"epsilon_1", "rad"}};
   result.responses = {{"linear_deformation", "m"}, {"ratio", "1"}};
   result.headline = {0, 1};
-  MonteCarloResult& found = result.monte_carlo;
+  MonteCarloResult& found = monte_carlo_in(result);
   found.responses = 2;
   found.poses = 3;
   found.quantile_relative_error = 1.0 / 512.0;
@@ -62,7 +63,7 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
 TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
   StoredResult result = example();
   constexpr std::size_t kPoses = 10;
-  MonteCarloResult& found = result.monte_carlo;
+  MonteCarloResult& found = monte_carlo_in(result);
   found.poses = kPoses;
   found.levels = {0.95};
   std::vector<double> coordinates;
@@ -88,8 +89,8 @@ TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
 
 TEST(MonteCarloTable, OfAnOlderResultHasNoIntervals) {
   StoredResult result = example();
-  result.monte_carlo.quantiles_ci_low.clear();
-  result.monte_carlo.quantiles_ci_high.clear();
+  monte_carlo_in(result).quantiles_ci_low.clear();
+  monte_carlo_in(result).quantiles_ci_high.clear();
   const Table table = monte_carlo_tables(result).at(1);
   EXPECT_EQ(table.rows[0].back().text, "-");
   EXPECT_EQ(table.rows[0][6].text, "0");
@@ -99,7 +100,7 @@ TEST(MonteCarloTable, OfAnOlderResultHasNoIntervals) {
 TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
   StoredResult result = example();
   EXPECT_FALSE(limits_table(result));
-  result.monte_carlo.verdicts = LimitVerdicts{
+  result.verdicts = LimitVerdicts{
       .judge = Judge::rms,
       .share = 0.0,
       .limits = {{.response = 0, .limit = 3e-5, .value = 0.0155, .passed = false, .tried = 1000, .within = 21},
@@ -117,7 +118,7 @@ TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
 
 TEST(LimitsTable, NamesTheWorstPlace) {
   StoredResult result = example();
-  result.monte_carlo.verdicts = LimitVerdicts{
+  result.verdicts = LimitVerdicts{
       .judge = Judge::share,
       .share = 0.9973,
       .limits = {
@@ -126,13 +127,13 @@ TEST(LimitsTable, NamesTheWorstPlace) {
   EXPECT_EQ(share.rows[0][3].text, "99.73 % of draws");
   EXPECT_EQ(share.rows[0][4].text, "inf");
   EXPECT_EQ(share.rows[0][7].text, "pose 2");
-  result.monte_carlo.verdicts.reset();
-  result.evaluation.verdicts = LimitVerdicts{
+  result.row_names = {"sample 0", "sample 1"};
+  result.verdicts = LimitVerdicts{
       .limits = {
           {.response = 0, .limit = 1e-3, .value = 5e-4, .passed = true, .tried = 2, .within = 2, .pose = 1, .row = 1}}};
   EXPECT_EQ(limits_table(result)->rows[0][7].text, "sample 1, pose 1");
   EXPECT_EQ(limits_table(result)->caption, "PASS: the limit is kept");
-  result.cases = {"small", "large"};
+  result.row_names = {"small", "large"};
   EXPECT_EQ(limits_table(result)->rows[0][7].text, "large, pose 1");
 }
 
@@ -152,7 +153,7 @@ TEST(PercentText, KeepsWhatIsMissingFromAHundred) {
 
 TEST(MonteCarloTable, NamesTheWorstOfThePosesThatAreKnown) {
   StoredResult result = example();
-  result.monte_carlo.mean[0] = std::numeric_limits<double>::quiet_NaN();
+  monte_carlo_in(result).mean[0] = std::numeric_limits<double>::quiet_NaN();
   const Table poses = monte_carlo_tables(result).at(1);
   EXPECT_EQ(poses.rows[0][2].text, "-");
   EXPECT_FALSE(poses.rows[0][2].value);
@@ -180,22 +181,24 @@ TEST(DefaultRanking, IsTheFirstLengthOfTheHeadline) {
 TEST(SummaryText, ShowsNoControlCharacterOfATitle) {
   StoredResult result = example();
   result.title = "\x1b[31mred\x07";
-  EXPECT_TRUE(summary_text(result, kUnlimitedWidth).starts_with("?[31mred?\n"));
+  EXPECT_TRUE(summary_text(result, tally_of(result), kUnlimitedWidth).starts_with("?[31mred?\n"));
 }
 
 TEST(MonteCarloTable, CountsOnePoseAsOne) {
   StoredResult result = example();
   result.factors.resize(1);
-  result.monte_carlo.poses = 1;
+  monte_carlo_in(result).poses = 1;
   EXPECT_EQ(monte_carlo_tables(result).at(0).caption, "1 error varies together: responses over the samples of 1 pose");
 }
 
 TEST(FailuresText, CountsTheSolvesOfAllPosesOnce) {
   StoredResult result = example();
-  result.monte_carlo.solves[2].by_status[2] = 360;
-  EXPECT_EQ(failures_text(result, "r.h5", kUnlimitedWidth), "360 of 36 360 solves (0.99 %) did not converge\n");
-  result.monte_carlo.failures = {{0, PoseIndex{2}, {SampleIndex{7}, SolveStatus::iteration_cap}}};
-  EXPECT_EQ(failures_text(result, "my r.h5", 80),
+  monte_carlo_in(result).solves[2].by_status[2] = 360;
+  EXPECT_EQ(failures_text(result, tally_of(result), "r.h5", kUnlimitedWidth),
+            "360 of 36 360 solves (0.99 %) did not converge\n");
+  result.varied = {std::string(kAllFactors)};
+  result.failures = {{0, PoseIndex{2}, {SampleIndex{7}, SolveStatus::iteration_cap}}};
+  EXPECT_EQ(failures_text(result, tally_of(result), "my r.h5", 80),
             "360 of 36 360 solves (0.99 %) did not converge\n"
             "the first of them (error, pose, sample): all 2 7, iteration_cap; failures.csv of\n"
             "'poesy export' lists 1 of the 360 (at most 10 of each pose, and 1 000 in all)\n"

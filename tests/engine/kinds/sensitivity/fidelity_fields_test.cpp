@@ -8,8 +8,10 @@
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {
@@ -22,7 +24,7 @@ class FidelityFile : public testing::Test {
     catalog_[0].description.fidelities = {"exact", "first-order"};
     example_.study.mechanism.entry = &catalog_[0];
     example_.study.mechanism.compared = 1;
-    example_.study.analysis.linearity = 0.02;
+    asked_of<SensitivityOptions>(example_.study.analysis).linearity = 0.02;
     FidelityResult& fidelity = result_.fidelity.emplace();
     fidelity.linearity = 0.02;
     fidelity.global = {1.0, 2.0, 3.0, 4.0};
@@ -31,7 +33,7 @@ class FidelityFile : public testing::Test {
     fidelity.nonlinearity = {0.5, 0.0625, 0.03125, 0.75};
     fidelity.linear = {1, 0};
     fidelity.not_converged = {0, 1, 2, 3, 4, 5, 6, 7};
-    write_sensitivity(path_, example_.study, example_.poses, result_, example_.facts);
+    write_result(path_, example_.study, example_.poses, result_, example_.facts);
   }
 
   Catalog catalog_ = test::fake_catalog();
@@ -43,8 +45,8 @@ class FidelityFile : public testing::Test {
 
 TEST_F(FidelityFile, IsReadBackAsItWas) {
   const StoredResult stored = read_result(path_);
-  ASSERT_TRUE(stored.sensitivity.fidelity);
-  const FidelityResult& found = *stored.sensitivity.fidelity;
+  ASSERT_TRUE(sensitivity_of(stored).fidelity);
+  const FidelityResult& found = *sensitivity_of(stored).fidelity;
   EXPECT_EQ(found.linearity, 0.02);
   EXPECT_EQ(found.global, result_.fidelity->global);
   EXPECT_EQ(found.discrepancy, result_.fidelity->discrepancy);
@@ -52,8 +54,8 @@ TEST_F(FidelityFile, IsReadBackAsItWas) {
   EXPECT_EQ(found.nonlinearity, result_.fidelity->nonlinearity);
   EXPECT_EQ(found.linear, result_.fidelity->linear);
   EXPECT_EQ(found.not_converged, result_.fidelity->not_converged);
-  EXPECT_EQ(stored.fidelities, (std::vector<std::string>{"exact", "first-order"}));
-  EXPECT_EQ(stored.sensitivity.solves.size(), result_.solves.size());
+  EXPECT_EQ(sensitivity_of(stored).fidelities, (std::vector<std::string>{"exact", "first-order"}));
+  EXPECT_EQ(sensitivity_of(stored).solves.size(), result_.solves.size());
   EXPECT_TRUE(verify_result(path_).matches());
 }
 
@@ -85,10 +87,10 @@ TEST_F(FidelityFile, ConfirmationOfItsTolerancesIsAtTheFirstFidelity) {
   SensitivityResult solved = example_.sensitivity();
   for (auto* values : {&solved.global, &solved.mean, &solved.std}) values->assign(values->size(), 1.0);
   solved.fidelity = result_.fidelity;
-  write_sensitivity(path_, example_.study, example_.poses, solved, example_.facts);
+  write_result(path_, example_.study, example_.poses, solved, example_.facts);
   const StoredResult stored = read_result(path_);
-  const ResponseStudy study = response_study(stored.sensitivity, stored.factor_sigma, 1);
-  ResponseTolerances found{1, tolerances(study, stored.tolerance_reference[1]), std::nullopt};
+  const ResponseStudy study = response_study(sensitivity_of(stored), stored.factor_sigma, 1);
+  ResponseTolerances found{1, tolerances(study, sensitivity_of(stored).tolerance_reference[1]), std::nullopt};
   found.limit =
       limit_tolerances(study, found.all.mean_square, stored.factor_sigma, 10.0, largest_tolerances(stored, catalog_));
   for (const std::string& path : write_confirmation(folder_.file("t"), stored, found, catalog_).paths) {

@@ -6,6 +6,7 @@
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/run.h"
+#include "tests/support/kinds.h"
 #include "tests/support/two_fidelities_model.h"
 
 namespace poesy {
@@ -19,6 +20,7 @@ FidelityResult compared(double sigma, std::size_t samples) {
   Study study;
   study.mechanism = {&catalog.front(), {Model::kArm}, 0, {}, 1};
   study.errors.by_factor.assign(3, Distribution::normal(sigma));
+  study.analysis.kind = &kSensitivityStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   study.analysis.samples = samples;
   study.seed = 17;

@@ -5,6 +5,7 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
+#include "tests/engine/kinds/stored.h"
 
 namespace poesy {
 namespace {
@@ -18,13 +19,13 @@ StoredResult example() {
   result.factors = {{"q_1", "m"}, {"theta_1", "rad"}, {"b_1", "m"}, {"c_1", "m"}};
   result.factor_sigma = {1e-3, 1e-2, 1e-3, 1e-3};
   result.responses = {{"x", "m"}, {"y", "m"}};
-  result.fidelities = {"exact", "first-order"};
-  result.sensitivity.responses = 2;
-  result.sensitivity.factors = 4;
-  result.sensitivity.global = {1.0, 0.5, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0};
-  result.sensitivity.global_ci_low = result.sensitivity.global;
-  result.sensitivity.global_ci_high = result.sensitivity.global;
-  FidelityResult& found = result.sensitivity.fidelity.emplace();
+  sensitivity_in(result).fidelities = {"exact", "first-order"};
+  sensitivity_in(result).responses = 2;
+  sensitivity_in(result).factors = 4;
+  sensitivity_in(result).global = {1.0, 0.5, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0};
+  sensitivity_in(result).global_ci_low = sensitivity_in(result).global;
+  sensitivity_in(result).global_ci_high = sensitivity_in(result).global;
+  FidelityResult& found = sensitivity_in(result).fidelity.emplace();
   found.relative_discrepancy = {1e-4, 0.01, kNaN, kInfinity, 2e-5, -0.04, kNaN, kNaN};
   found.nonlinearity = {5e-4, 0.07, kNaN, kInfinity, 6e-4, 0.03, kNaN, kNaN};
   found.linear = {1, 0, 1, 0};
@@ -50,7 +51,7 @@ TEST(FidelityTable, ShowsTheLargestOfEachErrorAndTheVerdict) {
 
 TEST(FidelityTable, IsThereForTwoFidelitiesAlone) {
   StoredResult result = example();
-  result.sensitivity.fidelity.reset();
+  sensitivity_in(result).fidelity.reset();
   EXPECT_EQ(result_tables(result, "x").size(), 1U);
 }
 

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "engine/report/tables.h"
 #include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/report/tables.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {
@@ -16,9 +16,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Of delta_b, epsilon_a, delta_c, delta_a; the last has no index.
 StoredResult result(std::vector<double> changes) {
   StoredResult stored = ranked_result();
-  stored.factor_limb = {1, 1, 2, 3};
-  stored.sensitivity.index_change = std::move(changes);
-  stored.sensitivity.index_change.resize(12, kNaN);
+  sensitivity_in(stored).factor_limb = {1, 1, 2, 3};
+  sensitivity_in(stored).index_change = std::move(changes);
+  sensitivity_in(stored).index_change.resize(12, kNaN);
   return stored;
 }
 
@@ -94,7 +94,7 @@ TEST(WrongSizes, StandBelowTheTolerances) {
   const auto older = [](const std::string& note) { return note.starts_with("whether indices hold at other sizes is"); };
   EXPECT_TRUE(std::ranges::none_of(tolerance_table(result({}), found).notes, older));
   StoredResult stored = result({});
-  stored.sensitivity.index_change.clear();
+  sensitivity_in(stored).index_change.clear();
   EXPECT_TRUE(std::ranges::any_of(tolerance_table(stored, found).notes, older));
 }
 

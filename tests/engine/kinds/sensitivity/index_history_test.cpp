@@ -8,6 +8,7 @@
 
 #include "bench/published_study.h"
 #include "tests/engine/kinds/study_kinds.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
@@ -56,7 +57,7 @@ void expect_results_of_shorter_studies(const Study& study) {
 class History : public testing::TestWithParam<NotConverged> {
  protected:
   static Study failing(std::size_t samples) {
-    Study study = study_of(Kind::sensitivity, samples);
+    Study study = study_of(&kSensitivityStudy, samples);
     study.not_converged = GetParam();
     return study;
   }
@@ -97,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, History, testing::Values(NotConverged::exclud
 TEST(History, HasThePointsAndTheEnd) {
   using List = std::vector<std::uint64_t>;
   const auto samples = [](std::size_t count) {
-    return result_of(study_of(Kind::sensitivity, count)).history.value().samples;
+    return result_of(study_of(&kSensitivityStudy, count)).history.value().samples;
   };
   EXPECT_EQ(samples(2), List{2});
   EXPECT_EQ(samples(100), List{100});
@@ -106,7 +107,7 @@ TEST(History, HasThePointsAndTheEnd) {
 }
 
 TEST(History, KeepsThePosesOfOneErrorAtATime) {
-  Study study = study_of(Kind::sensitivity, 10000);
+  Study study = study_of(&kSensitivityStudy, 10000);
   study.poses.count = 50;
   const Prepared prepared(study);
   const std::size_t poses = prepared.plan.poses().size();

@@ -9,9 +9,10 @@
 #include <cmath>
 
 #include "engine/run/some_poses.h"
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
@@ -62,7 +63,7 @@ class CurveModel final : public FakeModel {
 
 /// The change of the index of one error with this curve.
 double change_of(const CurveModel::Curve& curve, double rounding = 0.0, std::size_t samples = 200) {
-  Study study = study_of(Kind::sensitivity, samples);
+  Study study = study_of(&kSensitivityStudy, samples);
   study.analysis.factors = {FactorIndex(0)};
   const Prepared prepared(study);
   const auto changes = index_changes(prepared.plan, CurveModel(curve, rounding), {});
@@ -121,7 +122,7 @@ Bits changes_in(const Prepared& prepared, const RunOptions& options) {
 }
 
 TEST(IndexChanges, HaveTheSameBitsForAnyThreadsAndRanks) {
-  const Prepared prepared(study_of(Kind::sensitivity, 100));
+  const Prepared prepared(study_of(&kSensitivityStudy, 100));
   const Bits expected = changes_in(prepared, {.threads = 1, .progress = {}});
   ASSERT_EQ(expected.size(), 4U);
   for (const std::size_t threads : {2U, 3U, 7U}) {
@@ -140,14 +141,14 @@ TEST(IndexChanges, HaveTheSameBitsForAnyThreadsAndRanks) {
 }
 
 TEST(IndexChanges, DependOnTheFirstDrawsAlone) {
-  const Prepared few(study_of(Kind::sensitivity, kLinearityDraws));
-  const Prepared many(study_of(Kind::sensitivity, 5000));
+  const Prepared few(study_of(&kSensitivityStudy, kLinearityDraws));
+  const Prepared many(study_of(&kSensitivityStudy, 5000));
   EXPECT_EQ(changes_in(few, {}), changes_in(many, {}));
 }
 
 TEST(IndexChanges, TakeNoMoreThanSomePosesOfMany) {
   for (const std::size_t poses : {std::size_t{3}, kSomePoses, 2 * kSomePoses + 5}) {
-    Study study = study_of(Kind::sensitivity, 1000);
+    Study study = study_of(&kSensitivityStudy, 1000);
     study.poses.count = poses;
     const Prepared prepared(study);
     std::atomic<std::size_t> solves = 0;
@@ -162,7 +163,7 @@ TEST(IndexChanges, TakeNoMoreThanSomePosesOfMany) {
 }
 
 TEST(IndexChanges, AreNoneWhenStopped) {
-  const Prepared prepared(study_of(Kind::sensitivity, 100));
+  const Prepared prepared(study_of(&kSensitivityStudy, 100));
   const std::atomic<bool> stop{true};
   RunOptions options;
   options.stop = &stop;
@@ -172,7 +173,7 @@ TEST(IndexChanges, AreNoneWhenStopped) {
 TEST(IndexChanges, StoppedAfterItsStagesARunIsNotComplete) {
   std::size_t saved = 0;
   Checkpoints checkpoints([] { return false; }, [&](std::span<const Bytes>) { ++saved; });
-  const Prepared prepared(study_of(Kind::sensitivity, 100));
+  const Prepared prepared(study_of(&kSensitivityStudy, 100));
   RunOptions options;
   options.checkpoints = &checkpoints;
   ASSERT_TRUE(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tests/engine/kinds/study_kinds.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
@@ -74,7 +75,7 @@ CatalogEntry radius_entry(double own) {
 }
 
 std::vector<double> correlations(const CatalogEntry& entry) {
-  Study study = study_of(Kind::sensitivity, 10);
+  Study study = study_of(&kSensitivityStudy, 10);
   study.mechanism.entry = &entry;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   return radius_rank_correlations(study, Prepared(study).plan);

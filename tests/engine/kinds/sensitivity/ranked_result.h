@@ -4,6 +4,7 @@
 
 #include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "tests/engine/kinds/stored.h"
 
 namespace poesy {
 
@@ -19,7 +20,7 @@ inline StoredResult ranked_result() {
   result.factor_sigma = {1e-3, 0.5 * display({"", "rad"}).si, 2e-3, 1e-3};
   result.responses = {{"x", "m"}, {"tilt", "rad"}, {"ratio", "1"}};
   result.headline = {0, 1, 2};
-  SensitivityResult& found = result.sensitivity;
+  SensitivityResult& found = sensitivity_in(result);
   found.responses = 3;
   found.factors = 4;
   found.poses = 1;

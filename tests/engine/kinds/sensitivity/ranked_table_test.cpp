@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
@@ -54,7 +55,7 @@ TEST(RankedTable, HasTheHeadlinesOtherResponses) {
 StoredResult corrected_result() {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   StoredResult result = ranked_result();
-  SensitivityResult& found = result.sensitivity;
+  SensitivityResult& found = sensitivity_in(result);
   found.global_corrected = {0.2, 0.05, 0.05, kNaN, 1e-13, 0.35, 0.0, kNaN, 0.5, 0.5, 0.5, kNaN};
   found.global_corrected_ci_low = {0.1, 0.04, 0.04, kNaN, 0.0, 0.3, 0.0, kNaN, 0.4, 0.4, 0.4, kNaN};
   found.global_corrected_ci_high = {0.3, 0.06, 0.06, kNaN, 1e-13, 0.4, 0.0, kNaN, 0.6, 0.6, 0.6, kNaN};
@@ -114,7 +115,7 @@ TEST(RankedTable, PutsAnotherResponseFirst) {
 
 TEST(RankedTable, IsReadableAtEightyColumnsWithManyResponses) {
   StoredResult result = ranked_result();
-  SensitivityResult& found = result.sensitivity;
+  SensitivityResult& found = sensitivity_in(result);
   for (std::size_t r = 3; r < 12; ++r) {
     result.headline.push_back(r);
     result.responses.push_back({"component_" + std::to_string(r), "m"});

@@ -30,7 +30,7 @@ class SeparationFile : public testing::Test {
     separation.drive_share = {0.25, 0.75};
     separation.removable = {0.125, 0.5};
     separation.removable_together = 0.375;
-    write_sensitivity(path_, example_.study, example_.poses, result_, example_.facts);
+    write_result(path_, example_.study, example_.poses, result_, example_.facts);
   }
 
   const Catalog fake_ = test::fake_catalog();
@@ -43,8 +43,8 @@ class SeparationFile : public testing::Test {
 
 TEST_F(SeparationFile, IsReadBackAsItWas) {
   const StoredResult stored = read_result(path_);
-  ASSERT_TRUE(stored.sensitivity.separation);
-  const SeparationResult& found = *stored.sensitivity.separation;
+  ASSERT_TRUE(sensitivity_of(stored).separation);
+  const SeparationResult& found = *sensitivity_of(stored).separation;
   EXPECT_EQ(found.drive, result_.separation->drive);
   EXPECT_EQ(found.constraint, result_.separation->constraint);
   EXPECT_EQ(found.effect, result_.separation->effect);
@@ -55,8 +55,8 @@ TEST_F(SeparationFile, IsReadBackAsItWas) {
   EXPECT_EQ(found.drive_share, result_.separation->drive_share);
   EXPECT_EQ(found.removable, result_.separation->removable);
   EXPECT_EQ(found.removable_together, 0.375);
-  EXPECT_EQ(stored.separation_measure, "how far the platform moves");
-  EXPECT_EQ(stored.published_class, (std::vector<std::string>{"non-compensable", "compensable"}));
+  EXPECT_EQ(sensitivity_of(stored).separation_measure, "how far the platform moves");
+  EXPECT_EQ(sensitivity_of(stored).published_class, (std::vector<std::string>{"non-compensable", "compensable"}));
   EXPECT_TRUE(verify_result(path_).matches());
 }
 
@@ -87,7 +87,7 @@ TEST_F(SeparationFile, ModelsThatDoNotSeparateHaveNone) {
   plain.write_sensitivity(path_);
   EXPECT_FALSE(h5::File::open(path_).exists("/separation"));
   EXPECT_FALSE(h5::File::open(path_).exists("/fidelity"));
-  EXPECT_FALSE(read_result(path_).sensitivity.separation);
+  EXPECT_FALSE(sensitivity_of(read_result(path_)).separation);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/tables.h"
 #include "engine/report/text_table.h"
+#include "tests/engine/kinds/stored.h"
 
 namespace poesy {
 namespace {
@@ -15,19 +16,19 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
   result.factors = {{"q_1", "m"}, {"theta_1", "rad"}, {"b_1", "m"}};
   result.factor_sigma = {1e-3, 1e-2, 1e-3};
   result.responses = {{"position", "m"}};
-  result.sensitivity.responses = 1;
-  result.sensitivity.factors = 3;
-  result.sensitivity.global = {1.0, 0.5, 0.0};
-  result.sensitivity.global_ci_low = result.sensitivity.global;
-  result.sensitivity.global_ci_high = result.sensitivity.global;
+  sensitivity_in(result).responses = 1;
+  sensitivity_in(result).factors = 3;
+  sensitivity_in(result).global = {1.0, 0.5, 0.0};
+  sensitivity_in(result).global_ci_low = sensitivity_in(result).global;
+  sensitivity_in(result).global_ci_high = sensitivity_in(result).global;
   EXPECT_EQ(result_tables(result, "position").size(), 1U);
-  SeparationResult& found = result.sensitivity.separation.emplace();
+  SeparationResult& found = sensitivity_in(result).separation.emplace();
   const double none = std::numeric_limits<double>::quiet_NaN();
   found.drive_share = {1.0, 0.25, none};
   found.removable = {1.0, 0.0625, none};
   found.removable_together = 0.4321;
-  result.separation_measure = "how far the platform moves";
-  result.published_class = {"compensable", "non-compensable", ""};
+  sensitivity_in(result).separation_measure = "how far the platform moves";
+  sensitivity_in(result).published_class = {"compensable", "non-compensable", ""};
   EXPECT_EQ(text_of(result_tables(result, "position").at(1), kUnlimitedWidth),
             "What calibration can remove of each error's effect, to first order, over the poses\n"
             "                                drive  removable by\n"

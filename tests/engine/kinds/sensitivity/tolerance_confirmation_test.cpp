@@ -8,6 +8,7 @@
 #include "engine/kinds/sensitivity/run.h"
 #include "engine/study/poses/pose_selection.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 
 /// From a sensitivity study to tolerances within a limit, and a Monte Carlo study that tries them. The fake mechanism's
 /// response is |sum of w_p e_p|, for which the prediction is exact but for sampling.
@@ -30,6 +31,7 @@ Study study_with(double background) {
   study.errors.by_factor = {Distribution::normal(1e-3), Distribution::uniform(2e-3), Distribution::normal(1e-3)};
   study.poses.count = kPoses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
+  study.analysis.kind = &kSensitivityStudy;
   study.analysis.factors = {FactorIndex(1), FactorIndex(2)};
   study.analysis.samples = kSamples;
   study.analysis.background = Background{{FactorIndex(0)}, background, 0.0};
@@ -84,7 +86,7 @@ TEST(ToleranceConfirmation, MonteCarloConfirmsTheLimit) {
         limit_tolerances(found.response(), prediction, found.sigma, limit, std::vector(found.sigma.size(), HUGE_VAL));
     for (const auto* chosen : {&tolerances.equal_effect, &tolerances.equal_tolerance}) {
       Study confirmation = found.study;
-      confirmation.analysis.kind = Analysis::Kind::monte_carlo;
+      confirmation.analysis.kind = &kMonteCarloStudy;
       confirmation.errors.by_factor[1] = Distribution::normal((*chosen)[0]);
       confirmation.seed = 12;
       const Plan plan(confirmation, found.plan.poses());

@@ -11,9 +11,11 @@
 
 #include "engine/base/error.h"
 #include "engine/files/h5.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "engine/study/study_text.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/engine/kinds/stored.h"
+#include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -28,7 +30,7 @@ class ToleranceFiles : public testing::Test {
   StoredResult written(const std::vector<double>& index) {
     SensitivityResult found = example_.sensitivity();
     found.global = index;
-    write_sensitivity(path_, example_.study, example_.poses, found, example_.facts);
+    write_result(path_, example_.study, example_.poses, found, example_.facts);
     return read_result(path_);
   }
 
@@ -48,11 +50,11 @@ class ToleranceFiles : public testing::Test {
 };
 
 TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
-  example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
   const StoredResult stored = written({1.0, 2.0, 3.0, 4.0});
-  EXPECT_EQ(stored.factor_limb, (std::vector<std::uint64_t>{1, 1}));
-  ASSERT_EQ(stored.tolerance_reference.size(), 2U);
-  for (const auto& reference : stored.tolerance_reference) {
+  EXPECT_EQ(sensitivity_of(stored).factor_limb, (std::vector<std::uint64_t>{1, 1}));
+  ASSERT_EQ(sensitivity_of(stored).tolerance_reference.size(), 2U);
+  for (const auto& reference : sensitivity_of(stored).tolerance_reference) {
     ASSERT_TRUE(reference);
     EXPECT_EQ(reference->factor, 1U);  // delta_1 is the second that the study varies
     EXPECT_EQ(reference->tolerance, 3e-3);
@@ -61,13 +63,13 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
 
 TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
   const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: 2.9e-6 and 2e-3
-  EXPECT_EQ(stored.tolerance_reference[0]->factor, 0U);
-  EXPECT_EQ(stored.tolerance_reference[0]->tolerance, kDegree);
-  EXPECT_FALSE(stored.tolerance_reference[1]);
+  EXPECT_EQ(sensitivity_of(stored).tolerance_reference[0]->factor, 0U);
+  EXPECT_EQ(sensitivity_of(stored).tolerance_reference[0]->tolerance, kDegree);
+  EXPECT_FALSE(sensitivity_of(stored).tolerance_reference[1]);
 }
 
 TEST_F(ToleranceFiles, ReferenceWithoutEffectLeavesTolerancesUnknown) {
-  example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
   written({1.0, 0.0, 1.0, 2.0});
   const auto found = h5::File::open(path_).read<double>("/tolerances/equal_effect");
   EXPECT_TRUE(std::isnan(found[0]) && std::isnan(found[1]));
@@ -101,14 +103,14 @@ TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
 }
 
 TEST_F(ToleranceFiles, ConfirmationVariesErrorsByTheirTolerances) {
-  example_.study.analysis.reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
   example_.study.analysis.background = Background{{FactorIndex(2)}, 1e-3, 0.0};
   example_.study.seed = 77;
   const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   ASSERT_EQ(paths, (std::vector<std::string>{folder_ / "out/confirm_equal_effect.toml",
                                              folder_ / "out/confirm_equal_tolerance.toml"}));
   const Study equal_effect = read_back(paths[0]);
-  EXPECT_EQ(equal_effect.analysis.kind, Analysis::Kind::monte_carlo);
+  EXPECT_EQ(equal_effect.analysis.kind, &kMonteCarloStudy);
   EXPECT_EQ(equal_effect.analysis.factors, example_.study.analysis.factors);
   EXPECT_EQ(equal_effect.analysis.samples, example_.study.analysis.samples);
   EXPECT_EQ(equal_effect.analysis.background->linear, 1e-3);
@@ -169,7 +171,7 @@ TEST_F(ToleranceFiles, StudiesCarryTheLimitThatJudgesThem) {
     ASSERT_EQ(analysis.limits.size(), 1U);
     EXPECT_EQ(analysis.limits[0].response, 0U);
     EXPECT_EQ(analysis.limits[0].most, 1e-3);
-    EXPECT_EQ(analysis.judge, Judge::rms);
+    EXPECT_EQ(asked_of<MonteCarloOptions>(analysis).judge, Judge::rms);
   }
 }
 
@@ -213,7 +215,7 @@ TEST_F(ToleranceFiles, ExportHasTheSameRows) {
 TEST_F(ToleranceFiles, ExportLeavesThemOutWithoutABackground) {
   StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
   EXPECT_TRUE(has_tolerances(stored));
-  stored.sensitivity.background.clear();
+  sensitivity_in(stored).background.clear();
   EXPECT_FALSE(has_tolerances(stored));
   for (const std::string& path : export_tables(stored, folder_ / "tables")) {
     EXPECT_EQ(path.find("tolerances"), std::string::npos) << path;

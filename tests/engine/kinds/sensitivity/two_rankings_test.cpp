@@ -22,7 +22,7 @@ StoredResult with_effects(const std::vector<double>& effects) {
   StoredResult result = ranked_result();
   result.factors[3].name = "delta_d";
   for (std::size_t p = 0; p < effects.size(); ++p) {
-    result.sensitivity.global[p] = effects[p] / result.factor_sigma[p];
+    sensitivity_in(result).global[p] = effects[p] / result.factor_sigma[p];
   }
   return result;
 }
@@ -48,7 +48,7 @@ StoredResult by_platform() {
 TEST(TwoRankings, StandBesideEachOtherWithRanksAndEffects) {
   const StoredResult a = published();
   const StoredResult b = by_platform();
-  const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {b, "b.h5", "gap"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}});
   EXPECT_EQ(text_of(rankings.table, kUnlimitedWidth),
             "Two rankings: the effect of each error at the size that its study gives it\n"
             "               rank,  x, published     rank,  gap, platform\n"
@@ -64,7 +64,7 @@ TEST(TwoRankings, StandBesideEachOtherWithRanksAndEffects) {
 TEST(TwoRankings, HaveKendallsTau) {
   const StoredResult a = published();
   const StoredResult b = by_platform();
-  const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {b, "b.h5", "gap"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}});
   EXPECT_DOUBLE_EQ(rankings.tau, -1.0 / std::sqrt(5.0 * 6.0));
   ASSERT_EQ(rankings.remarks.size(), 2U);
   EXPECT_TRUE(rankings.remarks[0].starts_with("Kendall's tau of the two rankings is -0.18, over 4 errors"));
@@ -73,18 +73,18 @@ TEST(TwoRankings, HaveKendallsTau) {
 
 TEST(TwoRankings, OfOneMetricSayAAndB) {
   const StoredResult a = published();
-  const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {a, "b.h5", "tilt"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "x", {}}, {a, "b.h5", "tilt", {}});
   EXPECT_EQ(rankings.table.columns[1].heading, "rank in A");
   EXPECT_EQ(rankings.table.columns[4].heading, "tilt in B");
   EXPECT_EQ(rankings.table.columns[4].unit, "deg");
   EXPECT_EQ(rankings.remarks.size(), 1U);
-  EXPECT_EQ(two_rankings({a, "a.h5", "x"}, {a, "b.h5", "x"}).tau, 1.0);
+  EXPECT_EQ(two_rankings({a, "a.h5", "x", {}}, {a, "b.h5", "x", {}}).tau, 1.0);
 }
 
 TEST(TwoRankings, LeaveOutWhatIsNotKnown) {
   const StoredResult a = with_effects({1e-3, kNaN, 2e-3, 3e-3});
   const StoredResult b = with_effects({1e-3, 9e-3, 2e-3, 3e-3});
-  const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {b, "b.h5", "x"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "x", {}});
   EXPECT_EQ(rankings.tau, 1.0);
   EXPECT_NE(rankings.remarks[0].find("over 3 errors"), std::string::npos);
   const std::vector<Cell>& last = rankings.table.rows.back();
@@ -96,7 +96,7 @@ TEST(TwoRankings, LeaveOutWhatIsNotKnown) {
 
 TEST(TwoRankings, SayWhenNoTauIsKnown) {
   const StoredResult a = with_effects({1e-3, kNaN, kNaN, kNaN});
-  const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {a, "b.h5", "x"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "x", {}}, {a, "b.h5", "x", {}});
   EXPECT_TRUE(std::isnan(rankings.tau));
   EXPECT_NE(rankings.remarks[0].find("is not known"), std::string::npos);
 }
@@ -104,9 +104,9 @@ TEST(TwoRankings, SayWhenNoTauIsKnown) {
 TEST(TwoRankings, SayWhenTheMetricsPointsDiffer) {
   const StoredResult a = by_platform();
   StoredResult b = by_platform();
-  EXPECT_EQ(two_rankings({a, "a.h5", "gap"}, {b, "b.h5", "gap"}).remarks.size(), 1U);
+  EXPECT_EQ(two_rankings({a, "a.h5", "gap", {}}, {b, "b.h5", "gap", {}}).remarks.size(), 1U);
   b.metric_points[0][0] = 0.2;
-  const TwoRankings rankings = two_rankings({a, "a.h5", "gap"}, {b, "b.h5", "gap"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "gap", {}}, {b, "b.h5", "gap", {}});
   ASSERT_EQ(rankings.remarks.size(), 2U);
   EXPECT_NE(rankings.remarks[1].find("different points"), std::string::npos);
 }
@@ -115,7 +115,7 @@ TEST(TwoRankings, SayWhenTheMetricsPointsDiffer) {
 TEST(TwoRankings, ClaimNothingOfAMetricThatIsNotKnown) {
   const StoredResult a = by_platform();
   const StoredResult b = with_effects({1e-3, 2e-3, 3e-3, 0.0});
-  const TwoRankings rankings = two_rankings({a, "a.h5", "gap"}, {b, "b.h5", "x"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "gap", {}}, {b, "b.h5", "x", {}});
   EXPECT_EQ(rankings.table.columns[1].heading, "rank in A");
   for (const std::string& remark : rankings.remarks) EXPECT_EQ(remark.find("metric"), std::string::npos) << remark;
 }
@@ -124,19 +124,19 @@ TEST(TwoRankings, AreOfTheErrorsThatBothHave) {
   const StoredResult a = published();
   StoredResult b = by_platform();
   b.factors[0].name = "delta_e";
-  const TwoRankings rankings = two_rankings({a, "a.h5", "x"}, {b, "b.h5", "gap"});
+  const TwoRankings rankings = two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}});
   ASSERT_EQ(rankings.table.rows.size(), 3U);
   EXPECT_EQ(rankings.table.rows[0][1].text, "1");  // of three, though the second of all
   EXPECT_EQ(rankings.remarks[2], "Only in A: delta_b.");
   EXPECT_EQ(rankings.remarks[3], "Only in B: delta_e.");
   for (NamedUnit& factor : b.factors) factor.name += "_of_b";
-  EXPECT_THROW(two_rankings({a, "a.h5", "x"}, {b, "b.h5", "gap"}), InputError);
+  EXPECT_THROW(two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}}), InputError);
 }
 
 TEST(TwoRankings, AreInTheOrderAskedFor) {
   const StoredResult a = published();
   const StoredResult b = by_platform();
-  const Table table = two_rankings({a, "a.h5", "x"}, {b, "b.h5", "gap"}, RowOrder::name).table;
+  const Table table = two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}}, RowOrder::name).table;
   EXPECT_EQ(table.rows[1][0].text, "delta_c");
   EXPECT_EQ(table.rows[1][3].text, "1");
 }
@@ -145,16 +145,17 @@ TEST(TwoRankings, AreOfOneKindAndMechanism) {
   const StoredResult a = published();
   StoredResult b = by_platform();
   b.model = "another";
-  EXPECT_THROW(two_rankings({a, "a.h5", "x"}, {b, "b.h5", "gap"}), InputError);
+  EXPECT_THROW(two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}}), InputError);
 }
 
 TEST(TwoRankings, SayWhatEachResultIs) {
   const StoredResult a = published();
   const StoredResult b = by_platform();
-  EXPECT_EQ(ranked_text('A', {a, "a.h5", "x"}),
+  EXPECT_EQ(ranked_text('A', {a, "a.h5", "x", tally_of(a).total()}),
             "A: Published (a.h5); metric: published, radians against metres at the base's origin; ranked by x; 6 of "
             "4 000 solves did not converge");
-  EXPECT_NE(ranked_text('B', {b, "b.h5", "gap"}).find("metric: platform, by displacement of 3 points; ranked by gap"),
+  EXPECT_NE(ranked_text('B', {b, "b.h5", "gap", tally_of(b).total()})
+                .find("metric: platform, by displacement of 3 points; ranked by gap"),
             std::string::npos);
   EXPECT_EQ(metric_text(ranked_result()), "");
 }
@@ -162,8 +163,8 @@ TEST(TwoRankings, SayWhatEachResultIs) {
 TEST(TwoRankings, AsJsonHaveBothResultsAndTheTau) {
   const StoredResult a = published();
   const StoredResult b = by_platform();
-  const RankedResult ranked_a{a, "a.h5", "x"};
-  const RankedResult ranked_b{b, "b.h5", "gap"};
+  const RankedResult ranked_a{a, "a.h5", "x", tally_of(a).total()};
+  const RankedResult ranked_b{b, "b.h5", "gap", tally_of(b).total()};
   const TwoRankings rankings = two_rankings(ranked_a, ranked_b);
   const auto all = nlohmann::json::parse(json_of(ranked_a, ranked_b, rankings));
   EXPECT_EQ(all["kendall_tau"].get<double>(), rankings.tau);
@@ -173,7 +174,7 @@ TEST(TwoRankings, AsJsonHaveBothResultsAndTheTau) {
   EXPECT_EQ(all["results"][1]["metric_points"][0][0], 0.1);
   EXPECT_EQ(all["tables"][0]["rows"][2]["rank_a"], 3);
   EXPECT_EQ(all["tables"][0]["rows"][2]["rank_b"], 1);
-  EXPECT_TRUE(nlohmann::json::parse(json_of(ranked_result(), {}))["metric"].is_null());
+  EXPECT_TRUE(nlohmann::json::parse(json_of(ranked_result(), {}, {}))["metric"].is_null());
 }
 
 }  // namespace

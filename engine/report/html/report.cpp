@@ -1,4 +1,4 @@
-#include "engine/kinds/report.h"
+#include "engine/report/html/report.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,7 @@
 #include "engine/report/display.h"
 #include "engine/report/html/comparison.h"
 #include "engine/report/html/sections.h"
-#include "engine/kinds/report_kind.h"
 #include "engine/report/study_settings.h"
-#include "engine/kinds/sensitivity/two_rankings.h"
 
 namespace poesy {
 namespace {
@@ -24,23 +22,21 @@ std::string subtitle(const StoredResult& result) {
 }
 
 /// Of one result.
-Page page_of(const ReportedResult& result) {
+Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
   page.title = result.stored.title.empty() ? result.path : result.stored.title;
   page.subtitle = subtitle(result.stored);
-  page.warnings = warnings(result);
+  page.warnings = warnings(kind, result);
   add_responses(result.stored, page);
-  kind_of(result.stored).page(result.stored, result_tables(result.stored, default_ranking(result.stored)), page);
+  kind.page(result.stored, result_tables(kind, result.stored, {default_ranking(result.stored)}), page);
   add_glossary(result.stored, page);
-  add_outcomes(result, page);
-  add_what_was_run({&result, 1}, page);
+  add_outcomes(kind, result, page);
+  add_what_was_run(kind, {&result, 1}, page);
   return page;
 }
 
 /// How the solves of both ended.
-void add_unsolved(const ReportedResult& a, const ReportedResult& b, Page& page) {
-  const SolveCounts of_a = tally_of(a.stored).total();
-  const SolveCounts of_b = tally_of(b.stored).total();
+void add_unsolved(const SolveCounts& of_a, const SolveCounts& of_b, Page& page) {
   Table table{.name = "solves",
               .caption = "How the solves of A and B ended",
               .columns = {text_column("status", "status"), number_column("a", "solves of A"),
@@ -100,7 +96,7 @@ std::string name_of(const ReportedResult& result) {
 }
 
 /// Of two results.
-Page comparison_page(std::span<const ReportedResult> results) {
+Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> results) {
   const ReportedResult& a = results[0];
   const ReportedResult& b = results[1];
   check_comparable(a.stored, a.path, b.stored, b.path);
@@ -108,28 +104,28 @@ Page comparison_page(std::span<const ReportedResult> results) {
   page.title = fmt::format("Two results of {} compared", a.stored.model);
   page.subtitle = fmt::format("A: {}; B: {}", name_of(a), name_of(b));
   for (const auto& [letter, result] : {std::pair(kLetters[0], &a), std::pair(kLetters[1], &b)}) {
-    for (const std::string& warning : warnings(*result))
+    for (const std::string& warning : warnings(kind, *result))
       page.warnings.push_back(fmt::format("{}: {}", letter, warning));
   }
   add_studies(a.stored, b.stored, page);
   add_responses(a.stored, page);
-  const Comparison compared = comparison(a, b);
-  if (const auto compare = kind_of(a.stored).compare) {
-    compare(a, b, compared, page);
+  const Comparison compared = comparison(kind, a, b);
+  if (kind.compare != nullptr) {
+    kind.compare(a, b, compared, page);
   } else {
     add_comparison(compared, page);
   }
   add_glossary(a.stored, page);
-  add_unsolved(a, b, page);
-  add_what_was_run(results, page);
+  add_unsolved(kind.tally(a.stored).total(), kind.tally(b.stored).total(), page);
+  add_what_was_run(kind, results, page);
   return page;
 }
 
 }  // namespace
 
-std::string html_report(std::span<const ReportedResult> results) {
+std::string html_report(const ReportKind& kind, std::span<const ReportedResult> results) {
   POESY_EXPECTS(results.size() == 1 || results.size() == 2);
-  return html_document(results.size() == 1 ? page_of(results.front()) : comparison_page(results));
+  return html_document(results.size() == 1 ? page_of(kind, results.front()) : comparison_page(kind, results));
 }
 
 }  // namespace poesy

@@ -1,4 +1,4 @@
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 
 #include <gtest/gtest.h>
 

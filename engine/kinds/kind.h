@@ -3,18 +3,29 @@
 #include <any>
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "engine/files/file_kind.h"
+#include "engine/kinds/tolerances.h"
+#include "engine/report/report_kind.h"
+#include "engine/run/evaluation.h"
 #include "engine/run/outlook.h"
 #include "engine/run/result.h"
 #include "engine/run/run_options.h"
 #include "engine/study/study.h"
+#include "engine/study/study_kind.h"
 
+/// What a kind of study promises. Each has a folder, with a row of this type in its kind.cpp.
 namespace poesy {
 
 /// What a study found.
 struct StudyResult {
   std::any found;                         ///< of the kind's own type: SensitivityResult, for instance
   std::optional<LimitVerdicts> verdicts;  ///< what became of the limits that the study states; empty without any
+  std::vector<std::string> row_names;     ///< of the rows of errors that a verdict may speak of
 
   /// What was found. Precondition: it is of this type.
   template <class Found>
@@ -48,5 +59,25 @@ struct RunKind {
 
 /// A study divides at its poses.
 inline std::size_t shards_by_pose(const Study&, std::size_t poses) { return poses; }
+
+/// Solves of errors that were given and not drawn: how they are addressed, and their errors. Refers to the result.
+struct GivenErrors {
+  std::string_view word;           ///< for what a name stands: "case"
+  std::vector<std::string> names;  ///< that there are
+  std::size_t samples = 0;         ///< solves with a number at each pose; 0: the name's position is its row of errors
+  Pairing pairing = Pairing::every_pose_with_every_row;  ///< of poses with rows: a row is a sample, or a pose
+  std::span<const double> values;                        ///< [rows x P] SI
+};
+
+/// A kind of study: how its studies are read, run, stored and shown.
+struct Kind {
+  const StudyKind& study;    ///< what it adds to study files
+  const RunKind& run;        ///< how its studies are run
+  const FileKind& file;      ///< how files keep what they found
+  const ReportKind& report;  ///< how tables and reports show it
+  /// Its solves one by one; null: they were drawn, or they have no addresses.
+  GivenErrors (*given_errors)(const StoredResult& result) = nullptr;
+  SetTolerances set_tolerances = nullptr;  ///< null: it has no tolerances
+};
 
 }  // namespace poesy

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "engine/files/result_file.h"
@@ -23,5 +24,8 @@ StoredStudy stored_study(const std::string& resolved_text, SelectedPoses poses, 
 
 /// The study of a result, with its poses; those that were rejected are not kept in memory.
 StoredStudy stored_study(const StoredResult& result, const std::string& path, const Catalog& catalog);
+
+/// The study of a result; none where this program cannot read it.
+std::optional<Study> study_in(const StoredResult& result, const Catalog& catalog);
 
 }  // namespace poesy

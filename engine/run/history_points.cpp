@@ -1,4 +1,4 @@
-#include "engine/kinds/sensitivity/history_points.h"
+#include "engine/run/history_points.h"
 
 namespace poesy {
 

@@ -1,9 +1,10 @@
-#include "engine/kinds/sensitivity/history_points.h"
+#include "engine/run/history_points.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/engine/run/prepared.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
 
 namespace poesy {
 namespace {
@@ -17,6 +18,7 @@ Plan plan_of(std::size_t samples) {
   study.errors.by_factor.assign(3, Distribution::normal(1e-3));
   study.poses.count = 1;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
+  study.analysis.kind = &kSensitivityStudy;
   study.analysis.factors = {FactorIndex(0)};
   study.analysis.samples = samples;
   return test::Prepared(study).plan;
@@ -49,6 +51,7 @@ TEST(HistoryPoints, AboveAUnitAreWholeUnits) {
 
 TEST(HistoryPoints, AdaptiveSamplesHaveNone) {
   Study study;
+  study.analysis.kind = &kSensitivityStudy;
   study.analysis.samples = 10000;
   study.analysis.adaptive = AdaptiveSamples{1000, 0.1};
   static const Catalog catalog = test::fake_catalog();

@@ -1,9 +1,9 @@
-#include "engine/files/stored_study.h"
+#include "engine/kinds/stored_study.h"
 
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 
 namespace poesy {
 namespace {
@@ -32,6 +32,14 @@ StoredStudy stored_study(const std::string& resolved_text, SelectedPoses poses, 
 StoredStudy stored_study(const StoredResult& result, const std::string& path, const Catalog& catalog) {
   SelectedPoses poses{.poses = result.poses, .condition = result.condition, .rejected = {}, .time = result.time};
   return stored_study(result.study_text, std::move(poses), path, catalog);
+}
+
+std::optional<Study> study_in(const StoredResult& result, const Catalog& catalog) {
+  try {
+    return study_of_text(result.study_text, "the study in the result", catalog, StudyUse::evaluate);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace poesy

@@ -1,4 +1,4 @@
-#include "engine/stats/sensitivity_index.h"
+#include "engine/stats/indices.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>

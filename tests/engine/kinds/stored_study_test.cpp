@@ -1,9 +1,9 @@
-#include "engine/files/stored_study.h"
+#include "engine/kinds/stored_study.h"
 
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
-#include "engine/study/study_file.h"
+#include "engine/kinds/study_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,4 +1,4 @@
-#include "engine/files/csv_lines.h"
+#include "engine/study/csv_lines.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,0 +1,67 @@
+#include "engine/kinds/registry.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "engine/base/contract.h"
+#include "engine/kinds/coupling/kind.h"
+#include "engine/kinds/evaluate/kind.h"
+#include "engine/kinds/identification/kind.h"
+#include "engine/kinds/monte_carlo/kind.h"
+#include "engine/kinds/sensitivity/kind.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind, &kMonteCarloKind, &kCouplingKind};
+
+/// The keys of [analysis] as the reference lists them; a key that is not among them comes last.
+constexpr std::array<std::string_view, 19> kKeys{"kind",      "factors",   "samples",    "conf_level", "background",
+                                                 "reference", "linearity", "quantiles",  "groups",     "pose_share",
+                                                 "cases",     "limits",    "judge",      "share",      "linear",
+                                                 "angular",   "limbs",     "components", "sources"};
+
+}  // namespace
+
+std::span<const Kind* const> kinds() { return kAll; }
+
+const StudyKinds& study_kinds() {
+  static const StudyKinds all = [] {
+    std::vector<const StudyKind*> list;
+    for (const Kind* kind : kAll) list.push_back(&kind->study);
+    return study_kinds_of(std::move(list), kKeys);
+  }();
+  return all;
+}
+
+const Kind* find_kind(std::string_view name) {
+  const auto* const found = std::ranges::find(kAll, name, [](const Kind* kind) { return kind->study.name; });
+  return found == kAll.end() ? nullptr : *found;
+}
+
+const Kind& kind_of(const Study& study) {
+  const Kind* const kind = find_kind(study.analysis.kind->name);
+  POESY_EXPECTS(kind != nullptr);
+  return *kind;
+}
+
+const Kind& kind_of(const StoredResult& result) {
+  const Kind* const kind = find_kind(result.kind);
+  POESY_EXPECTS(kind != nullptr);
+  return *kind;
+}
+
+std::string_view replayable_kinds() { return "sensitivity, Monte Carlo or evaluate"; }
+
+std::string kinds_that_rank() {
+  std::string names;
+  for (const Kind* kind : kAll) {
+    if (kind->report.two_rankings != nullptr)
+      names += (names.empty() ? "'" : ", '") + std::string(kind->study.name) + "'";
+  }
+  return names;
+}
+
+}  // namespace poesy

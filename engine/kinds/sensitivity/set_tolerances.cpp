@@ -1,0 +1,239 @@
+#include "engine/kinds/sensitivity/set_tolerances.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/base/units.h"
+#include "engine/kinds/sensitivity/index_change.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/stored_study.h"
+#include "engine/report/text_table.h"
+
+namespace poesy {
+namespace {
+
+/// Position of the thing that an option names.
+std::size_t position(const std::vector<NamedUnit>& things, const std::string& name, std::string_view option,
+                     std::string_view what) {
+  const auto at = std::ranges::find(things, name, &NamedUnit::name);
+  if (at != things.end()) return static_cast<std::size_t>(at - things.begin());
+  throw InputError({}, fmt::format("{}: '{}' is no {} of this result", option, printable(name), what),
+                   suggestion(name, names(things)));
+}
+
+/// A quantity above zero of the dimension that belongs to an SI unit.
+double positive(const std::string& text, std::string_view option, const NamedUnit& owner) {
+  const Dimension dimension = dimension_of(owner.unit);
+  const std::string example = fmt::format("{} is measured in {}", owner.name, display_unit(dimension).name);
+  Quantity quantity;
+  if (const auto number = parse_number(text); number && dimension == Dimension::number) {
+    quantity.si = *number;
+  } else {
+    try {
+      quantity = parse_quantity(text);
+    } catch (const QuantityError& error) {
+      throw InputError({}, fmt::format("{}: {}", option, printable(error.what(), 200)), example);
+    }
+  }
+  if (quantity.dimension != dimension) {
+    throw InputError({}, fmt::format("{}: '{}' is no {}", option, printable(text), name(dimension)), example);
+  }
+  if (!(quantity.si > 0.0)) {
+    throw InputError({}, fmt::format("{}: '{}' is not above zero", option, printable(text)), "write a positive one");
+  }
+  return quantity.si;
+}
+
+void check_tolerances(const TolerancesOptions& options, const StoredResult& result) {
+  if (has_tolerances(result)) return;
+  throw InputError({options.result}, "has no tolerances, for an older poesy (" + result.poesy_version + ") wrote it",
+                   "run the study again");
+}
+
+/// Position of the response that the tolerances are for.
+std::size_t chosen_response(const TolerancesOptions& options, const StoredResult& result) {
+  if (!options.response.empty()) return position(result.responses, options.response, "--response", "response");
+  std::vector<std::string> known;
+  for (const NamedUnit& response : result.responses) {
+    const std::string_view unit = display(response).name;
+    known.push_back(unit == "1" ? response.name : fmt::format("{} ({})", response.name, unit));
+  }
+  throw InputError({options.result}, fmt::format("has tolerances for {}", fmt::join(known, ", ")),
+                   "choose one with --response NAME");
+}
+
+std::optional<ReferenceError> reference_of(const TolerancesOptions& options, const StoredResult& result,
+                                           std::size_t response) {
+  if (!options.reference) return sensitivity_of(result).tolerance_reference[response];
+  const std::size_t equals = options.reference->find('=');
+  const std::size_t factor = position(result.factors, options.reference->substr(0, equals), "--reference", "error");
+  const NamedUnit& named = result.factors[factor];
+  if (equals == std::string::npos) return ReferenceError{factor, display(named).si};
+  return ReferenceError{factor, positive(options.reference->substr(equals + 1), "--reference", named)};
+}
+
+void check_sizes(const TolerancesOptions& options, const StoredResult& result, std::size_t response) {
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    const double index = sensitivity_of(result).global[response * result.factors.size() + p];
+    if (!is_too_small_to_tell(index, index_rounding(result, response, p))) continue;
+    throw InputError(
+        {options.result},
+        fmt::format("the error '{}' is so small in this study that its effect on {} cannot be told from the "
+                    "rounding of the solves",
+                    result.factors[p].name, result.responses[response].name),
+        "study larger errors");
+  }
+}
+
+void check_reference(const TolerancesOptions& options, const StoredResult& result, const ResponseStudy& response,
+                     const std::string& name, const std::optional<ReferenceError>& reference) {
+  if (!reference) {
+    throw InputError({}, fmt::format("--response: no error of this result has an effect on {}", name),
+                     "there is nothing to set tolerances by; name another response");
+  }
+  if (has_effect(response.index[reference->factor])) return;
+  const std::string_view source = options.reference ? "--reference" : "the study's [analysis] reference";
+  const std::string& factor = result.factors[reference->factor].name;
+  if (std::isnan(response.index[reference->factor])) {
+    throw InputError({options.result}, fmt::format("{}: the effect of '{}' on {} is not known", source, factor, name),
+                     "name another with --reference");
+  }
+  throw InputError(
+      {options.result},
+      fmt::format("{}: '{}' has no effect on {} (index 0), so nothing can be counted from it", source, factor, name),
+      "name another with --reference");
+}
+
+void check_prediction(const StoredResult& result, const MeanSquare& response, const std::string& name) {
+  if (std::isnan(response.background)) {
+    throw InputError({},
+                     fmt::format("--limit: {} with the background alone is not known, for a pose was not solved", name),
+                     "raise [solver] max_iterations and run the study again, or leave out --limit");
+  }
+  for (std::size_t p = 0; p < response.effects.size(); ++p) {
+    if (!std::isnan(response.effects[p])) continue;
+    throw InputError({},
+                     fmt::format("--limit: the effect of '{}' on {} is not known at a pose where too few samples count",
+                                 result.factors[p].name, name),
+                     "run the study with more samples, or leave out --limit");
+  }
+}
+
+LimitTolerances tolerances_within_limit(const TolerancesOptions& options, const StoredResult& result,
+                                        const ResponseStudy& study, const MeanSquare& response, const NamedUnit& named,
+                                        const Catalog& catalog) {
+  const double limit = positive(*options.limit, "--limit", named);
+  check_prediction(result, response, named.name);
+  if (limit * limit <= response.background) {
+    throw InputError(
+        {},
+        fmt::format("--limit: the background alone gives {} a root mean square of {}, so no tolerance can "
+                    "meet {}",
+                    named.name, response_text(named, std::sqrt(response.background)), response_text(named, limit)),
+        "raise the limit, or study smaller errors in [analysis] background");
+  }
+  std::vector<Dimension> dimensions;
+  for (const NamedUnit& factor : result.factors) dimensions.push_back(dimension_of(factor.unit));
+  return limit_tolerances(study, response, one_size_for_each(result.factor_sigma, dimensions), limit,
+                          largest_tolerances(result, catalog));
+}
+
+/// result.h5 gives result_tolerances in the current folder.
+std::string default_folder(const std::string& result) {
+  return std::filesystem::path(result).stem().string() + "_tolerances";
+}
+
+/// Writes the table and the studies that test it; says what that was.
+std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found,
+                        const Catalog& catalog) {
+  const std::string folder = options.folder.empty() ? default_folder(options.result) : options.folder;
+  OutputFolder output(folder);
+  claim_tolerance_files(output, result, found, catalog);
+  output.open();
+  std::string commands;
+  if (found.limit) {
+    const Confirmation written = write_confirmation(folder, result, found, catalog);
+    for (const std::string& study : written.paths) {
+      const std::string outcome = std::filesystem::path(study).replace_extension(".h5").string();
+      commands += "test with: " + shell_command({"poesy", "run", study, "-o", outcome}) + "\n";
+    }
+    for (const std::string& error : written.at_largest) {
+      commands += "  the tolerance of " + error + ", a quarter of the part that it is an error of, and no more\n";
+    }
+  }
+  const std::string table = write_tolerances(folder, result, found);
+  output.close();
+  return table + "\n" + commands;
+}
+
+/// How a Monte Carlo study settles whether the limit holds.
+std::string explanation(const StoredResult& result, const ResponseTolerances& found, std::size_t width) {
+  const NamedUnit& response = result.responses[found.response];
+  return prose_of(
+      fmt::format("each run says PASS if the root mean square of {} over all poses is at most {}, else FAIL "
+                  "with exit code 6",
+                  response.name, response_text(response, found.limit->limit)),
+      width);
+}
+
+/// Errors of the mechanism that the study neither varies nor has in its background; none where this program has no such
+/// mechanism, or cannot read the stored study any more.
+std::optional<std::string> perfect_errors_note(const StoredResult& result, const Catalog& catalog) {
+  const std::optional<Study> study = study_in(result, catalog);
+  if (!study) return std::nullopt;
+  std::vector<FactorIndex> present = study->analysis.factors;
+  if (const auto& background = study->analysis.background) {
+    present.insert(present.end(), background->factors.begin(), background->factors.end());
+  }
+  std::ranges::sort(present, {}, &FactorIndex::value);
+  const auto repeated = std::ranges::unique(present, {}, &FactorIndex::value);
+  present.erase(repeated.begin(), repeated.end());
+  const std::size_t all = study->model().factors.size();
+  if (present.size() == all) return std::nullopt;
+  const std::size_t absent = all - present.size();
+  return fmt::format("{} of the mechanism's {} errors {} not in this study, and {} as perfect here", absent, all,
+                     absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
+}
+
+/// Refuses tolerances for errors whose index does not hold at their size, or says why they may not hold.
+std::string caveat_of(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
+  const std::string caveat = wrong_sizes_text(result, found);
+  if (caveat.empty() || options.extrapolate) return caveat;
+  throw InputError({options.result}, caveat,
+                   fmt::format("study each at that size ([errors.override]){}, or give --extrapolate",
+                               result.metric == "published" ? ", or all by [solver] metric = \"platform\"" : ""));
+}
+
+}  // namespace
+
+std::string set_sensitivity_tolerances(const StoredResult& result, const TolerancesOptions& options,
+                                       const Catalog& catalog, std::size_t width) {
+  check_tolerances(options, result);
+  const std::size_t response = chosen_response(options, result);
+  const NamedUnit& named = result.responses[response];
+  check_sizes(options, result, response);
+  const ResponseStudy study = response_study(sensitivity_of(result), result.factor_sigma, response);
+  const std::optional<ReferenceError> reference = reference_of(options, result, response);
+  check_reference(options, result, study, named.name, reference);
+  ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
+  if (options.limit)
+    found.limit = tolerances_within_limit(options, result, study, found.all.mean_square, named, catalog);
+  found.caveat = caveat_of(options, result, found);
+  Table table = tolerance_table(result, found);
+  if (const auto note = perfect_errors_note(result, catalog)) table.notes.push_back(*note);
+  std::string text = text_of(table, width) + "\n" + write_files(options, result, found, catalog);
+  if (found.limit) text += explanation(result, found, width);
+  return text;
+}
+
+}  // namespace poesy
