@@ -112,6 +112,7 @@ int check(const std::string& path) {
   const Outlook expected = outlook(study, *model, poses.poses);
   std::fputs(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)).c_str(), stdout);
   if (const std::string held = held_errors_text(study); !held.empty()) std::fputs(("# " + held + "\n").c_str(), stdout);
+  for (const std::string& line : model->mobility()) std::fputs(("# mobility: " + line + "\n").c_str(), stdout);
   for (const std::string& unusual : model->unusual_geometry()) {
     std::fputs(("# hint: " + unusual + "; is that meant?\n").c_str(), stdout);
   }

@@ -4,17 +4,28 @@
 #include "engine/app/ending.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/files/file_writer.h"
+#include "engine/files/output_path.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
+#include "engine/report/mechanism_picture.h"
 #include "engine/report/tables.h"
+#include "engine/study/text_file.h"
 #include "models/registry.h"
 
 namespace poesy::app {
 namespace {
 
-/// The mechanism of that name, in capitals or small letters. Throws InputError that lists the known ones.
-const CatalogEntry& find_model(const std::string& name) {
+/// Larger files describe no mechanism.
+constexpr std::size_t kMostBytes = 1 << 20;
+
+/// The mechanism of that name, in capitals or small letters, or of the file at this path. Throws InputError that lists
+/// the known names.
+CatalogEntry find_model(const std::string& name) {
   if (const CatalogEntry* entry = find(registry(), name)) return *entry;
+  if (name.find_first_of("./") != std::string::npos) {
+    return registry().from_text(read_text(name, "mechanism", kMostBytes), name);
+  }
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : registry()) known.push_back(entry.description.name);
   throw InputError({}, "no model '" + printable(name) + "'", suggestion(lower_case(name), known));
@@ -26,10 +37,10 @@ const StudyKind& kind_named(const std::string& word) {
 }
 
 int print_template(const std::string& model, const std::string& kind) {
-  const CatalogEntry& entry = find_model(model);
+  const CatalogEntry entry = find_model(model);
   const StudyKind& wanted = kind_named(kind);
   ModelDescription as_named = entry.description;
-  as_named.name = model;
+  if (entry.file.empty()) as_named.name = model;
   if (const auto refusal = wanted.no_template != nullptr ? wanted.no_template(as_named) : std::nullopt) {
     throw InputError({}, refusal->problem, refusal->remedy);
   }
@@ -37,8 +48,32 @@ int print_template(const std::string& model, const std::string& kind) {
   return kDone;
 }
 
+void write_picture(const CatalogEntry& entry, const std::string& path) {
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch();
+  if (!sketch) {
+    throw InputError({}, "there is no picture of '" + entry.description.name + "'",
+                     "pictures are of mechanisms from files");
+  }
+  const auto is_picture = [](const std::string& existing) { return is_marked(existing, kPictureMark); };
+  check_output_path(path, {"picture", is_picture}, {{entry.file}});
+  write_text(path, mechanism_picture(*sketch, entry.description.title));
+}
+
+int print_models(const std::string& name, const std::string& picture) {
+  if (name.empty()) {
+    std::fputs(models_text(registry()).c_str(), stdout);
+    return kDone;
+  }
+  const CatalogEntry entry = find_model(name);
+  if (!picture.empty()) write_picture(entry, picture);
+  std::fputs(model_text(entry).c_str(), stdout);
+  return kDone;
+}
+
 int print_reference() {
-  std::fputs(study_reference().c_str(), stdout);
+  std::fputs((study_reference() + registry().file_reference()).c_str(), stdout);
   return kDone;
 }
 
@@ -46,14 +81,14 @@ int print_reference() {
 
 Command& add_models(Command& program) {
   const auto name = std::make_shared<std::string>();
+  const auto picture = std::make_shared<std::string>();
   Command& command = program.add_command("models", "list the mechanisms, or describe one");
-  command.add_value("model", *name, "MODEL", "mechanism");
+  CLI::Option* named = command.add_value("model", *name, "MODEL", "mechanism, or its file");
+  command.add_value("-o,--output", *picture, "PICTURE.svg", "picture of a mechanism from a file")->needs(named);
   command.examples = {{"which mechanisms are there?", "poesy models"},
-                      {"errors, poses and responses of one", "poesy models 2upr-rpu"}};
-  command.action = [name] {
-    std::fputs((name->empty() ? models_text(registry()) : model_text(find_model(*name))).c_str(), stdout);
-    return kDone;
-  };
+                      {"errors, poses and responses of one", "poesy models 2upr-rpu"},
+                      {"what was understood of a mechanism's file", "poesy models rps3.toml -o rps3.svg"}};
+  command.action = [=] { return print_models(*name, *picture); };
   return command;
 }
 
@@ -62,7 +97,7 @@ Command& add_template(Command& program) {
   const auto kind = std::make_shared<std::string>(study_kinds().all.front()->name);
   const auto reference = std::make_shared<bool>(false);
   Command& command = program.add_command("template", "print a complete, commented study file");
-  CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism");
+  CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism, or its file");
   command.add_value("kind", *kind, "KIND", "kind of study: " + either(names(study_kinds())));
   command.add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);

@@ -115,4 +115,11 @@ void FileWriter::fail(std::string_view action, int error) const {
   throw FileError(path_, std::string(action) + " (" + reason + ")", remedy(error));
 }
 
+void write_text(const std::string& path, std::string_view text) {
+  FileWriter file(path);
+  file.expect(text.size());
+  file.write(text);
+  file.commit();
+}
+
 }  // namespace poesy

@@ -41,4 +41,7 @@ class FileWriter {
   int descriptor_ = -1;
 };
 
+/// Writes a whole file, or nothing. Throws FileError.
+void write_text(const std::string& path, std::string_view text);
+
 }  // namespace poesy

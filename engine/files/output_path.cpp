@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "engine/base/error.h"
@@ -33,6 +34,16 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
 }
 
 }  // namespace
+
+bool is_marked(const std::string& path, std::string_view mark) {
+  constexpr std::size_t kHead = 1024;
+  std::string head(kHead, '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return false;
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.empty() || head.find(mark) != std::string::npos;
+}
 
 void check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs) {
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");

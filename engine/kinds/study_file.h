@@ -12,7 +12,8 @@ namespace poesy {
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use);
 
 /// The same for a study's text; `path` names it in messages.
-Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use);
+Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
+                    const std::string* mechanism_text = nullptr);
 
 /// A complete, commented study of this kind and mechanism.
 std::string template_text(const CatalogEntry& entry, const StudyKind& kind);

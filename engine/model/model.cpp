@@ -38,7 +38,15 @@ ErrorBound Model::error_bound(FactorIndex /*factor*/) const { return {}; }
 
 std::vector<PlatformPoint> Model::metric_points() const { return {}; }
 
+std::vector<std::string> Model::mobility() const { return {}; }
+
+std::optional<Sketch> Model::sketch() const { return std::nullopt; }
+
 std::vector<std::string> Model::unusual_geometry() const { return {}; }
+
+const CatalogEntry& by_metric(const CatalogEntry& entry, std::string_view metric) {
+  return entry.description.metric != metric && entry.other_metric ? *entry.other_metric : entry;
+}
 
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {
   const std::string name = lower_case(model_name);

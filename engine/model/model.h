@@ -14,6 +14,7 @@
 
 #include "engine/base/index.h"
 #include "engine/base/units.h"
+#include "engine/model/sketch.h"
 #include "engine/model/status.h"
 
 namespace poesy {
@@ -172,8 +173,10 @@ struct ModelDescription {
   std::vector<PoseChart> charts;                    ///< other coordinates of poses
   std::vector<NamedCurve> curves;                   ///< trajectories of the literature
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
-  std::vector<SourceSet> sources;  ///< those of a coupling study that names none; no factor in two of them
-  std::vector<std::size_t> headline;    ///< positions of the responses that a summary shows; empty: all of them
+  std::vector<SourceSet> sources;     ///< those of a coupling study that names none; no factor in two of them
+  std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows; empty: all of them
+  /// The joints of a mechanism from a file, as they were understood, in lines for people; empty for the others.
+  std::string structure = {};
   /// Those that a summary of coupled sources shows, with signs, for a norm cannot tell what cancels; empty: the
   /// headline.
   std::vector<std::size_t> signed_headline;
@@ -274,6 +277,12 @@ class Model {
 
   /// Points of the platform by which its limbs' mismatch is weighed, in its frame; empty where none are.
   virtual std::vector<PlatformPoint> metric_points() const;
+
+  /// How the mechanism can move, in lines for people; none where it was never asked.
+  virtual std::vector<std::string> mobility() const;
+
+  /// How the mechanism looks at home; empty where the model has no picture.
+  virtual std::optional<Sketch> sketch() const;
 
   /// What of the geometry is possible, but so unusual that it may be a slip; clauses for people: "the platform (l_A =
   /// 800 mm) is larger than the base (l_B = 200 mm)". None unless a model says otherwise.

@@ -27,6 +27,8 @@ struct Reading {
   const Catalog& catalog;    ///< of mechanisms
   const StudyKinds& kinds;   ///< of studies
   StudyUse use;              ///< how much must be there
+  /// What a study that is kept beside its mechanism's file says; null: the file is read.
+  const std::string* mechanism_text = nullptr;
 };
 
 /// The scope of tables whose rows need the value alone.

@@ -9,10 +9,13 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/schema/keys.h"
 #include "models/chain/deformation_model.h"
 #include "models/chain/deformation_trace.h"
+#include "models/chain/metric.h"
 #include "models/chain/passive_condition.h"
 #include "models/file/mobility.h"
+#include "models/file/structure.h"
 #include "models/file/tracking.h"
 
 namespace poesy::file {
@@ -86,6 +89,7 @@ ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism,
     description.pose_lower.push_back(coordinate.lower);
     description.pose_upper.push_back(coordinate.upper);
   }
+  description.structure = structure_text(mechanism);
   description.workspace_note = "This workspace is the mechanism file's.";
   description.factors = mechanism.factors;
   description.factor_sets = mechanism.sets;
@@ -143,6 +147,12 @@ class FileModel final : public Model {
     return chain::deformation_trace(model_, pose, errors, options);
   }
 
+  std::vector<std::string> mobility() const override {
+    return mobility_lines(home_mobility(mechanism_), workspace_mobility(mechanism_));
+  }
+
+  std::optional<Sketch> sketch() const override { return sketch_of(mechanism_); }
+
   double rounding(std::size_t response) const override { return chain::effect_rounding(model_, response); }
 
   std::vector<PlatformPoint> metric_points() const override {
@@ -191,39 +201,65 @@ Checked checked(const MechanismFile& file, std::span<const double> geometry) {
   return {std::move(of_file), std::move(home)};
 }
 
-using Build = std::function<std::unique_ptr<Model>(std::span<const double>, std::size_t)>;
+/// The mechanism with these values, by the metric of these points; none: the file's own, or published.
+struct Wanted {
+  bool by_platform = true;                          ///< or as published
+  std::optional<std::vector<Vector3>> points = {};  ///< instead of the file's
+};
 
-/// Builds with the file's points, or as published.
-Build builder(std::shared_ptr<const MechanismFile> file, bool with_points) {
-  return [file = std::move(file), with_points](std::span<const double> values, std::size_t fidelity) {
-    Checked found = checked(*file, values);
-    std::vector<Vector3> points = with_points ? found.mechanism.points : std::vector<Vector3>();
-    return std::make_unique<FileModel>(*file, std::move(found.mechanism), found.home, std::move(points),
-                                       static_cast<chain::Fidelity>(fidelity));
+std::unique_ptr<Model> built(const MechanismFile& file, std::span<const double> values, std::size_t fidelity,
+                             const Wanted& wanted) {
+  Checked found = checked(file, values);
+  std::vector<Vector3> points;
+  if (wanted.by_platform) points = wanted.points.value_or(found.mechanism.points);
+  if (wanted.points) {
+    const std::string why = chain::why_no_metric(points, found.mechanism.reach);
+    if (!why.empty()) throw std::invalid_argument(why);
+  }
+  return std::make_unique<FileModel>(file, std::move(found.mechanism), found.home, std::move(points),
+                                     static_cast<chain::Fidelity>(fidelity));
+}
+
+CatalogEntry entry_by(const std::shared_ptr<const MechanismFile>& file, const std::string& path, bool by_platform) {
+  CatalogEntry entry;
+  entry.build = [file, by_platform](std::span<const double> values, std::size_t fidelity) {
+    return built(*file, values, fidelity, {.by_platform = by_platform});
   };
+  entry.description = entry.build(default_geometry(*file), 0)->description();
+  entry.file = path;
+  return entry;
 }
 
 }  // namespace
 
+std::string reference() {
+  return "\n# Mechanism files\n\n"
+         "Every key of a mechanism's file, which `[mechanism] file` of a study names and which commands take in the "
+         "place "
+         "of a\nmodel's name: `poesy models FILE` shows what was understood of it. Everything stands in the base's "
+         "frame, "
+         "with the\nmechanism at home, as on a drawing.\n\n"
+         "- A number may be an expression of parameters: `\"a + 20 mm\"`, with `+ - * / ( )`, `sqrt sin cos tan atan2 "
+         "pi` and units\n  inside. Its dimension is checked. A bare 0 is any quantity; other bare numbers are "
+         "numbers.\n"
+         "- A point is `[x, y, z]`; a direction `\"x\"`, `\"-z\"`, or three entries of one dimension.\n" +
+         tables_reference(mechanism_file_tables());
+}
+
 CatalogEntry catalog_entry(const std::string& text, const std::string& path) {
   const auto file = std::make_shared<const MechanismFile>(read_mechanism_file(text, path));
-  const std::vector<double> usual = default_geometry(*file);
-  const Checked at_home = checked(*file, usual);
+  const Checked at_home = checked(*file, default_geometry(*file));
   check_mobility(at_home.mechanism, at_home.home, workspace_mobility(at_home.mechanism));
-  const bool deforms = at_home.home.passive_rank < at_home.home.loop_equations;
-  CatalogEntry by_platform{builder(file, true)(usual, 0)->description(), builder(file, true)};
-  if (!deforms) return by_platform;
-  by_platform.build_with_points = [file](std::span<const double> values, std::size_t fidelity,
-                                         std::span<const PlatformPoint> points) {
-    Checked found = checked(*file, values);
+  CatalogEntry entry = entry_by(file, path, true);
+  if (at_home.home.passive_rank == at_home.home.loop_equations) return entry;
+  entry.other_metric = std::make_shared<const CatalogEntry>(entry_by(file, path, false));
+  entry.build_with_points = [file](std::span<const double> values, std::size_t fidelity,
+                                   std::span<const PlatformPoint> points) {
     std::vector<Vector3> own;
     for (const PlatformPoint& point : points) own.emplace_back(point[0], point[1], point[2]);
-    auto model = std::make_unique<FileModel>(*file, std::move(found.mechanism), found.home, own,
-                                             static_cast<chain::Fidelity>(fidelity));
-    return model;
+    return built(*file, values, fidelity, {.points = std::move(own)});
   };
-  return {builder(file, false)(usual, 0)->description(), builder(file, false),
-          std::make_shared<const CatalogEntry>(std::move(by_platform))};
+  return entry;
 }
 
 }  // namespace poesy::file

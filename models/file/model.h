@@ -10,4 +10,7 @@ namespace poesy::file {
 /// Throws InputError "FILE:LINE:COL: ..." where the text describes no mechanism that its drives hold (mobility.h).
 CatalogEntry catalog_entry(const std::string& text, const std::string& path);
 
+/// The whole reference of mechanism files, as Markdown.
+std::string reference();
+
 }  // namespace poesy::file
