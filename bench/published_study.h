@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/kinds/sensitivity/options.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/random/stream.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"

@@ -9,9 +9,9 @@
 #include "bench/published_study.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/kinds/monte_carlo/collector.h"
-#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/sensitivity/collector.h"
-#include "engine/run/run_in_order.h"
+#include "engine/run/fold.h"
 #include "engine/run/run_options.h"
 #include "tests/support/fake_ranks.h"
 
@@ -91,8 +91,7 @@ void measure_both(Team& team, std::size_t units_per_cell) {
     const CellUnit unit{{std::vector(responses, Moments::of(numbers())), counts(), {}}, {}};
     SensitivityCollector collect(plan, responses, study.analysis.conf_level);
     measure(
-        "sensitivity", plan, unit, team,
-        [&](const WorkUnit& of, const CellUnit& found) { collect.add(of, found); },
+        "sensitivity", plan, unit, team, [&](const WorkUnit& of, const CellUnit& found) { collect.add(of, found); },
         [&](ByteReader& from) { return CellUnit::read(from, responses, 0, 0); });
   }
   // As many units at few poses: what is done once for a pose does not count in long studies.

@@ -3,7 +3,7 @@
 #include "bench/instruction_sets.h"
 #include "bench/published_study.h"
 #include "bench/reference_model.h"
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/run/run_options.h"
 
 namespace {

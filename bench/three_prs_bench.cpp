@@ -6,7 +6,7 @@
 
 #include "bench/instruction_sets.h"
 #include "models/registry.h"
-#include "models/three_prs/closure_solver.h"
+#include "models/three_prs/closure.h"
 
 namespace {
 

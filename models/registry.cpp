@@ -1,7 +1,6 @@
 #include "models/registry.h"
 
 #include "models/file/model.h"
-#include "models/three_prs/machine.h"
 #include "models/three_prs/model.h"
 #include "models/two_upr_rpu/model.h"
 

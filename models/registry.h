@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 
 namespace poesy {
 

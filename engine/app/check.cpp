@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/progress.h"
+#include "engine/app/terminal.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/h5.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/run_options.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
 
@@ -36,26 +35,19 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
   return text + "\n";
 }
 
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
+using Clock = std::chrono::steady_clock;
 
 /// Seconds that one thread takes for this work: pieces of it are done for so long, at least one and at most 64.
 double measured_seconds(const WorkOutlook& work, double longest) {
   constexpr std::size_t kPieces = 64;
-  const Stopwatch watch;
+  const Clock::time_point start = Clock::now();
   double done = 0.0;
-  for (std::size_t n = 0; n < kPieces && (n == 0 || watch.seconds() < longest); ++n) {
+  for (std::size_t n = 0; n < kPieces && (n == 0 || seconds_since(start) < longest); ++n) {
     // From the middle on; the golden ratio spreads any number of pieces evenly.
     const double at = 0.5 + static_cast<double>(n) * 0.6180339887498949;
     done += work.do_piece(at - std::floor(at));
   }
-  return work.times * watch.seconds() / done;
+  return work.times * seconds_since(start) / done;
 }
 
 double measured_seconds(const std::vector<WorkOutlook>& all, double longest) {
@@ -68,12 +60,12 @@ double measured_seconds(const std::vector<WorkOutlook>& all, double longest) {
 double composing_seconds() {
   constexpr std::size_t kNumbers = 1 << 17U;
   const std::vector<double> numbers(kNumbers, 1.0);
-  const Stopwatch watch;
+  const Clock::time_point start = Clock::now();
   h5::File file = h5::File::in_memory();
   file.write<double>("/numbers", {kNumbers}, numbers);
   static_cast<void>(content_sha256(file));
-  const std::size_t bytes = file.image().size();
-  return watch.seconds() / static_cast<double>(bytes);
+  const auto bytes = static_cast<double>(file.image().size());
+  return seconds_since(start) / bytes;
 }
 
 /// Tries pieces of the study on this machine, for about a quarter of a second.
@@ -108,17 +100,17 @@ int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = select_poses(study.poses, *model);
-  std::fputs(resolved_text(study).c_str(), stdout);
+  print(resolved_text(study));
   const Outlook expected = outlook(study, *model, poses.poses);
-  std::fputs(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)).c_str(), stdout);
-  if (const std::string held = held_errors_text(study); !held.empty()) std::fputs(("# " + held + "\n").c_str(), stdout);
-  for (const std::string& line : model->mobility()) std::fputs(("# mobility: " + line + "\n").c_str(), stdout);
+  print(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)));
+  if (const std::string held = held_errors_text(study); !held.empty()) print("# " + held + "\n");
+  for (const std::string& line : model->mobility()) print("# mobility: " + line + "\n");
   for (const std::string& unusual : model->unusual_geometry()) {
-    std::fputs(("# hint: " + unusual + "; is that meant?\n").c_str(), stdout);
+    print("# hint: " + unusual + "; is that meant?\n");
   }
-  std::fputs(trajectory_line(poses, study.model()).c_str(), stdout);
+  print(trajectory_line(poses, study.model()));
   for (const RejectedPoses& rejected : poses.rejected) {
-    std::fputs(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason).c_str(), stdout);
+    print(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason));
   }
   return kDone;
 }
@@ -126,12 +118,10 @@ int check(const std::string& path) {
 }  // namespace
 
 Command& add_check(Command& program) {
-  const auto study = std::make_shared<std::string>();
-  Command& command =
-      program.add_command("check", "validate a study; print it resolved, with its solves, memory and time");
-  command.add_value("study", *study, "STUDY.toml", "study file (TOML)")->required();
+  const auto [command, study] =
+      program.add_command("check", "validate a study; print it resolved, with its solves, memory and time", check);
+  command.add_value("study", study, "STUDY.toml", "study file (TOML)")->required();
   command.examples = {{"is it valid, and how long will it take?", "poesy check study.toml"}};
-  command.action = [study] { return check(*study); };
   return command;
 }
 

@@ -3,13 +3,116 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 
 namespace poesy::app {
+namespace {
+
+/// "poesy run" or "poesy"
+std::string title(const CLI::App& command) {
+  return command.get_parent() == nullptr ? "poesy" : "poesy " + command.get_name();
+}
+
+std::string see_help(const CLI::App& command) { return "see " + title(command) + " --help"; }
+
+std::string shown_name(const CLI::Option& option) {
+  return option.get_positional() ? value_of(option) : names_of(option).back();
+}
+
+bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
+
+/// "did you mean 'run'? " where one is near, or begins like this. An option of one letter has no suggestion, because
+/// any other letter is as near.
+std::string nearest_text(const std::string& word, const std::vector<std::string>& known) {
+  if (is_option(word) && word.size() == 2) return {};
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  const auto longer = std::ranges::find_if(views, [&](std::string_view name) { return name.starts_with(word); });
+  const std::string_view best = longer != views.end() ? *longer : nearest(word, views);
+  return best.empty() ? std::string() : fmt::format("did you mean '{}'? ", best);
+}
+
+std::string unknown_option(const std::string& word, const CLI::App& command) {
+  const std::string name = word.substr(0, word.find('='));
+  return fmt::format("{} has no option '{}'; {}{}", title(command), printable(name),
+                     nearest_text(name, option_names(command)), see_help(command));
+}
+
+// Each says what is wrong, if that is it.
+
+/// What the command cannot do without was not given.
+std::optional<std::string> missing(const CLI::App& command) {
+  std::vector<std::string> list;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_required() || option->count() != 0) continue;
+    list.push_back(option->get_positional() ? value_of(*option) : shown_name(*option) + " " + value_of(*option));
+  }
+  if (list.empty()) return std::nullopt;
+  return fmt::format("{} needs {}; write {}, {}", title(command), fmt::join(list, " and "), synopsis(command),
+                     see_help(command));
+}
+
+/// Two do not go together, which each of them knows.
+std::optional<std::string> excluded(const CLI::App& command) {
+  for (const CLI::Option* one : command.get_options()) {
+    for (const CLI::Option* other : one->get_excludes()) {
+      if (one->count() == 0 || other->count() == 0) continue;
+      return fmt::format("{} and {} do not go together; leave one out, {}", shown_name(*one), shown_name(*other),
+                         see_help(command));
+    }
+  }
+  return std::nullopt;
+}
+
+/// An option has no value, or is there twice.
+std::optional<std::string> wrong_number_of_values(const CLI::App& command, const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return std::nullopt;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional()) continue;
+    const std::string name = shown_name(*option);
+    if (option->count() > 1 && !is_repeated(*option)) {
+      return fmt::format("{} is there {} times; give it once, {}", name, option->count(), see_help(command));
+    }
+    if (std::string(error.what()).starts_with(name + ":")) {
+      return fmt::format("{} needs a value; write {} {}, {}", name, name, value_of(*option), see_help(command));
+    }
+  }
+  return std::nullopt;
+}
+
+/// More things are there by their place than the command takes.
+std::optional<std::string> too_many_by_place(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) continue;
+    const auto most = static_cast<std::size_t>(option->get_items_expected_max());
+    if (option->count() <= most) continue;
+    const std::string name = option->get_single_name();
+    return fmt::format("{} takes at most {} {}, not {}; write {}, {}", title(command), most,
+                       name + (most == 1 || name.ends_with('s') ? "" : "s"), option->count(), synopsis(command),
+                       see_help(command));
+  }
+  return std::nullopt;
+}
+
+std::string problem_of_command(const CLI::App& command, const CLI::ParseError& error) {
+  const std::vector<std::string> extras = command.remaining();
+  const auto option = std::ranges::find_if(extras, is_option);
+  if (option != extras.end()) return unknown_option(*option, command);
+  if (const auto problem = wrong_number_of_values(command, error)) return *problem;
+  if (const auto problem = too_many_by_place(command)) return *problem;
+  if (const auto problem = excluded(command)) return *problem;
+  if (const auto problem = missing(command)) return *problem;
+  if (!extras.empty()) {
+    return fmt::format("'{}' is one too many; write {}, {}", printable(extras.front()), synopsis(command),
+                       see_help(command));
+  }
+  return fmt::format("{}; {}", error.what(), see_help(command));
+}
+
+}  // namespace
 
 Command& Command::add_command(const std::string& name, const std::string& about) {
   const auto command = std::make_shared<Command>(name, about, this);
@@ -25,12 +128,16 @@ std::vector<const Command*> Command::commands() const {
   return list;
 }
 
+std::optional<std::uint64_t> whole_number(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
 std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
                                  std::uint64_t most) {
-  std::uint64_t number = 0;
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, number);
-  if (error == std::errc() && end == last && number >= least && number <= most) return number;
+  const auto number = whole_number(text);
+  if (number && *number >= least && *number <= most) return *number;
   throw InputError({}, fmt::format("{} is '{}'", option, printable(text)),
                    fmt::format("give a whole number from {} to {}", least, most));
 }
@@ -39,6 +146,14 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    std::ranges::copy(names_of(*option), std::back_inserter(names));
+  }
   return names;
 }
 
@@ -68,33 +183,35 @@ std::string synopsis(const CLI::App& command) {
   return "poesy " + command.get_name() + by_place + by_name + " [options]";
 }
 
-std::span<const Entry> exit_codes() {
-  static constexpr std::array kEntries{
-      Entry{"0", "done"},
-      Entry{"1", "internal error; please report it"},
-      Entry{"2", "bad command line, study or data; nothing is written"},
-      Entry{"3", "a file cannot be read, written or trusted"},
-      Entry{"4", "interrupted: poesy run goes on with --resume, poesy evaluate wrote nothing"},
-      Entry{"5", "done and the result kept, but more samples failed to converge than the study allows"},
-      Entry{"6", "done and the result kept, but a limit that the study states is not kept; 5 goes before it"}};
-  return kEntries;
+bool has_unknown_command(const Command& program) {
+  const std::vector<std::string> extras = program.remaining();
+  return program.get_subcommands().empty() && !extras.empty() && !is_option(extras.front());
 }
 
-std::span<const Entry> files() {
-  static constexpr std::array kEntries{
-      Entry{"STUDY.toml", "what to compute; poesy template writes one to start from"},
-      Entry{"RESULT.h5", "what was found; HDF5, whole or absent"},
-      Entry{"RESULT.h5.part", "checkpoint of a run; the one before it is RESULT.h5.part.1"},
-      Entry{"RESULT.h5.lock", "there while a run writes to this result"}};
-  return kEntries;
+std::string unknown_command(const std::string& word, const Command& program) {
+  std::vector<std::string> known;
+  for (const Command* command : program.commands()) known.push_back(command->get_name());
+  return fmt::format("no command '{}'; {}{}", printable(word), nearest_text(word, known), see_help(program));
 }
 
-std::span<const Entry> environment() {
-  static constexpr std::array kEntries{
-      Entry{"NO_COLOR", "if it is set and not empty, nothing is coloured"},
-      Entry{"TERM", "if it is unset or 'dumb', nothing is coloured, and progress comes line by line"},
-      Entry{"POESY_ISA", "instruction set of the kernels, instead of the best that the processor has"}};
-  return kEntries;
+std::optional<std::string> empty_value(const Command& program) {
+  for (const CLI::App* command : program.get_subcommands()) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (std::ranges::count(option->results(), std::string()) == 0) continue;
+      return fmt::format("{} is empty; write {}, {}", shown_name(*option), heading(*option), see_help(*command));
+    }
+  }
+  return std::nullopt;
+}
+
+std::string command_line_problem(const Command& program, const CLI::ParseError& error) {
+  const std::vector<std::string> extras = program.remaining();
+  if (!extras.empty()) {
+    return is_option(extras.front()) ? unknown_option(extras.front(), program)
+                                     : unknown_command(extras.front(), program);
+  }
+  const auto called = program.get_subcommands();
+  return called.empty() ? "no command given; see poesy --help" : problem_of_command(*called.front(), error);
 }
 
 }  // namespace poesy::app

@@ -3,14 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace poesy::app {
 
+/// Reads a text of digits alone; empty for anything else.
+std::optional<std::uint64_t> whole_number(std::string_view text);
 /// Throws InputError that names the option and both bounds unless the text is a whole number within them.
 std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
                                  std::uint64_t most);
@@ -32,7 +35,16 @@ class Command : public CLI::App {
   std::vector<Example> examples;
   std::function<int()> action;  ///< once the command line is understood; gives the exit code
 
-  /// One more command of this program.
+  /// One more command of this program, and what its command line sets for its action.
+  template <class Options>
+  std::pair<Command&, Options&> add_command(const std::string& name, const std::string& about,
+                                            int (*run)(const Options&)) {
+    Command& command = add_command(name, about);
+    const auto options = std::make_shared<Options>();
+    command.action = [options, run] { return run(*options); };
+    return {command, *options};
+  }
+  /// The same without action.
   Command& add_command(const std::string& name, const std::string& about);
   /// All commands of this program, as they were added.
   std::vector<const Command*> commands() const;
@@ -74,6 +86,9 @@ Command& add_version(Command& program);
 /// "-o", "--output"; empty for an argument that its place tells.
 std::vector<std::string> names_of(const CLI::Option& option);
 
+/// Of all options of a command.
+std::vector<std::string> option_names(const CLI::App& command);
+
 /// "RESULT.h5"; empty for a flag.
 std::string value_of(const CLI::Option& option);
 
@@ -85,17 +100,6 @@ std::string heading(const CLI::Option& option);
 
 /// "poesy evaluate STUDY.toml --poses P.csv --errors E.csv [options]"
 std::string synopsis(const CLI::App& command);
-
-/// A name and what it means, for help and manual.
-struct Entry {
-  std::string_view name;
-  std::string_view meaning;
-};
-
-/// What help and manual tell in addition to the commands.
-std::span<const Entry> exit_codes();
-std::span<const Entry> files();
-std::span<const Entry> environment();
 
 /// What --help prints of the program or of one command, in as many columns as stdout has.
 std::string help_text(const Command& command);

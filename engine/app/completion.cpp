@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/kinds/registry.h"
@@ -26,8 +26,8 @@ struct Offer {
 };
 
 /// Names of the responses of all mechanisms by all metrics, each once.
-std::vector<std::string> known_responses() {
-  std::vector<std::string> names;
+std::vector<std::string_view> known_responses() {
+  std::vector<std::string_view> names;
   const auto add = [&](const CatalogEntry& entry) {
     for (const Response& response : entry.description.responses) {
       if (std::ranges::find(names, response.name) == names.end()) names.push_back(response.name);
@@ -40,18 +40,14 @@ std::vector<std::string> known_responses() {
   return names;
 }
 
-std::vector<std::string> words_for(const std::string& value, const Command& program) {
-  std::vector<std::string> words;
+std::vector<std::string_view> words_for(const std::string& value, const Command& program) {
+  if (value == "RESPONSE") return known_responses();
+  if (value == "KIND") return names(study_kinds());
+  if (value == "SHELL") return {kShells.begin(), kShells.end()};
+  if (value == "KEY") return {kRowOrders.begin(), kRowOrders.end()};
+  std::vector<std::string_view> words;
   if (value == "MODEL") {
     for (const CatalogEntry& entry : registry()) words.push_back(entry.description.name);
-  } else if (value == "RESPONSE") {
-    words = known_responses();
-  } else if (value == "KIND") {
-    for (const std::string_view kind : names(study_kinds())) words.emplace_back(kind);
-  } else if (value == "SHELL") {
-    words.assign(kShells.begin(), kShells.end());
-  } else if (value == "KEY") {
-    words.assign(kRowOrders.begin(), kRowOrders.end());
   } else if (value == "COMMAND") {
     for (const Command* command : program.commands()) words.push_back(command->get_name());
   }
@@ -66,7 +62,7 @@ Offer offer_for(const CLI::Option& option, const Command& program) {
     if (!value.ends_with(std::string(".") + extension)) continue;
     return {fmt::format("files {}", extension), fmt::format("_files -g \"*.{}\"", extension)};
   }
-  const std::vector<std::string> words = words_for(value, program);
+  const std::vector<std::string_view> words = words_for(value, program);
   if (words.empty()) return {};
   return {fmt::format("words {}", fmt::join(words, " ")), fmt::format("({})", fmt::join(words, " "))};
 }
@@ -138,10 +134,7 @@ std::string bash_values(const Command& command, const Command& program) {
 }
 
 std::string bash_options(const CLI::App& command, const std::string& name) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options())
-    std::ranges::copy(names_of(*option), std::back_inserter(names));
-  return fmt::format("    '{}') value='words {}' ;;\n", name, fmt::join(names, " "));
+  return fmt::format("    '{}') value='words {}' ;;\n", name, fmt::join(option_names(command), " "));
 }
 
 /// A script to be sourced by bash 4 or newer. It needs nothing else.
@@ -244,9 +237,9 @@ std::string zsh_completion(const Command& program) {
 
 int print_completion(const Command& program, const std::string& shell) {
   if (shell == "bash") {
-    std::fputs(bash_completion(program).c_str(), stdout);
+    print(bash_completion(program));
   } else if (shell == "zsh") {
-    std::fputs(zsh_completion(program).c_str(), stdout);
+    print(zsh_completion(program));
   } else {
     throw InputError({}, "no completion for '" + printable(shell) + "'",
                      fmt::format("give {}", fmt::join(kShells, " or ")));

@@ -7,19 +7,17 @@
 #include <utility>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/progress.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
-#include "engine/kinds/evaluate/stored.h"
+#include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/study_file.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/run_options.h"
-#include "engine/run/verdict.h"
 #include "engine/study/study_file.h"
 #include "engine/study/table_file.h"
 #include "models/registry.h"
@@ -85,7 +83,7 @@ int evaluate(const EvaluateOptions& options) {
                              .progress = [&](const Progress& progress) { printer(progress); },
                              .stop = &catch_interrupts()});
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = seconds_since(start);
   if (!result) {
     say(Message::note, "interrupted; nothing was written");
     return kInterrupted;
@@ -94,11 +92,7 @@ int evaluate(const EvaluateOptions& options) {
   if (const auto& limits = study.analysis.limits; !limits.empty()) {
     result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
   }
-  StoredResult shown = with_verdicts(study, poses,
-                                     {.solves = {},
-                                      .facts = {},
-                                      .verdicts = result->verdicts,
-                                      .row_names = row_names(errors.labels, pairing, errors.rows)});
+  StoredResult shown = with_verdicts(study, poses, result->verdicts, row_names(errors.labels, pairing, errors.rows));
   for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
   if (!options.result.empty()) {
     write_evaluation(options.result, study, poses, errors, pairing, *result,
@@ -109,46 +103,40 @@ int evaluate(const EvaluateOptions& options) {
   found.pairing = pairing;
   found.labels = errors.labels;
   shown.found = std::move(found);
-  std::fputs(fmt::format("{} solves, {} not converged\n\n{}", total.total(), total.not_converged(),
-                         text_of(evaluation_table(shown), output_width()))
-                 .c_str(),
-             stdout);
-  const bool kept = !options.result.empty();
-  const ExitCode limits =
-      judge_limits(shown, options.study,
-                   kept ? "the result is kept; see /limits in " + options.result : "-o RESULT.h5 keeps the result");
-  const ExitCode failures = judge_failures(study, total, options.study,
-                                           kept ? "the result is kept: see /evaluate/status in " + options.result
-                                                : "run it again with -o RESULT.h5 to see which failed");
-  return failures != kDone ? failures : limits;
+  print(fmt::format("{} solves, {} not converged\n\n{}", total.total(), total.not_converged(),
+                    text_of(evaluation_table(shown), output_width())));
+  if (options.result.empty()) {
+    return judge(study, total, shown, options.study,
+                 {"-o RESULT.h5 keeps the result", "run it again with -o RESULT.h5 to see which failed"});
+  }
+  return judge(study, total, shown, options.study,
+               {"the result is kept; see /limits in " + options.result,
+                "the result is kept: see /evaluate/status in " + options.result});
 }
 
 }  // namespace
 
 Command& add_evaluate(Command& program) {
-  const auto options = std::make_shared<EvaluateOptions>();
-  Command& command = program.add_command("evaluate", "solve errors that somebody else sampled");
-  command.add_value("study", options->study, "STUDY.toml", "study file; its [mechanism] and [solver] are used")
+  const auto [command, options] = program.add_command("evaluate", "solve errors that somebody else sampled", evaluate);
+  command.add_value("study", options.study, "STUDY.toml", "study file; its [mechanism] and [solver] are used")
       ->required();
   command
-      .add_value("--poses", options->poses, "P.csv",
+      .add_value("--poses", options.poses, "P.csv",
                  "poses; the first line names the pose coordinates, with units (\"z [mm]\") or SI")
       ->required();
   command
-      .add_value("--errors", options->errors, "E.csv",
+      .add_value("--errors", options.errors, "E.csv",
                  "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
                  "names the rows")
       ->required();
-  command.add_flag("--paired", options->paired, "row by row, instead of every pose with every row");
-  command.add_value("-o,--output", options->result, "RESULT.h5", "result file; default: only the summary");
-  command.add_whole_number("--threads", options->threads, "N", "number of threads; default: one per processor", 1,
-                           1024);
-  command.add_flag("--quiet", options->quiet, "no progress");
+  command.add_flag("--paired", options.paired, "row by row, instead of every pose with every row");
+  command.add_value("-o,--output", options.result, "RESULT.h5", "result file; default: only the summary");
+  command.add_whole_number("--threads", options.threads, "N", "number of threads; default: one per processor", 1, 1024);
+  command.add_flag("--quiet", options.quiet, "no progress");
   command.examples = {{"every pose with every row of errors; prints the summary",
                        "poesy evaluate study.toml --poses p.csv --errors e.csv"},
                       {"the first pose with the first row, and so on; keeps every outcome",
                        "poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o r.h5"}};
-  command.action = [options] { return evaluate(*options); };
   return command;
 }
 

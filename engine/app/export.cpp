@@ -32,21 +32,18 @@ int verify(const std::string& path) {
 }  // namespace
 
 Command& add_export(Command& program) {
-  const auto options = std::make_shared<ExportOptions>();
-  Command& command = program.add_command("export", "write every table of a result as CSV");
-  command.add_value("result", options->result, "RESULT.h5", "result file")->required();
-  command.add_value("-d,--directory", options->folder, "DIR", "folder for the tables, made if missing")->required();
+  const auto [command, options] = program.add_command("export", "write every table of a result as CSV", export_result);
+  command.add_value("result", options.result, "RESULT.h5", "result file")->required();
+  command.add_value("-d,--directory", options.folder, "DIR", "folder for the tables, made if missing")->required();
   command.examples = {{"tables/global.csv and others", "poesy export result.h5 -d tables"}};
-  command.action = [options] { return export_result(*options); };
   return command;
 }
 
 Command& add_verify(Command& program) {
-  const auto result = std::make_shared<std::string>();
-  Command& command = program.add_command("verify", "recompute a result's content hash; exit 3 if it differs");
-  command.add_value("result", *result, "RESULT.h5", "result file")->required();
+  const auto [command, result] =
+      program.add_command("verify", "recompute a result's content hash; exit 3 if it differs", verify);
+  command.add_value("result", result, "RESULT.h5", "result file")->required();
   command.examples = {{"unchanged since it was written?", "poesy verify result.h5"}};
-  command.action = [result] { return verify(*result); };
   return command;
 }
 

@@ -2,16 +2,41 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <span>
+#include <utility>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/terminal.h"
 #include "engine/base/text.h"
-#include "engine/report/text_table.h"
+#include "engine/files/version.h"
+#include "engine/report/table.h"
 
 namespace poesy::app {
 namespace {
+
+/// A name and what it means, for help and manual.
+struct Entry {
+  std::string_view name;
+  std::string_view meaning;
+};
+constexpr std::array kExitCodes{
+    Entry{"0", "done"},
+    Entry{"1", "internal error; please report it"},
+    Entry{"2", "bad command line, study or data; nothing is written"},
+    Entry{"3", "a file cannot be read, written or trusted"},
+    Entry{"4", "interrupted: poesy run goes on with --resume, poesy evaluate wrote nothing"},
+    Entry{"5", "done and the result kept, but more samples failed to converge than the study allows"},
+    Entry{"6", "done and the result kept, but a limit that the study states is not kept; 5 goes before it"}};
+constexpr std::array kFiles{Entry{"STUDY.toml", "what to compute; poesy template writes one to start from"},
+                            Entry{"RESULT.h5", "what was found; HDF5, whole or absent"},
+                            Entry{"RESULT.h5.part", "checkpoint of a run; the one before it is RESULT.h5.part.1"},
+                            Entry{"RESULT.h5.lock", "there while a run writes to this result"}};
+constexpr std::array kEnvironment{
+    Entry{"NO_COLOR", "if it is set and not empty, nothing is coloured"},
+    Entry{"TERM", "if it is unset or 'dumb', nothing is coloured, and progress comes line by line"},
+    Entry{"POESY_ISA", "instruction set of the kernels, instead of the best that the processor has"}};
 
 constexpr std::size_t kNarrowest = 30;
 constexpr std::size_t kWidest = 110;     ///< longer lines are hard to read
@@ -124,10 +149,85 @@ void write_program(const Command& program, HelpWriter& help) {
   help.groups(program.commands(), [](const Command& command) { return command.get_name(); });
   help.options(program);
   help.notes(program);
-  help.entries("Exit codes", exit_codes());
-  help.entries("Files", files());
+  help.entries("Exit codes", kExitCodes);
+  help.entries("Files", kFiles);
   help.add("\n");
   help.paragraph("poesy COMMAND --help explains a command, poesy man all of them.");
+}
+
+/// Text as roff prints it, character by character.
+std::string roff(std::string_view text) {
+  constexpr std::array<std::pair<char, std::string_view>, 5> kNames{
+      {{'\\', "\\e"}, {'-', "\\-"}, {'\'', "\\(aq"}, {'^', "\\(ha"}, {'~', "\\(ti"}}};
+  std::string safe;
+  for (const char c : text) {
+    const auto* named = std::ranges::find(kNames, c, &std::pair<char, std::string_view>::first);
+    safe += named != kNames.end() ? named->second : std::string_view(&c, 1);
+  }
+  return text.starts_with('.') ? "\\&" + safe : safe;
+}
+
+std::string bold(std::string_view text) { return "\\fB" + roff(text) + "\\fR"; }
+std::string italic(std::string_view text) { return "\\fI" + roff(text) + "\\fR"; }
+
+std::string section(const std::string& name) { return ".SH " + name + "\n"; }
+
+/// A name at the margin, its meaning indented.
+std::string item(const std::string& head, std::string_view meaning) {
+  return ".TP\n" + head + "\n" + roff(meaning) + "\n";
+}
+
+std::string items(std::span<const Entry> entries) {
+  std::string text;
+  for (const auto& [name, meaning] : entries) text += item(bold(name), meaning);
+  return text;
+}
+
+std::string option_item(const CLI::Option& option) {
+  std::string head;
+  for (const std::string& name : names_of(option)) head += (head.empty() ? "" : ", ") + bold(name);
+  if (const std::string value = value_of(option); !value.empty()) head += (head.empty() ? "" : " ") + italic(value);
+  return item(is_repeated(option) ? head + " ..." : head, option.get_description());
+}
+
+std::string examples_text(const Command& command) {
+  std::string text;
+  for (const auto& [about, line] : command.examples) text += item(bold(line), about);
+  return text;
+}
+
+std::string notes_text(const Command& command) {
+  std::string text;
+  for (const std::string& note : command.notes) text += ".PP\n" + roff(note) + "\n";
+  return text;
+}
+
+std::string command_text(const Command& command) {
+  std::string text = ".SS poesy " + roff(command.get_name()) + "\n" + bold(synopsis(command)) + "\n.PP\n" +
+                     roff(command.get_description()) + "\n";
+  // The option --help is told of once, for all commands.
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional() || names_of(*option).back() != "--help") text += option_item(*option);
+  }
+  text += notes_text(command);
+  if (!command.examples.empty()) text += ".PP\nExamples:\n" + examples_text(command);
+  return text;
+}
+
+/// The manual page poesy(1), with the macros of man(7).
+std::string man_page(const Command& program) {
+  std::string text = fmt::format(".TH POESY 1 \"\" \"poesy {}\" \"User Commands\"\n", poesy_version());
+  text += section("NAME") + "poesy \\- " + roff(program.get_description()) + "\n";
+  text += section("SYNOPSIS") + ".B poesy\n" + italic("COMMAND") + " [arguments] [options]\n";
+  text += section("DESCRIPTION") + notes_text(program);
+  text += section("OPTIONS");
+  for (const CLI::Option* option : program.get_options()) text += option_item(*option);
+  text += section("COMMANDS");
+  for (const Command* command : program.commands()) text += command_text(*command);
+  text += section("EXIT STATUS") + items(kExitCodes);
+  text += section("FILES") + items(kFiles);
+  text += section("ENVIRONMENT") + items(kEnvironment);
+  return text + section("EXAMPLES") + examples_text(program);
 }
 
 int print_help(const Command& program, const std::string& name) {
@@ -136,7 +236,7 @@ int print_help(const Command& program, const std::string& name) {
     if (command->get_name() == name) explained = command;
   }
   if (explained == &program && !name.empty()) return complain(unknown_command(name, program), kBadInput);
-  std::fputs(help_text(*explained).c_str(), stdout);
+  print(help_text(*explained));
   return kDone;
 }
 
@@ -166,6 +266,16 @@ Command& add_version(Command& program) {
   command.examples = {{"version and commit", "poesy version"}};
   command.action = [&program] {
     std::puts(program.version().c_str());
+    return kDone;
+  };
+  return command;
+}
+
+Command& add_man(Command& program) {
+  Command& command = program.add_command("man", "print the manual page, for man");
+  command.examples = {{"read it", "poesy man | man -l -"}};
+  command.action = [&program] {
+    print(man_page(program));
     return kDone;
   };
   return command;

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/app/terminal.h"
 #include "engine/files/version.h"
@@ -45,7 +44,7 @@ int parse_and_run(int argc, char** argv) {
   describe_program(program);
   add_commands(program);
   if (argc < 2) {
-    std::fputs(help_text(program).c_str(), stdout);
+    print(help_text(program));
     return kDone;
   }
   try {

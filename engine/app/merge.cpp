@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
 #include "engine/files/shard_file.h"
-#include "engine/kinds/stored_study.h"
+#include "engine/kinds/study_file.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -39,7 +39,7 @@ int merge(const MergeOptions& options) {
   for (const std::string& path : options.shards) shards.push_back(read_shard(path));
   std::vector<Bytes> merged = merge_shards(shards);
   const StoredShard& first = shards.front();
-  const StoredStudy whole = stored_study(first.study_text, first.poses, first.path, registry());
+  const StoredStudy whole = stored_study(first, registry());
   const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   // The whole run from here on: as one that is resumed when all its stages are done.
@@ -62,14 +62,12 @@ int merge(const MergeOptions& options) {
 }  // namespace
 
 Command& add_merge(Command& program) {
-  const auto options = std::make_shared<MergeOptions>();
-  Command& command = program.add_command("merge", "put the shards of a study together (poesy run --shard)");
-  command.add_value("shards", options->shards, "SHARD.h5", "all shards of one study, in any order")->required();
-  command.add_value("-o,--output", options->result, "RESULT.h5", "result file, the same as that of one run")
-      ->required();
+  const auto [command, options] =
+      program.add_command("merge", "put the shards of a study together (poesy run --shard)", merge);
+  command.add_value("shards", options.shards, "SHARD.h5", "all shards of one study, in any order")->required();
+  command.add_value("-o,--output", options.result, "RESULT.h5", "result file, the same as that of one run")->required();
   command.examples = {{"two shards", "poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5"},
                       {"all that there are", "poesy merge study.*-of-*.h5 -o study.h5"}};
-  command.action = [options] { return merge(*options); };
   return command;
 }
 

@@ -1,11 +1,10 @@
 #include <cstdio>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/file_writer.h"
-#include "engine/files/output_path.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/mechanism_picture.h"
@@ -36,15 +35,25 @@ const StudyKind& kind_named(const std::string& word) {
   throw InputError({}, "no template of kind '" + printable(word) + "'", suggestion(word, names(study_kinds())));
 }
 
-int print_template(const std::string& model, const std::string& kind) {
-  const CatalogEntry entry = find_model(model);
-  const StudyKind& wanted = kind_named(kind);
+struct TemplateOptions {
+  std::string model;
+  std::string kind{study_kinds().all.front()->name};
+  bool reference = false;
+};
+
+int print_template(const TemplateOptions& options) {
+  if (options.reference) {
+    print(study_reference() + registry().file_reference());
+    return kDone;
+  }
+  const CatalogEntry entry = find_model(options.model);
+  const StudyKind& wanted = kind_named(options.kind);
   ModelDescription as_named = entry.description;
-  if (entry.file.empty()) as_named.name = model;
+  if (entry.file.empty()) as_named.name = options.model;
   if (const auto refusal = wanted.no_template != nullptr ? wanted.no_template(as_named) : std::nullopt) {
     throw InputError({}, refusal->problem, refusal->remedy);
   }
-  std::fputs(template_text(entry, wanted).c_str(), stdout);
+  print(template_text(entry, wanted));
   return kDone;
 }
 
@@ -61,53 +70,47 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
   write_text(path, mechanism_picture(*sketch, entry.description.title));
 }
 
-int print_models(const std::string& name, const std::string& picture) {
-  if (name.empty()) {
-    std::fputs(models_text(registry()).c_str(), stdout);
+struct ModelsOptions {
+  std::string model;
+  std::string picture;
+};
+
+int print_models(const ModelsOptions& options) {
+  if (options.model.empty()) {
+    print(models_text(registry()));
     return kDone;
   }
-  const CatalogEntry entry = find_model(name);
-  if (!picture.empty()) write_picture(entry, picture);
-  std::fputs(model_text(entry).c_str(), stdout);
-  return kDone;
-}
-
-int print_reference() {
-  std::fputs((study_reference() + registry().file_reference()).c_str(), stdout);
+  const CatalogEntry entry = find_model(options.model);
+  if (!options.picture.empty()) write_picture(entry, options.picture);
+  print(model_text(entry));
   return kDone;
 }
 
 }  // namespace
 
 Command& add_models(Command& program) {
-  const auto name = std::make_shared<std::string>();
-  const auto picture = std::make_shared<std::string>();
-  Command& command = program.add_command("models", "list the mechanisms, or describe one");
-  CLI::Option* named = command.add_value("model", *name, "MODEL", "mechanism, or its file");
-  command.add_value("-o,--output", *picture, "PICTURE.svg", "picture of a mechanism from a file")->needs(named);
+  const auto [command, options] = program.add_command("models", "list the mechanisms, or describe one", print_models);
+  CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism, or its file");
+  command.add_value("-o,--output", options.picture, "PICTURE.svg", "picture of a mechanism from a file")->needs(named);
   command.examples = {{"which mechanisms are there?", "poesy models"},
                       {"errors, poses and responses of one", "poesy models 2upr-rpu"},
                       {"what was understood of a mechanism's file", "poesy models rps3.toml -o rps3.svg"}};
-  command.action = [=] { return print_models(*name, *picture); };
   return command;
 }
 
 Command& add_template(Command& program) {
-  const auto model = std::make_shared<std::string>();
-  const auto kind = std::make_shared<std::string>(study_kinds().all.front()->name);
-  const auto reference = std::make_shared<bool>(false);
-  Command& command = program.add_command("template", "print a complete, commented study file");
-  CLI::Option* named = command.add_value("model", *model, "MODEL", "mechanism, or its file");
-  command.add_value("kind", *kind, "KIND", "kind of study: " + either(names(study_kinds())));
-  command.add_flag("--reference", *reference, "print the reference of all keys of study files, as Markdown")
+  const auto [command, options] =
+      program.add_command("template", "print a complete, commented study file", print_template);
+  CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism, or its file");
+  command.add_value("kind", options.kind, "KIND", "kind of study: " + either(names(study_kinds())));
+  command.add_flag("--reference", options.reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);
   command.examples = {{"a sensitivity study", "poesy template 2upr-rpu > study.toml"},
                       {"all errors at once", "poesy template 3-prs monte-carlo > study.toml"},
                       {"every key of a study file, as text", "poesy template --reference"}};
-  command.callback([=] {
-    if (!*reference && named->count() == 0) throw CLI::RequiredError(named->get_type_name());
+  command.callback([&reference = options.reference, named] {
+    if (!reference && named->count() == 0) throw CLI::RequiredError(named->get_type_name());
   });
-  command.action = [=] { return *reference ? print_reference() : print_template(*model, *kind); };
   return command;
 }
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "engine/run/ranks/ranks.h"
+#include "engine/run/ranks/team.h"
 
 namespace poesy::app {
 

@@ -127,6 +127,10 @@ std::string readable_duration(double seconds) {
   return two_parts(std::round(seconds / 3600.0), 24.0, "d", "h");
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 void RecentRate::add(Clock::time_point now, std::uint64_t done) {
   latest_ = {now, done};
   if (now - marks_.back().time < kSpacing) return;

@@ -17,6 +17,9 @@ double parse_duration(const std::string& text, const std::string& option);
 /// "2.3 s", "45 s", "1 min 20 s", "35 min", "2 h 10 min", "3 d 4 h". Seconds of zero or more.
 std::string readable_duration(double seconds);
 
+/// Seconds since then.
+double seconds_since(std::chrono::steady_clock::time_point start);
+
 /// How fast something is done now: over the last 15 seconds or so, not over all of the time.
 class RecentRate {
  public:

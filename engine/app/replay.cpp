@@ -6,14 +6,13 @@
 #include <optional>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
-#include "engine/files/trial_read.h"
+#include "engine/files/poesy_file.h"
 #include "engine/files/version.h"
 #include "engine/kinds/registry.h"
-#include "engine/kinds/stored_study.h"
+#include "engine/kinds/study_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/replay.h"
 #include "engine/study/study_kind.h"
@@ -216,32 +215,29 @@ int replay(const ReplayOptions& options) {
   const ReplayedSample sample = replay_of(options, result, stored, *model);
   warn_of_difference(options, result, sample);
   const ModelDescription& description = model->description();
-  std::fputs((sample_text(options, result, description, sample) +
-              outcome_text(description, sample, name(stored.study.solver.method)) +
-              reference_text(description, sample, model->trace(pose, sample.errors, stored.study.solver)))
-                 .c_str(),
-             stdout);
+  print(sample_text(options, result, description, sample) +
+        outcome_text(description, sample, name(stored.study.solver.method)) +
+        reference_text(description, sample, model->trace(pose, sample.errors, stored.study.solver)));
   return kDone;
 }
 
 }  // namespace
 
 Command& add_replay(Command& program) {
-  const auto options = std::make_shared<ReplayOptions>();
-  Command& command = program.add_command("replay", "solve one sample of a result again, iteration by iteration");
-  command.add_value("result", options->result, "RESULT.h5", "result file")->required();
+  const auto [command, options] =
+      program.add_command("replay", "solve one sample of a result again, iteration by iteration", replay);
+  command.add_value("result", options.result, "RESULT.h5", "result file")->required();
   command
-      .add_value("factor", options->factor, "FACTOR",
+      .add_value("factor", options.factor, "FACTOR",
                  "error that varied; all: a Monte Carlo result; or the name of a case")
       ->required();
-  command.add_whole_number("pose", options->pose, "POSE", "number of the pose, from 0", 0, kMostNumber)->required();
-  command.add_whole_number("sample", options->sample, "SAMPLE", "number of the sample, from 0; not of a case", 0,
+  command.add_whole_number("pose", options.pose, "POSE", "number of the pose, from 0", 0, kMostNumber)->required();
+  command.add_whole_number("sample", options.sample, "SAMPLE", "number of the sample, from 0; not of a case", 0,
                            kMostNumber);
   command.notes = {
       "'poesy show' names a sample that failed, failures.csv of 'poesy export' and /solver/failed_* the first ones."};
   command.examples = {{"sample 345 of one error at pose 12", "poesy replay result.h5 epsilon_1_4_z 12 345"},
                       {"of a Monte Carlo result, where all errors vary", "poesy replay result.h5 all 12 345"}};
-  command.action = [options] { return replay(*options); };
   return command;
 }
 

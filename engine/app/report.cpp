@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/files/file_writer.h"
-#include "engine/files/output_path.h"
 #include "engine/kinds/registry.h"
-#include "engine/report/html/report.h"
+#include "engine/report/report_kind.h"
 
 namespace poesy::app {
 namespace {
@@ -42,17 +41,15 @@ int report(const ReportOptions& options) {
 }  // namespace
 
 Command& add_report(Command& program) {
-  const auto options = std::make_shared<ReportOptions>();
-  Command& command =
-      program.add_command("report", "one HTML file with figures and tables of a result, or of two compared");
-  command.add_value("results", options->results, "RESULT.h5", "result file, or two to be compared")
+  const auto [command, options] =
+      program.add_command("report", "one HTML file with figures and tables of a result, or of two compared", report);
+  command.add_value("results", options.results, "RESULT.h5", "result file, or two to be compared")
       ->required()
       ->expected(1, 2);
-  command.add_value("-o,--output", options->report, "REPORT.html",
+  command.add_value("-o,--output", options.report, "REPORT.html",
                     "report; default: RESULT.html beside the result, A-B.html beside A for two");
   command.examples = {{"gives result.html", "poesy report result.h5"},
                       {"two compared, before-after.html", "poesy report before.h5 after.h5"}};
-  command.action = [options] { return report(*options); };
   return command;
 }
 

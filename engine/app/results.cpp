@@ -17,8 +17,8 @@
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/report/solves.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -54,29 +54,6 @@ std::string warning_text(const Study& study, double share) {
                      advice(study.solver));
 }
 
-/// Once all solves are done.
-RunOutcome outcome_of(const Job& job) {
-  const RunTime time = job.time();
-  const SolveCounts& solves = job.checkpoints().solves();
-  RunOutcome outcome{solves, run_facts(time.wall, job.threads, solves.total())};
-  outcome.facts.checkpoint_seconds = time.checkpoints;
-  outcome.facts.ranks = job.ranks;
-  return outcome;
-}
-
-}  // namespace
-
-RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves) {
-  RunFacts facts;
-  facts.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  facts.host = host_name();
-  facts.cpu = cpu_name();
-  facts.threads = threads;
-  facts.wall_seconds = wall_seconds;
-  facts.solves = solves;
-  return facts;
-}
-
 ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std::string& study_path,
                         const std::string& remedy) {
   const std::uint64_t failed = solves.not_converged();
@@ -97,7 +74,7 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
 ExitCode judge_limits(const StoredResult& result, const std::string& study_path, const std::string& remedy) {
   const std::optional<Table> table = limits_table(result);
   if (!table) return kDone;
-  std::fputs(("\n" + text_of(*table, output_width())).c_str(), stdout);
+  print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
   for (const LimitVerdict& one : verdicts.limits) {
     if (one.passed) continue;
@@ -110,7 +87,38 @@ ExitCode judge_limits(const StoredResult& result, const std::string& study_path,
   return verdicts.passed() ? kDone : kLimitNotKept;
 }
 
-StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const RunOutcome& outcome) {
+/// Once all solves are done.
+RunOutcome outcome_of(const Job& job) {
+  const RunTime time = job.time();
+  const SolveCounts solves = job.checkpoints().solves();
+  RunOutcome outcome{solves, run_facts(time.wall, job.threads, solves.total())};
+  outcome.facts.checkpoint_seconds = time.checkpoints;
+  outcome.facts.ranks = job.ranks;
+  return outcome;
+}
+
+}  // namespace
+
+RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves) {
+  RunFacts facts;
+  facts.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  facts.host = host_name();
+  facts.cpu = cpu_name();
+  facts.threads = threads;
+  facts.wall_seconds = wall_seconds;
+  facts.solves = solves;
+  return facts;
+}
+
+ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
+               const Remedies& remedies) {
+  const ExitCode limits = judge_limits(result, study_path, remedies.limits);
+  const ExitCode failures = judge_failures(study, solves, study_path, remedies.failures);
+  return failures != kDone ? failures : limits;
+}
+
+StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const std::optional<LimitVerdicts>& verdicts,
+                           const std::vector<std::string>& row_names) {
   StoredResult result;
   for (const PoseCoordinate& coordinate : study.model().pose_coordinates) {
     result.pose_coordinates.push_back({coordinate.name, std::string(si_unit(coordinate.dimension))});
@@ -120,8 +128,8 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const
   for (const Response& response : study.model().responses) {
     result.responses.push_back({response.name, std::string(si_unit(response.dimension))});
   }
-  result.row_names = outcome.row_names;
-  result.verdicts = outcome.verdicts;
+  result.row_names = row_names;
+  result.verdicts = verdicts;
   return result;
 }
 
@@ -143,16 +151,13 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
 
 int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome) {
   const std::string ranks = outcome.facts.ranks > 1 ? fmt::format(" of {} ranks", outcome.facts.ranks) : std::string();
-  std::fputs(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, outcome.facts.solves,
-                         outcome.facts.wall_seconds, outcome.facts.threads,
-                         outcome.facts.threads == 1 ? "thread" : "threads", ranks, outcome.solves.not_converged())
-                 .c_str(),
-             stdout);
+  print(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, outcome.facts.solves,
+                    outcome.facts.wall_seconds, outcome.facts.threads,
+                    outcome.facts.threads == 1 ? "thread" : "threads", ranks, outcome.solves.not_converged()));
   if (job.options.shard) return kDone;  // the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
-  const ExitCode limits = judge_limits(with_verdicts(job.study, job.poses, outcome), study_path, remedy);
-  const ExitCode failures = judge_failures(job.study, outcome.solves, study_path, remedy);
-  return failures != kDone ? failures : limits;  // with so many failures no limit can be trusted
+  return judge(job.study, outcome.solves, with_verdicts(job.study, job.poses, outcome.verdicts, outcome.row_names),
+               study_path, {remedy, remedy});
 }
 
 StoredResult read_result_with_warning(const std::string& path) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/app/ending.h"
+#include "engine/app/terminal.h"
 #include "engine/files/checkpoint.h"
 #include "engine/files/result_file.h"
 #include "engine/run/result.h"
@@ -46,17 +46,21 @@ std::optional<RunOutcome> run_to_file(const Job& job);
 /// Says what came out; the exit code.
 int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome);
 
-/// The exit code of a command that is done. Where more samples failed than the study allows, says so on stderr: the
-/// limit, the share reached, and `remedy`, where to look. study_path names the study.
-ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std::string& study_path,
-                        const std::string& remedy);
+/// Where a user is told to look when a result is not good enough.
+struct Remedies {
+  std::string limits;    ///< where a limit is not kept
+  std::string failures;  ///< where too many samples failed
+};
 
-/// Prints PASS or FAIL for each limit of a result; the exit code. Where a limit is not kept, says so on stderr: which,
-/// the value that was found, and `remedy`, where to look. study_path names the study.
-ExitCode judge_limits(const StoredResult& result, const std::string& study_path, const std::string& remedy);
+/// The exit code of a command that is done. Prints PASS or FAIL for each limit of the result. Says on stderr which
+/// limits are not kept, with the values found, and whether more samples failed than the study allows, which goes first
+/// because no limit can be trusted then. study_path names the study.
+ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
+               const Remedies& remedies);
 
-/// As much of a study's result as judge_limits needs.
-StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const RunOutcome& outcome);
+/// As much of a study's result as judge() needs.
+StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const std::optional<LimitVerdicts>& verdicts,
+                           const std::vector<std::string>& row_names);
 
 /// Reads a result, and warns on stderr where it was changed since it was written. Throws FileError.
 StoredResult read_result_with_warning(const std::string& path);

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/app/command_line.h"
-#include "engine/files/checkpoint_files.h"
-#include "engine/files/run_lock.h"
+#include "engine/app/progress.h"
+#include "engine/app/terminal.h"
+#include "engine/base/error.h"
+#include "engine/files/checkpoint.h"
 #include "engine/run/checkpoints.h"
 
 namespace poesy::app {
@@ -18,45 +23,141 @@ struct ResumeOptions {
   std::string every = "10 s";
   std::string max_wall;  ///< empty: no limit
 
-  void add_to(Command& command);
+  void add_to(Command& command) {
+    const auto group = [](CLI::Option* option) { option->group("Long runs"); };
+    group(command.add_flag("--resume", resume, "continue the run that was stopped, from RESULT.h5.part"));
+    group(command.add_value("--checkpoint-every", every, "TIME", "time between checkpoints of the run; default: 10 s"));
+    group(command.add_value("--max-wall", max_wall, "TIME",
+                            "stop after this time, to be resumed: \"90 s\", \"30 min\", \"2 h\""));
+    group(command.add_flag("--keep-checkpoint", keep_checkpoint,
+                           "keep RESULT.h5.part when done, so that --resume can add samples"));
+  }
 };
 
-/// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, for they
-/// are hours of somebody's work; with it, where there are none.
+/// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, because
+/// they are hours of somebody's work; with it, where there are none.
 class ResumableRun {
  public:
   /// Throws InputError or FileError when the run must not start. resume_command: for messages.
-  ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command);
+  ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
+      : lock_(result_path),
+        keep_checkpoint_(options.keep_checkpoint),
+        command_(std::move(resume_command)),
+        files_(result_path),
+        every_(duration_of(parse_duration(options.every, "--checkpoint-every"))) {
+    if (!options.max_wall.empty()) end_ = Clock::now() + duration_of(parse_duration(options.max_wall, "--max-wall"));
+    if (options.resume && !files_.exist()) {
+      std::error_code ignored;
+      const bool done = std::filesystem::exists(result_path, ignored);
+      throw InputError({.file = files_.newer()},
+                       done ? "there is no such checkpoint, and " + result_path + " is there: that run is complete"
+                            : std::string("there is no such checkpoint to resume from"),
+                       "leave --resume out to run the study from the beginning");
+    }
+    if (!options.resume && files_.exist()) {
+      throw InputError({.file = files_.newer()}, "holds an earlier run of this result, finished or not",
+                       "continue it with --resume, or remove it and " + files_.newer() + ".1 to start afresh");
+    }
+  }
   ResumableRun(const ResumableRun&) = delete;
   ResumableRun& operator=(const ResumableRun&) = delete;
 
   /// Takes up the checkpoint, if the run is to. Throws InputError when it is not one of this run. Says what it takes on
   /// stderr, unless quiet, but always when it is not the newest.
-  void start(const CheckpointIdentity& run, bool quiet);
+  void start(const CheckpointIdentity& run, bool quiet) {
+    identity_ = run;
+    std::vector<Bytes> stages;
+    if (auto found = files_.find()) {
+      check_continues(run, found->checkpoint.identity, found->path);
+      if (!found->passed_over.empty()) {
+        say(Message::note,
+            files_.newer() + " " + found->passed_over + "; continuing from the one before, " + found->path);
+      } else if (!quiet) {
+        say(Message::note, "continuing from " + found->path);
+      }
+      taken_ = found->path;
+      before_ = found->checkpoint.time;
+      stages = std::move(found->checkpoint.stages);
+    }
+    checkpoints_.emplace([this] { return due(); }, [this](std::span<const Bytes> all) { save(all); },
+                         std::move(stages));
+    start_ = Clock::now();
+    next_ = start_ + every_;
+  }
+
   /// Those to run with. Precondition: started.
   Checkpoints& checkpoints() { return *checkpoints_; }
+
   /// That all parts of the run took since they were started.
-  RunTime time() const;
+  RunTime time() const { return {before_.wall + seconds_since(start_), before_.checkpoints + checkpoint_seconds_}; }
+
   /// Interrupts the run when its time is over.
-  void check_time() const;
+  void check_time() const {
+    if (end_ && Clock::now() >= *end_) interrupt();
+  }
 
   /// The result is there: removes the checkpoints, or keeps the last one.
-  void finish();
+  void finish() {
+    if (keep_checkpoint_) {
+      checkpoints_->save();
+    } else {
+      files_.remove();
+    }
+  }
+
   /// The result could not be written: keeps the last state if that is possible, and says what to do.
-  void rescue();
+  void rescue() {
+    try {
+      if (!no_room_ && checkpoints_) checkpoints_->save();
+    } catch (const FileError&) {
+      // The message of the first trouble counts.
+    }
+    if (files_.exist()) {
+      say(Message::note, "the work up to the last checkpoint is kept in " + files_.newer() +
+                             "; when this is mended, continue with: " + command_);
+    }
+  }
+
   /// The run was interrupted: says what to do.
-  void explain_interruption() const;
+  void explain_interruption() const {
+    say(Message::note, "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_);
+  }
+
   /// The state of the checkpoint that was taken up is not one.
-  [[noreturn]] void refuse_state(const BytesError& error) const;
+  [[noreturn]] void refuse_state(const BytesError& error) const {
+    throw FileError(taken_, error.what(), "restore a copy, or move it away to start afresh");
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  bool due();
-  void save(std::span<const Bytes> stages);
+  /// A time that no run lasts stands for all that are longer, and for "never".
+  static Clock::duration duration_of(double seconds) {
+    constexpr double kCentury = 3.2e9;
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, kCentury)));
+  }
+
+  bool due() {
+    const Clock::time_point now = Clock::now();
+    if (now < next_) return false;
+    due_since_ = now;
+    return true;
+  }
+
+  void save(std::span<const Bytes> stages) {
+    // A checkpoint that took a time to write is followed by another after so many of these at the earliest: under 1 %,
+    // also when the last one is much the longest.
+    constexpr double kLeastRatio = 200.0;
+    const Clock::time_point before = std::exchange(due_since_, std::nullopt).value_or(Clock::now());
+    no_room_ = true;
+    files_.write(identity_, time(), stages);
+    no_room_ = false;
+    const double seconds = seconds_since(before);
+    checkpoint_seconds_ += seconds;
+    next_ = Clock::now() + std::max(every_, duration_of(kLeastRatio * seconds));
+  }
 
   RunLock lock_;
-  bool resume_;
   bool keep_checkpoint_;
   std::string command_;
   CheckpointFiles files_;

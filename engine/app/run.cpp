@@ -3,12 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <filesystem>
 #include <optional>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/app/progress.h"
 #include "engine/app/results.h"
@@ -21,15 +20,12 @@
 #include "engine/kinds/study_run.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
 
 namespace poesy::app {
 namespace {
-
-/// How long the other ranks may take to end their parts after rank 0 has ended the run.
-std::chrono::seconds patience(int exit_code) { return std::chrono::seconds(exit_code == kDone ? 60 : 10); }
 
 /// The processors that this process may use: those that the launcher bound it to, or its part of the machine's.
 std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
@@ -40,35 +36,11 @@ std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   return bound < all ? bound : std::max<std::size_t>(1, all / ranks_on_this_machine);
 }
 
-/// What one rank does; rank 0's exit code counts. default_threads: where the command line says nothing.
-using RankBody = std::function<int(Team& team, std::size_t default_threads)>;
-
-/// Runs the body on this rank, together with all others. The exit code, which is the same on all of them. Rank 0 alone
-/// speaks.
-int run_on_ranks(const Launch& launch, const RankBody& body) {
-  const std::unique_ptr<LaunchedRanks> ranks = connect_ranks(launch);
-  const std::size_t processors = processors_of_rank(ranks->on_this_machine());
-  Team team(*ranks);
-  if (!team.leads()) return team.follow([&] { body(team, processors); });
-  const int code = exit_code_of([&] { return body(team, processors); });
-  if (!team.dismiss(code, patience(code))) ranks->abort(code);
-  return code;
-}
-
 /// Says why a rank left, if one did; the run's exit code. Precondition: the run was interrupted.
 int say_why_a_rank_left(const Team& team) {
   if (!team.left()) return kInterrupted;
-  switch (team.left()->reason) {
-    case LeaveReason::stopped:
-      return complain(team.left()->text, kInterrupted);
-    case LeaveReason::bad_input:
-      return complain(team.left()->text, kBadInput);
-    case LeaveReason::file_trouble:
-      return complain(team.left()->text, kFileTrouble);
-    case LeaveReason::internal:
-      break;
-  }
-  return complain(team.left()->text, kInternalError);
+  constexpr std::array kCodes{kInterrupted, kBadInput, kFileTrouble, kInternalError};  // by LeaveReason
+  return complain(team.left()->text, kCodes[static_cast<std::size_t>(team.left()->reason)]);
 }
 
 struct RunCommandOptions {
@@ -109,34 +81,25 @@ std::string default_result(const RunCommandOptions& options) {
 
 /// "2/5"
 Shard parse_shard(const std::string& text) {
-  const auto fail = [&]() {
-    throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
-  };
-  const auto number = [&](std::string_view digits) {
-    std::size_t value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size()) fail();
-    return value;
-  };
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos) fail();
-  const std::size_t shard = number(std::string_view(text).substr(0, slash));
-  const Shard parsed{shard - 1, number(std::string_view(text).substr(slash + 1))};
-  if (shard == 0 || shard > parsed.count) fail();
-  return parsed;
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto shard = whole_number(std::string_view(text).substr(0, slash));
+  const auto count = slash < text.size() ? whole_number(std::string_view(text).substr(slash + 1)) : std::nullopt;
+  if (shard && count && *shard > 0 && *shard <= *count) return {*shard - 1, *count};
+  throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
 }
 
-/// run_to_file, and what is left to say about its checkpoints when it fails.
-std::optional<RunOutcome> run_to_end(const Job& job, ResumableRun& resumable, ProgressPrinter& printer) {
+/// run_to_file with progress, and what is left to say about its checkpoints when it fails.
+std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool quiet) {
   try {
-    auto outcome = run_to_file(job);
-    printer.finish();
-    return outcome;
+    ProgressPrinter printer(quiet);
+    job.options.progress = [&](const Progress& progress) {
+      printer(progress);
+      resumable.check_time();
+    };
+    return run_to_file(job);
   } catch (const BytesError& error) {
-    printer.finish();
     resumable.refuse_state(error);
   } catch (const FileError&) {
-    printer.finish();
     resumable.rescue();
     throw;
   }
@@ -199,26 +162,20 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
   if (const std::string held = held_errors_text(study); !held.empty() && !options.quiet) say(Message::note, held);
-  ProgressPrinter printer(options.quiet);
-  const auto on_progress = [&](const Progress& progress) {
-    printer(progress);
-    resumable.check_time();
-  };
-  const Job job{.study = study,
-                .model = *model,
-                .poses = std::move(poses),
-                .path = path,
-                .options = {.threads = threads,
-                            .progress = on_progress,
-                            .stop = &stop,
-                            .checkpoints = &resumable.checkpoints(),
-                            .shard = options.shard,
-                            .keep_checkpoint = options.resume.keep_checkpoint,
-                            .team = team},
-                .time = [&] { return resumable.time(); },
-                .threads = team != nullptr ? team->threads() : threads,
-                .ranks = team != nullptr ? team->ranks().size() : 1};
-  const std::optional<RunOutcome> outcome = run_to_end(job, resumable, printer);
+  Job job{.study = study,
+          .model = *model,
+          .poses = std::move(poses),
+          .path = path,
+          .options = {.threads = threads,
+                      .stop = &stop,
+                      .checkpoints = &resumable.checkpoints(),
+                      .shard = options.shard,
+                      .keep_checkpoint = options.resume.keep_checkpoint,
+                      .team = team},
+          .time = [&] { return resumable.time(); },
+          .threads = team != nullptr ? team->threads() : threads,
+          .ranks = team != nullptr ? team->ranks().size() : 1};
+  const std::optional<RunOutcome> outcome = run_to_end(job, resumable, options.quiet);
   if (!outcome) {
     const int code = team != nullptr ? say_why_a_rank_left(*team) : kInterrupted;
     resumable.explain_interruption();
@@ -228,45 +185,45 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   return report_outcome(job, options.study, *outcome);
 }
 
+/// The exit code, which is the same on all ranks. Rank 0 alone speaks.
 int run_alone_or_on_ranks(const RunCommandOptions& options) {
   const auto launch = find_launch();
   if (!launch || launch->size == 1) return run(options, resolved_threads(options.threads), nullptr);
-  return run_on_ranks(*launch, [&](Team& team, std::size_t default_threads) -> int {
-    const std::size_t threads = options.threads != 0 ? options.threads : default_threads;
-    if (team.leads()) return run(options, threads, &team);
-    follow(options, threads, team);
-    return kDone;
-  });
+  const std::unique_ptr<LaunchedRanks> ranks = connect_ranks(*launch);
+  const std::size_t processors = processors_of_rank(ranks->on_this_machine());
+  const std::size_t threads = options.threads != 0 ? options.threads : processors;
+  Team team(*ranks);
+  if (!team.leads()) return team.follow([&] { follow(options, threads, team); });
+  const int code = exit_code_of([&] { return run(options, threads, &team); });
+  // The others may take so long to end their parts.
+  if (!team.dismiss(code, std::chrono::seconds(code == kDone ? 60 : 10))) ranks->abort(code);
+  return code;
 }
 
 }  // namespace
 
 Command& add_run(Command& program) {
-  const auto options = std::make_shared<RunCommandOptions>();
-  Command& command = program.add_command("run", "run a study and write its result");
-  command.add_value("study", options->study, "STUDY.toml", "study file (TOML)")->required();
-  command.add_value("-o,--output", options->result, "RESULT.h5",
+  const auto [command, options] = program.add_command("run", "run a study and write its result", run_alone_or_on_ranks);
+  command.add_value("study", options.study, "STUDY.toml", "study file (TOML)")->required();
+  command.add_value("-o,--output", options.result, "RESULT.h5",
                     "result file; default: the study's name with .h5, in this folder");
-  command.add_whole_number("--threads", options->threads, "N",
+  command.add_whole_number("--threads", options.threads, "N",
                            "number of threads, of each rank; default: one per processor", 1, 1024);
-  command.add_whole_number("--seed", options->seed, "S", "seed, instead of the study's", 0, 0x7fffffffffffffff);
-  options->resume.add_to(command);
+  command.add_whole_number("--seed", options.seed, "S", "seed, instead of the study's", 0, 0x7fffffffffffffff);
+  options.resume.add_to(command);
   command
       .add_option_function<std::string>(
-          "--shard", [options](const std::string& text) { options->shard = parse_shard(text); },
+          "--shard", [&shard = options.shard](const std::string& text) { shard = parse_shard(text); },
           "run this one of N shards only, to be put together by poesy merge")
       ->type_name("K/N")
       ->group("On a cluster");
-  command.add_flag("--quiet", options->quiet, "no progress");
+  command.add_flag("--quiet", options.quiet, "no progress");
   command.notes = {"Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once."};
   command.examples = {
       {"gives study.h5", "poesy run study.toml"},
       {"stops after two hours, exit code 4; the same with --resume goes on", "poesy run study.toml --max-wall \"2 h\""},
       {"on several ranks, over MPI", "mpirun -n 4 poesy run study.toml -o result.h5"}};
-  command.action = [options, &program] {
-    options->program = program.get_name();
-    return run_alone_or_on_ranks(*options);
-  };
+  command.callback([&program, &called = options.program] { called = program.get_name(); });
   return command;
 }
 

@@ -9,19 +9,17 @@
 #include <vector>
 
 #include "engine/app/command_line.h"
-#include "engine/app/ending.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/registry.h"
-#include "engine/kinds/stored_study.h"
+#include "engine/kinds/study_file.h"
 #include "engine/report/display.h"
-#include "engine/report/json_tables.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -87,8 +85,6 @@ std::string held_errors_line(const StoredResult& result, std::size_t width) {
   return held.empty() ? held : prose_of(held, width);
 }
 
-void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
-
 std::size_t width_of(const ShowOptions& options) { return options.width.value_or(output_width()); }
 
 int show_one(const ShowOptions& options) {
@@ -146,34 +142,35 @@ int show_both(const ShowOptions& options) {
   return kDone;
 }
 
+int show(const ShowOptions& options) { return options.results.size() == 1 ? show_one(options) : show_both(options); }
+
 }  // namespace
 
 Command& add_show(Command& program) {
-  const auto options = std::make_shared<ShowOptions>();
-  Command& command = program.add_command("show", "print a result as tables, or the rankings of two beside each other");
+  const auto [command, options] =
+      program.add_command("show", "print a result as tables, or the rankings of two beside each other", show);
   command
-      .add_value("results", options->results, "RESULT.h5",
+      .add_value("results", options.results, "RESULT.h5",
                  "result file, or two sensitivity results whose rankings are shown beside each other")
       ->required()
       ->expected(1, 2);
   command.add_value(
-      "--response", options->response, "RESPONSE",
+      "--response", options.response, "RESPONSE",
       "response to rank by, or to show alone where nothing is ranked; A,B for one of each of two results");
-  command.add_value("--sort", options->sort, "KEY",
+  command.add_value("--sort", options.sort, "KEY",
                     fmt::format("order of the errors of a sensitivity result: {}; order is that of the study; default: "
                                 "effect",
                                 fmt::join(kRowOrders, ", ")));
-  command.add_whole_number("--top", options->top, "N", "only the first N errors of a sensitivity result", 1,
+  command.add_whole_number("--top", options.top, "N", "only the first N errors of a sensitivity result", 1,
                            kMostNumber);
-  command.add_whole_number("--width", options->width, "N",
+  command.add_whole_number("--width", options.width, "N",
                            "characters of a line; default: the terminal's, and where there is none, no limit", 1,
                            kMostNumber);
-  command.add_flag("--json", options->json, "the tables as JSON with all digits, and nothing else");
+  command.add_flag("--json", options.json, "the tables as JSON with all digits, and nothing else");
   command.examples = {{"the tables of a result", "poesy show result.h5"},
                       {"the ten errors that matter most to another response",
                        "poesy show result.h5 --response angular_deformation --top 10"},
                       {"the rankings of two studies beside each other", "poesy show platform.h5 published.h5"}};
-  command.action = [options] { return options->results.size() == 1 ? show_one(*options) : show_both(*options); };
   return command;
 }
 

@@ -3,12 +3,16 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string_view>
 
+#include "engine/app/mpi_ranks.h"
+#include "engine/base/error.h"
 #include "engine/base/units.h"
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 
 namespace poesy::app {
 namespace {
@@ -19,14 +23,21 @@ std::string_view variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-constexpr const char* kRed = "\033[1;31m";
-constexpr const char* kYellow = "\033[1;33m";
-constexpr const char* kPlain = "\033[0m";
-
 std::string beginning(Message kind) {
+  constexpr const char* kRed = "\033[1;31m";
+  constexpr const char* kYellow = "\033[1;33m";
   const std::string words = kind == Message::warning ? "poesy: warning:" : "poesy:";
-  if (kind == Message::note || !shows_colour(STDERR_FILENO)) return words;
-  return (kind == Message::warning ? kYellow : kRed) + words + kPlain;
+  const bool coloured = shows_live_lines(STDERR_FILENO) && variable("NO_COLOR").empty();
+  if (kind == Message::note || !coloured) return words;
+  return (kind == Message::warning ? kYellow : kRed) + words + "\033[0m";
+}
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free flags");
+
+void on_signal(int /*signal*/) {
+  interrupted = true;
+  std::signal(SIGINT, SIG_DFL);
 }
 
 }  // namespace
@@ -41,8 +52,6 @@ bool shows_live_lines(int descriptor) {
   return isatty(descriptor) != 0 && !term.empty() && term != "dumb";
 }
 
-bool shows_colour(int descriptor) { return shows_live_lines(descriptor) && variable("NO_COLOR").empty(); }
-
 std::size_t output_width() {
   if (::isatty(STDOUT_FILENO) == 0) return kUnlimitedWidth;
   if (const std::size_t width = terminal_width(STDOUT_FILENO); width > 0) return width;
@@ -51,6 +60,35 @@ std::size_t output_width() {
   return width && *width >= 1.0 && *width < 1e6 ? static_cast<std::size_t>(*width) : kUsualWidth;
 }
 
+void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
 void say(Message kind, const std::string& text) { std::fputs((beginning(kind) + " " + text + "\n").c_str(), stderr); }
+
+int complain(const std::string& problem, ExitCode code) {
+  if (is_first_process()) say(Message::error, problem);
+  return code;
+}
+
+int exit_code_of(const std::function<int()>& action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    return complain(error.what(), kBadInput);
+  } catch (const FileError& error) {
+    return complain(error.what(), kFileTrouble);
+  } catch (const std::exception& error) {
+    return complain(std::string("internal error: ") + error.what() + "; please report it", kInternalError);
+  }
+}
+
+const std::atomic<bool>& catch_interrupts() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  // Of a terminal that was closed; nohup has it ignored.
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  return interrupted;
+}
+
+void interrupt() { interrupted = true; }
 
 }  // namespace poesy::app

@@ -11,8 +11,7 @@
 
 namespace poesy {
 
-/// Bytes of one state, message or file.
-using Bytes = std::vector<std::byte>;
+using Bytes = std::vector<std::byte>;  ///< Bytes of one state, message or file.
 
 /// Bytes are not what they should be. what() is a clause without a place.
 class BytesError : public std::runtime_error {
@@ -30,21 +29,15 @@ class ByteWriter {
  public:
   /// Makes room for so many bytes in all, so that a long state is not copied while it grows.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
-  /// LEB128.
-  void number(std::uint64_t value);
-  /// Every bit is kept.
-  void real(double value) { reals(std::span(&value, 1)); }
-  /// Without their number.
-  void reals(std::span<const double> values);
-  /// Their number, then the bytes.
-  void block(std::span<const std::byte> bytes);
+  void number(std::uint64_t value);                         ///< LEB128.
+  void real(double value) { reals(std::span(&value, 1)); }  ///< Every bit is kept.
+  void reals(std::span<const double> values);               ///< Without their number.
+  void block(std::span<const std::byte> bytes);             ///< Their number, then the bytes.
   /// As a block.
   void text(std::string_view value) { block(std::as_bytes(std::span(value))); }
-  /// The bytes as they are, without their number.
-  void raw(std::span<const std::byte> bytes);
+  void raw(std::span<const std::byte> bytes);  ///< The bytes as they are, without their number.
 
-  /// What was written; leaves nothing.
-  Bytes take() { return std::exchange(bytes_, {}); }
+  Bytes take() { return std::exchange(bytes_, {}); }  ///< What was written; leaves nothing.
 
  private:
   Bytes bytes_;
@@ -54,32 +47,22 @@ class ByteWriter {
 /// been written, and no memory is asked for that the bytes left could not fill.
 class ByteReader {
  public:
-  /// Refers to the bytes.
-  explicit ByteReader(std::span<const std::byte> bytes) : left_(bytes) {}
+  explicit ByteReader(std::span<const std::byte> bytes) : left_(bytes) {}  ///< Refers to the bytes.
 
-  /// LEB128.
-  std::uint64_t number();
-  /// The same; also throws when it is above `most`.
-  std::uint64_t number_up_to(std::uint64_t most);
+  std::uint64_t number();                          ///< LEB128.
+  std::uint64_t number_up_to(std::uint64_t most);  ///< The same; also throws when it is above `most`.
   /// The number of things that follow, of at least so many bytes each. Precondition: least_bytes > 0.
   std::size_t count(std::size_t least_bytes);
-  /// One double.
-  double real();
-  /// Fills `values`.
-  void reals(std::span<double> values);
-  /// So many doubles, whose number the reader knows.
-  std::vector<double> reals(std::size_t count);
-  /// Refers to the bytes that are read.
-  std::span<const std::byte> block();
-  /// A block as text.
-  std::string text();
+  double real();                                 ///< One double.
+  void reals(std::span<double> values);          ///< Fills `values`.
+  std::vector<double> reals(std::size_t count);  ///< So many doubles, whose number the reader knows.
+  std::span<const std::byte> block();            ///< Refers to the bytes that are read.
+  std::string text();                            ///< A block as text.
   /// So many bytes as they stand; refers to the bytes that are read.
   std::span<const std::byte> raw(std::size_t count);
 
-  /// Bytes that were not read yet.
-  std::size_t left() const { return left_.size(); }
-  /// Throws when something is left.
-  void expect_end() const;
+  std::size_t left() const { return left_.size(); }  ///< Bytes that were not read yet.
+  void expect_end() const;                           ///< Throws when something is left.
 
  private:
   std::span<const std::byte> left_;

@@ -13,15 +13,12 @@ struct Index {
   constexpr Index() = default;
   /// Explicit, so that positions of different lists do not mix.
   constexpr explicit Index(std::size_t position) : value(position) {}
-  /// By position.
-  friend constexpr auto operator<=>(const Index&, const Index&) = default;
+  friend constexpr auto operator<=>(const Index&, const Index&) = default;  ///< By position.
 };
 
 /// Position of an error source in its model's list of all error sources.
 using FactorIndex = Index<struct FactorList>;
-/// Position of a pose in a study's pose set.
-using PoseIndex = Index<struct PoseList>;
-/// Position of a sample in the stream of one (factor, pose).
-using SampleIndex = Index<struct SampleList>;
+using PoseIndex = Index<struct PoseList>;      ///< Position of a pose in a study's pose set.
+using SampleIndex = Index<struct SampleList>;  ///< Position of a sample in the stream of one (factor, pose).
 
 }  // namespace poesy

@@ -4,7 +4,6 @@
 
 namespace poesy {
 
-/// Where there is no number.
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< Where there is no number.
 
 }  // namespace poesy

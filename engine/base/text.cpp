@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <cstdint>
 #include <numeric>
@@ -11,26 +12,6 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostWords = 12;
-
-/// What the first byte of a character of several bytes says.
-struct Lead {
-  std::size_t length;   ///< bytes of the character; 0: it is none
-  std::uint32_t begin;  ///< the bits of the code point in the first byte
-};
-
-Lead lead_of(unsigned char byte) {
-  if ((byte & 0xE0U) == 0xC0) return {2, byte & 0x1FU};
-  if ((byte & 0xF0U) == 0xE0) return {3, byte & 0x0FU};
-  if ((byte & 0xF8U) == 0xF0) return {4, byte & 0x07U};
-  return {0, 0};
-}
-
-/// Whether UTF-8 writes this code point in so many bytes: it has a shortest form, and none for surrogates (RFC 3629).
-bool is_written_in(std::size_t length, std::uint32_t code) {
-  constexpr std::array<std::uint32_t, 6> kFirst{0, 0, 0x80, 0x800, 0x10000, 0x110000};
-  const bool surrogate = code >= 0xD800 && code < 0xE000;
-  return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate;
-}
 
 bool is_control(std::string_view character) {
   const auto lead = static_cast<unsigned char>(character[0]);
@@ -82,16 +63,26 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   if (byte(0) < 0x80) return 1;
-  auto [length, code] = lead_of(byte(0));
-  if (length == 0 || length > text.size()) return 0;
+  const auto length = static_cast<std::size_t>(std::countl_one(byte(0)));
+  if (length < 2 || length > 4 || length > text.size()) return 0;
+  std::uint32_t code = byte(0) & (0x7FU >> length);
   for (std::size_t k = 1; k < length; ++k) {
     if ((byte(k) & 0xC0U) != 0x80) return 0;
     code = code << 6U | (byte(k) & 0x3FU);
   }
-  return is_written_in(length, code) ? length : 0;
+  // Each code point has one form, the shortest, and surrogates have none (RFC 3629).
+  constexpr std::array<std::uint32_t, 6> kFirst{0, 0, 0x80, 0x800, 0x10000, 0x110000};
+  const bool surrogate = code >= 0xD800 && code < 0xE000;
+  return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate ? length : 0;
 }
 
 std::size_t text_width(std::string_view text) {
@@ -149,10 +140,9 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
     if (candidate.size() > word.size() + allowed || word.size() > candidate.size() + allowed) continue;
     const std::size_t distance = edit_distance(word, candidate);
     const bool nothing_in_common = distance == std::max(word.size(), candidate.size());
-    if (distance < best_distance && !nothing_in_common) {
-      best = candidate;
-      best_distance = distance;
-    }
+    if (distance >= best_distance || nothing_in_common) continue;
+    best = candidate;
+    best_distance = distance;
   }
   return best;
 }

@@ -13,12 +13,13 @@ namespace poesy {
 /// The text with a to z for A to Z, in any locale. Other characters stay as they are.
 std::string lower_case(std::string_view text);
 
+std::string_view trimmed(std::string_view text);  ///< The text without the blanks and tabs around it.
+
 /// Bytes of the UTF-8 character at the start of this text, which is not empty; 0 where there is none: a cut or overlong
 /// form, a surrogate, a number above U+10FFFF.
 std::size_t character_length(std::string_view text);
 
-/// Characters of a UTF-8 text.
-std::size_t text_width(std::string_view text);
+std::size_t text_width(std::string_view text);  ///< Characters of a UTF-8 text.
 
 /// Lines of a text, broken at blanks, but not within numbers ("12 000", "5 %"). Each has at most `width` characters,
 /// the first one `first` where that is given; a longer word has a line of its own.
@@ -37,8 +38,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 /// "did you mean 'sigma'?" when a known word is close to this one, else the known words: "known: sigma, half_width".
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);
 
-/// One of these words: "a, b or c".
-std::string either(std::span<const std::string_view> words);
+std::string either(std::span<const std::string_view> words);  ///< One of these words: "a, b or c".
 
 /// The names of named things, for suggestion().
 template <class Named>

@@ -1,9 +1,12 @@
 #include "engine/base/units.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {
@@ -23,7 +26,20 @@ constexpr std::array<Unit, 13> kUnits{{{"m", Dimension::length, 1.0},
                                        {"ms", Dimension::time, 1e-3},
                                        {"min", Dimension::time, 60.0},
                                        {"h", Dimension::time, 3600.0}}};
-constexpr Unit kOne{"1", Dimension::number, 1.0};
+
+/// How a dimension is called, its SI unit, and the unit in which people read it; in the order of the enumeration.
+struct DimensionWords {
+  std::string_view name;
+  std::string_view si_unit;
+  Unit display;
+};
+
+constexpr std::array<DimensionWords, 4> kDimensions{{{"length", "m", {"mm", Dimension::length, 1e-3}},
+                                                     {"angle", "rad", {"deg", Dimension::angle, kDegree}},
+                                                     {"time", "s", {"s", Dimension::time, 1.0}},
+                                                     {"number", "1", {"1", Dimension::number, 1.0}}}};
+
+const DimensionWords& words_of(Dimension dimension) { return kDimensions.at(static_cast<std::size_t>(dimension)); }
 
 /// Another spelling of a unit, in UTF-8.
 struct Spelling {
@@ -33,22 +49,12 @@ struct Spelling {
 
 constexpr std::array<Spelling, 3> kSpellings{{{"\xC2\xB5m", "um"}, {"\xCE\xBCm", "um"}, {"\xC2\xB0", "deg"}}};
 
-constexpr const Unit* unit_named(std::string_view name) {
-  for (const Unit& unit : kUnits) {
-    if (unit.name == name) return &unit;
-  }
-  return nullptr;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-/// std::from_chars takes no plus sign; one is allowed here, but not "+-1".
-const char* after_plus(const char* begin, const char* end) {
-  return end - begin > 1 && begin[0] == '+' && begin[1] != '-' ? begin + 1 : begin;
+/// As std::to_chars writes it in this format.
+template <class... Format>
+std::string number_text(double value, Format... format) {
+  std::array<char, 32> text{};
+  const auto [end, failure] = std::to_chars(text.data(), text.data() + text.size(), value, format...);
+  return failure == std::errc() ? std::string(text.data(), end) : std::string("nan");
 }
 
 /// A number at the beginning of a text.
@@ -59,9 +65,11 @@ struct NumberRead {
 };
 
 NumberRead read_number(std::string_view text) {
+  // std::from_chars takes no plus sign; one is allowed here, but not "+-1".
+  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
   const char* end = text.data() + text.size();
   NumberRead read;
-  const auto [after, failure] = std::from_chars(after_plus(text.data(), end), end, read.value);
+  const auto [after, failure] = std::from_chars(text.data() + (plus ? 1 : 0), end, read.value);
   read.failure = failure;
   read.rest = text.substr(static_cast<std::size_t>(after - text.data()));
   return read;
@@ -74,10 +82,6 @@ bool is_too_small(std::string_view number) {
   return number.find_first_of("123456789") > number.find('.');
 }
 
-bool goes_on_behind_a_comma(std::string_view rest) {
-  return rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9';
-}
-
 /// Why there is no finite number at the beginning of a text; empty where there is one.
 std::string problem_of(const NumberRead& read, std::string_view text) {
   if (read.failure == std::errc::result_out_of_range) {
@@ -85,7 +89,8 @@ std::string problem_of(const NumberRead& read, std::string_view text) {
     return is_too_small(number) ? "is too small to be told from 0" : "is not a finite number, because it is too large";
   }
   if (read.failure != std::errc() || !std::isfinite(read.value)) return "is not a finite number";
-  return goes_on_behind_a_comma(read.rest) ? "has a decimal comma; write a decimal point" : "";
+  const bool comma = read.rest.size() > 1 && read.rest[0] == ',' && read.rest[1] >= '0' && read.rest[1] <= '9';
+  return comma ? "has a decimal comma; write a decimal point" : "";
 }
 
 }  // namespace
@@ -93,10 +98,10 @@ std::string problem_of(const NumberRead& read, std::string_view text) {
 std::span<const Unit> units() { return kUnits; }
 
 const Unit* find_unit(std::string_view spelling) {
-  for (const Spelling& other : kSpellings) {
-    if (other.text == spelling) return unit_named(other.unit);
-  }
-  return unit_named(spelling);
+  const auto other = std::ranges::find(kSpellings, spelling, &Spelling::text);
+  const std::string_view name = other == kSpellings.end() ? spelling : other->unit;
+  const auto unit = std::ranges::find(kUnits, name, &Unit::name);
+  return unit == kUnits.end() ? nullptr : &*unit;
 }
 
 std::string unit_names(std::optional<Dimension> dimension) {
@@ -109,56 +114,16 @@ std::string unit_names(std::optional<Dimension> dimension) {
   return list;
 }
 
-std::string_view si_unit(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::length:
-      return "m";
-    case Dimension::angle:
-      return "rad";
-    case Dimension::time:
-      return "s";
-    case Dimension::number:
-      break;
-  }
-  return "1";
-}
+std::string_view name(Dimension dimension) { return words_of(dimension).name; }
+std::string_view si_unit(Dimension dimension) { return words_of(dimension).si_unit; }
+const Unit& display_unit(Dimension dimension) { return words_of(dimension).display; }
 
 Dimension dimension_of(std::string_view si_name) {
-  for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::time}) {
-    if (si_unit(dimension) == si_name) return dimension;
-  }
-  return Dimension::number;
+  const auto found = std::ranges::find(kDimensions, si_name, &DimensionWords::si_unit);
+  return found == kDimensions.end() ? Dimension::number : found->display.dimension;
 }
 
 std::string_view error_kind(Dimension dimension) { return dimension == Dimension::angle ? "angular" : "linear"; }
-
-const Unit& display_unit(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::length:
-      return *unit_named("mm");
-    case Dimension::angle:
-      return *unit_named("deg");
-    case Dimension::time:
-      return *unit_named("s");
-    case Dimension::number:
-      break;
-  }
-  return kOne;
-}
-
-std::string_view name(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::length:
-      return "length";
-    case Dimension::angle:
-      return "angle";
-    case Dimension::time:
-      return "time";
-    case Dimension::number:
-      break;
-  }
-  return "number";
-}
 
 Quantity parse_quantity(std::string_view text, std::optional<Dimension> wanted) {
   const std::string_view body = trimmed(text);
@@ -186,11 +151,7 @@ std::string number_problem(std::string_view text) {
   return problem.empty() ? "is not a finite number" : problem;
 }
 
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  const auto [end, failure] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return failure == std::errc() ? std::string(text.data(), end) : std::string("nan");
-}
+std::string shortest(double value) { return number_text(value); }
 
 std::string to_text(Quantity quantity) {
   return shortest(quantity.si) + " " + std::string(si_unit(quantity.dimension));
@@ -198,10 +159,7 @@ std::string to_text(Quantity quantity) {
 
 std::string readable_text(Quantity quantity, int digits) {
   const Unit& unit = display_unit(quantity.dimension);
-  std::array<char, 32> text{};
-  const auto [end, failure] =
-      std::to_chars(text.data(), text.data() + text.size(), quantity.si / unit.si, std::chars_format::general, digits);
-  const std::string number = failure == std::errc() ? std::string(text.data(), end) : std::string("nan");
+  const std::string number = number_text(quantity.si / unit.si, std::chars_format::general, digits);
   return unit.dimension == Dimension::number ? number : number + " " + std::string(unit.name);
 }
 

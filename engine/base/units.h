@@ -18,8 +18,7 @@ struct Unit {
   double si;              ///< its size
 };
 
-/// m, cm, mm, um, rad, mrad, deg, arcmin, arcsec, s, ms, min, h.
-std::span<const Unit> units();
+std::span<const Unit> units();  ///< m, cm, mm, um, rad, mrad, deg, arcmin, arcsec, s, ms, min, h.
 
 /// The unit of this name, or of another spelling of it: a micro sign (U+00B5) or Greek mu (U+03BC) before the m, a
 /// degree sign (U+00B0). Null where there is none.
@@ -28,20 +27,13 @@ const Unit* find_unit(std::string_view spelling);
 /// The names of the units of one dimension, or of all: "m, cm, mm, um".
 std::string unit_names(std::optional<Dimension> dimension = std::nullopt);
 
-/// "m", "rad", "s" or "1".
-std::string_view si_unit(Dimension dimension);
+std::string_view name(Dimension dimension);        ///< "length", "angle", "time" or "number".
+std::string_view si_unit(Dimension dimension);     ///< "m", "rad", "s" or "1".
+const Unit& display_unit(Dimension dimension);     ///< The unit in which people read it, "mm", "deg", "s" or "1".
+std::string_view error_kind(Dimension dimension);  ///< What errors of this dimension are called: "linear" or "angular".
 
 /// The dimension of which this is the SI unit; a number for any other text.
 Dimension dimension_of(std::string_view si_name);
-
-/// What errors of this dimension are called: "linear" or "angular".
-std::string_view error_kind(Dimension dimension);
-
-/// The unit in which people read this dimension, "mm", "deg", "s" or "1".
-const Unit& display_unit(Dimension dimension);
-
-/// "length", "angle", "time" or "number".
-std::string_view name(Dimension dimension);
 
 /// A value with its dimension.
 struct Quantity {
@@ -65,11 +57,9 @@ std::optional<double> parse_number(std::string_view text);
 /// Why parse_number() cannot read a text, as what follows its name: "is not a finite number".
 std::string number_problem(std::string_view text);
 
-/// The shortest text that reads back as the same number: "0.001".
-std::string shortest(double value);
+std::string shortest(double value);  ///< The shortest text that reads back as the same number: "0.001".
 
-/// A quantity for a study file, exact when read back: "0.001 m", "0.5 rad".
-std::string to_text(Quantity quantity);
+std::string to_text(Quantity quantity);  ///< A quantity for a study file, exact when read back: "0.001 m", "0.5 rad".
 
 /// A quantity in the unit in which people read it, to this many digits: "80 mm", "1 deg".
 std::string readable_text(Quantity quantity, int digits = 12);

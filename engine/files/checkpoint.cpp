@@ -1,17 +1,33 @@
 #include "engine/files/checkpoint.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <variant>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/files/sha256.h"
+#include "engine/files/content_hash.h"
+#include "engine/files/file_writer.h"
 #include "engine/files/version.h"
 #include "engine/study/study_file.h"
 #include "engine/study/study_kind.h"
+#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::uint64_t kVersion = 2;
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
@@ -20,34 +36,26 @@ std::string hash_of(const PoseSet& poses) {
   ByteWriter bytes;
   bytes.number(poses.size());
   for (std::size_t m = 0; m < poses.size(); ++m) bytes.reals(poses[PoseIndex(m)]);
-  Sha256 sha;
-  sha.bytes(bytes.take());
-  return hex(sha.digest());
+  return hex(sha256(bytes.take()));
 }
 
-void write_identity(ByteWriter& to, const CheckpointIdentity& identity) {
-  to.text(identity.poesy_version);
-  to.text(identity.git_commit);
-  to.text(identity.model);
-  to.number(identity.seed);
-  to.number(identity.samples);
-  to.text(identity.study);
-  to.text(identity.poses);
-  to.text(identity.shard);
+/// The members in the order of the file.
+template <class Identity, class Member>
+void for_each_member(Identity& identity, const Member& member) {
+  member(identity.poesy_version);
+  member(identity.git_commit);
+  member(identity.model);
+  member(identity.seed);
+  member(identity.samples);
+  member(identity.study);
+  member(identity.poses);
+  member(identity.shard);
 }
 
-CheckpointIdentity read_identity(ByteReader& from) {
-  CheckpointIdentity identity;
-  identity.poesy_version = from.text();
-  identity.git_commit = from.text();
-  identity.model = from.text();
-  identity.seed = from.number();
-  identity.samples = from.number();
-  identity.study = from.text();
-  identity.poses = from.text();
-  identity.shard = from.text();
-  return identity;
-}
+void put(ByteWriter& to, const std::string& value) { to.text(value); }
+void put(ByteWriter& to, std::uint64_t value) { to.number(value); }
+void take(ByteReader& from, std::string& value) { value = from.text(); }
+void take(ByteReader& from, std::uint64_t& value) { value = from.number(); }
 
 double seconds(ByteReader& from) {
   const double value = from.real();
@@ -55,14 +63,25 @@ double seconds(ByteReader& from) {
   throw BytesError("has a time that is none");
 }
 
-constexpr std::string_view kStartAfresh = ", or move the checkpoint away to start afresh";
-
-[[noreturn]] void refuse(const std::string& path, const std::string& problem, const std::string& remedy) {
-  throw InputError({.file = path}, problem, remedy + std::string(kStartAfresh));
+std::string program(const CheckpointIdentity& identity) {
+  return fmt::format("poesy {} ({})", printable(identity.poesy_version), printable(identity.git_commit));
 }
 
-std::string program(const CheckpointIdentity& identity) {
-  return "poesy " + printable(identity.poesy_version) + " (" + printable(identity.git_commit) + ")";
+/// A checkpoint, or why there is none to be had.
+std::variant<Checkpoint, std::string> read_checkpoint(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return stands(path) ? "is not a plain file" : "does not exist";
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  Bytes bytes(file ? static_cast<std::size_t>(fs::file_size(path, ignored)) : 0);
+  if (!file || !file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
+    return "cannot be read (" + std::generic_category().message(errno) + ")";
+  }
+  try {
+    return decode_checkpoint(bytes);
+  } catch (const BytesError& error) {
+    return error.what();
+  }
 }
 
 }  // namespace
@@ -79,44 +98,36 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
           .model = study.model().name,
           .seed = study.seed,
           .samples = study.analysis.samples,
-          .study = resolved_text(rest),
+          .study = resolved_text(rest) + (study.mechanism.file ? study.mechanism.file->text : ""),
           .poses = hash_of(poses),
           .shard = shard ? to_string(*shard) : ""};
 }
 
 void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path) {
-  if (checkpoint.poesy_version != run.poesy_version || checkpoint.git_commit != run.git_commit) {
-    refuse(path, "was written by " + program(checkpoint) + ", and this is " + program(run),
-           "continue it with that version");
-  }
-  if (checkpoint.model != run.model) {
-    refuse(path, "is of the mechanism " + printable(checkpoint.model) + ", and this study is of " + run.model,
-           "give the study of that mechanism");
-  }
-  if (checkpoint.seed != run.seed) {
-    refuse(path, "has seed " + std::to_string(checkpoint.seed) + ", and this run has " + std::to_string(run.seed),
-           "give the same seed");
-  }
-  if (checkpoint.study != run.study) {
-    const auto [there, here] = first_difference(checkpoint.study, run.study);
-    refuse(path, "is of another study: it has " + there + " where this study has " + here, "give the study as it was");
-  }
-  if (checkpoint.poses != run.poses) {
-    refuse(path, "is of other poses under the same name", "give the poses as they were");
-  }
-  if (checkpoint.shard != run.shard) {
-    const auto part = [](const std::string& shard) {
-      return shard.empty() ? "the whole study" : "shard " + printable(shard);
-    };
-    refuse(path, "is of " + part(checkpoint.shard) + ", and this run is of " + part(run.shard),
-           "give the same --shard");
-  }
-  if (checkpoint.samples > run.samples) {
-    refuse(path,
-           "has " + std::to_string(checkpoint.samples) + " samples, and this study asks for " +
-               std::to_string(run.samples),
-           "ask for as many or more");
-  }
+  const auto check = [&](bool continues, const std::string& problem, const std::string& remedy) {
+    if (!continues) throw InputError({.file = path}, problem, remedy + ", or move the checkpoint away to start afresh");
+  };
+  check(checkpoint.poesy_version == run.poesy_version && checkpoint.git_commit == run.git_commit,
+        fmt::format("was written by {}, and this is {}", program(checkpoint), program(run)),
+        "continue it with that version");
+  check(checkpoint.model == run.model,
+        fmt::format("is of the mechanism {}, and this study is of {}", printable(checkpoint.model), run.model),
+        "give the study of that mechanism");
+  check(checkpoint.seed == run.seed, fmt::format("has seed {}, and this run has {}", checkpoint.seed, run.seed),
+        "give the same seed");
+  const auto [there, here] = first_difference(checkpoint.study, run.study);
+  check(checkpoint.study == run.study,
+        fmt::format("is of another study: it has {} where this study has {}", there, here), "give the study as it was");
+  check(checkpoint.poses == run.poses, "is of other poses under the same name", "give the poses as they were");
+  const auto part = [](const std::string& shard) {
+    return shard.empty() ? "the whole study" : "shard " + printable(shard);
+  };
+  check(checkpoint.shard == run.shard,
+        fmt::format("is of {}, and this run is of {}", part(checkpoint.shard), part(run.shard)),
+        "give the same --shard");
+  check(checkpoint.samples <= run.samples,
+        fmt::format("has {} samples, and this study asks for {}", checkpoint.samples, run.samples),
+        "ask for as many or more");
 }
 
 CheckpointPieces::CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time,
@@ -125,7 +136,7 @@ CheckpointPieces::CheckpointPieces(const CheckpointIdentity& identity, const Run
   ByteWriter head;
   head.raw(std::as_bytes(std::span(kCheckpointMagic)));
   head.number(kVersion);
-  write_identity(head, identity);
+  for_each_member(identity, [&](const auto& value) { put(head, value); });
   head.real(time.wall);
   head.real(time.checkpoints);
   head.number(stages.size());
@@ -152,18 +163,15 @@ Checkpoint decode_checkpoint(std::span<const std::byte> file) {
     throw BytesError("is not a checkpoint of poesy");
   }
   const auto content = file.first(file.size() - kDigestBytes);
-  Sha256 sha;
-  sha.bytes(content);
-  if (!std::ranges::equal(sha.digest(), file.last(kDigestBytes))) {
+  if (!std::ranges::equal(sha256(content), file.last(kDigestBytes))) {
     throw BytesError("is cut off or changed: its digest does not match");
   }
   ByteReader from(content.subspan(magic.size()));
   if (const std::uint64_t version = from.number(); version != kVersion) {
-    throw BytesError("is of format version " + std::to_string(version) + ", and this program knows " +
-                     std::to_string(kVersion));
+    throw BytesError(fmt::format("is of format version {}, and this program knows {}", version, kVersion));
   }
   Checkpoint checkpoint;
-  checkpoint.identity = read_identity(from);
+  for_each_member(checkpoint.identity, [&](auto& value) { take(from, value); });
   checkpoint.time.wall = seconds(from);
   checkpoint.time.checkpoints = seconds(from);
   const std::size_t stages = from.count(1);
@@ -173,6 +181,69 @@ Checkpoint decode_checkpoint(std::span<const std::byte> file) {
   }
   from.expect_end();
   return checkpoint;
+}
+
+CheckpointFiles::CheckpointFiles(const std::string& result_path)
+    : newer_(result_path + ".part"), older_(newer_ + ".1"), temporary_(newer_ + ".tmp") {}
+
+bool CheckpointFiles::exist() const { return stands(newer_) || stands(older_); }
+
+std::optional<FoundCheckpoint> CheckpointFiles::find() {
+  if (!exist()) return std::nullopt;
+  auto newer = read_checkpoint(newer_);
+  newer_is_sound_ = std::holds_alternative<Checkpoint>(newer);
+  if (newer_is_sound_) return FoundCheckpoint{std::get<Checkpoint>(std::move(newer)), newer_, ""};
+  auto older = read_checkpoint(older_);
+  if (std::holds_alternative<Checkpoint>(older)) {
+    return FoundCheckpoint{std::get<Checkpoint>(std::move(older)), older_, std::get<std::string>(newer)};
+  }
+  throw FileError(newer_, std::get<std::string>(newer) + ", and " + older_ + " " + std::get<std::string>(older),
+                  "restore a copy, or move them away to start afresh");
+}
+
+void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages) {
+  const CheckpointPieces pieces(identity, time, stages);
+  FileWriter writer(newer_, temporary_);
+  writer.expect(pieces.size());
+  pieces.for_each([&](std::span<const std::byte> piece) { writer.write(piece); });
+  writer.sync();
+  if (newer_is_sound_) put_at_second_name(newer_, older_);
+  writer.commit();
+  newer_is_sound_ = true;
+}
+
+void CheckpointFiles::remove() {
+  // The newest last, so that what is left of a removal that was cut short is the newest.
+  for (const std::string* path : {&temporary_, &older_, &newer_}) {
+    std::error_code error;
+    fs::remove(*path, error);
+    if (error) throw FileError(*path, "cannot be removed (" + error.message() + ")", "remove it by hand");
+  }
+  newer_is_sound_ = false;
+}
+
+RunLock::RunLock(const std::string& result_path) : path_(result_path + ".lock") {
+  for (;;) {
+    descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) return;
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const bool taken = errno == EWOULDBLOCK;
+      ::close(std::exchange(descriptor_, -1));
+      if (!taken) return;
+      throw InputError({.file = result_path}, "another run is computing this result",
+                       "wait for it, or give each run its own -o");
+    }
+    struct stat file {};
+    // A run that ended in between has removed the file: a lock on that keeps nobody away.
+    if (::fstat(descriptor_, &file) == 0 && file.st_nlink > 0) return;
+    ::close(std::exchange(descriptor_, -1));
+  }
+}
+
+RunLock::~RunLock() {
+  if (descriptor_ < 0) return;
+  ::unlink(path_.c_str());
+  ::close(descriptor_);
 }
 
 }  // namespace poesy

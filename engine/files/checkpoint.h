@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/model/pose_set.h"
 #include "engine/run/shard.h"
+#include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -24,12 +24,12 @@ struct CheckpointIdentity {
   std::string model;          ///< its name
   std::uint64_t seed = 0;     ///< of the draws
   std::uint64_t samples = 0;  ///< that the study sets; a run may have more than its checkpoint
-  std::string study;          ///< the resolved study, without title, seed, samples, max_not_converged and limits
-  std::string poses;          ///< SHA-256 of the poses, hexadecimal
-  std::string shard = {};     ///< "2/5"; empty for the whole study
+  std::string study;       ///< the resolved study, without title, seed, samples, max_not_converged and limits, and the
+                           ///< mechanism's file
+  std::string poses;       ///< SHA-256 of the poses, hexadecimal
+  std::string shard = {};  ///< "2/5"; empty for the whole study
 
-  /// Whether nothing differs.
-  bool operator==(const CheckpointIdentity&) const = default;
+  bool operator==(const CheckpointIdentity&) const = default;  ///< Whether nothing differs.
 };
 
 /// That of a run of this program.
@@ -70,8 +70,7 @@ class CheckpointPieces {
   /// Refers to the stages.
   CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
 
-  /// Bytes of the whole file.
-  std::size_t size() const;
+  std::size_t size() const;  ///< Bytes of the whole file.
   /// Calls write(bytes) with each piece in order.
   template <class Write>
   void for_each(const Write& write) const {
@@ -92,5 +91,49 @@ class CheckpointPieces {
 
 /// Reads a whole checkpoint file back. Throws BytesError for anything that CheckpointPieces does not give.
 Checkpoint decode_checkpoint(std::span<const std::byte> file);
+
+/// A checkpoint that was found.
+struct FoundCheckpoint {
+  Checkpoint checkpoint;    ///< its content
+  std::string path;         ///< the file that it was read from
+  std::string passed_over;  ///< why the newer one could not be taken; empty when this is the newer one
+};
+
+/// The checkpoints of an unfinished run beside its result: RESULT.h5.part, and the one before it as RESULT.h5.part.1.
+/// Each has its own digest and comes into being whole: written as RESULT.h5.part.tmp and synced; then the newer one
+/// gets the older one's name as well, and the new one is renamed to take its place. Once there is a RESULT.h5.part, it
+/// is there at any moment.
+class CheckpointFiles {
+ public:
+  explicit CheckpointFiles(const std::string& result_path);  ///< Beside this result.
+
+  const std::string& newer() const { return newer_; }  ///< Path of the newer one, RESULT.h5.part.
+  bool exist() const;                                  ///< Whether there is a file, sound or not.
+  /// The newest one that is sound, if there is a file at all. Throws FileError when there is and none is sound.
+  std::optional<FoundCheckpoint> find();
+  /// Throws FileError; then the checkpoints that were there are there.
+  void write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
+  void remove();  ///< Removes all of them. Throws FileError.
+
+ private:
+  std::string newer_;
+  std::string older_;
+  std::string temporary_;
+  bool newer_is_sound_ = false;  ///< only then it may replace the older one
+};
+
+/// Keeps other runs from the same result, and so from its checkpoints, while it lives: an advisory lock on
+/// RESULT.h5.lock, which goes with the process however that ends. Where the file system knows no locks there is none.
+class RunLock {
+ public:
+  explicit RunLock(const std::string& result_path);  ///< Throws InputError when another run has it.
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+  ~RunLock();
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+};
 
 }  // namespace poesy

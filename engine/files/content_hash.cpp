@@ -1,127 +1,131 @@
 #include "engine/files/content_hash.h"
 
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
-
-#include "engine/files/sha256.h"
+#include <new>
+#include <stdexcept>
+#include <string_view>
 
 namespace poesy {
 namespace {
 
-/// SHA-256 of numbers and texts, as content_hash.h defines them.
-class ContentSha256 {
- public:
-  void bytes(const void* data, std::size_t count) { sha_.bytes({static_cast<const std::byte*>(data), count}); }
+static_assert(std::endian::native == std::endian::little, "numbers are hashed as they are in memory");
 
-  void number(std::uint64_t value) {
-    std::array<unsigned char, 8> little_endian{};
-    for (unsigned char& byte : little_endian) {
-      byte = static_cast<unsigned char>(value & 0xffU);
-      value >>= 8U;
-    }
-    bytes(little_endian.data(), little_endian.size());
-  }
+void check(int ok) {
+  if (ok != 1) throw std::runtime_error("OpenSSL cannot compute a SHA-256 hash");
+}
 
-  void text(std::string_view value) {
-    number(value.size());
-    bytes(value.data(), value.size());
-  }
-
-  std::string hex() { return poesy::hex(sha_.digest()); }
-
- private:
-  Sha256 sha_;
-};
+/// In the order of h5::Value::Type.
+constexpr std::string_view kTypeNames[] = {"float", "int", "uint", "text"};
 
 bool is_bookkeeping(std::string_view attribute) {
-  constexpr std::array<std::string_view, 4> kNames{"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"};
-  return std::ranges::find(kNames, attribute) != kNames.end() || attribute.starts_with("_Netcdf4") ||
+  constexpr std::string_view kNames[] = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"};
+  return std::ranges::find(kNames, attribute) != std::end(kNames) || attribute.starts_with("_Netcdf4") ||
          attribute.starts_with("_nc3");
 }
 
-std::string_view type_name(h5::Value::Type type) {
-  switch (type) {
-    case h5::Value::Type::floating:
-      return "float";
-    case h5::Value::Type::signed_integer:
-      return "int";
-    case h5::Value::Type::unsigned_integer:
-      return "uint";
-    case h5::Value::Type::text:
-      break;
-  }
-  return "text";
-}
-
-bool is_nan(std::uint64_t bits) { return std::isnan(std::bit_cast<double>(bits)); }
-
 void make_nans_equal(h5::Value& value) {
-  static_assert(std::endian::native == std::endian::little, "values arrive little-endian");
   constexpr std::uint64_t kNan = 0x7ff8000000000000U;
-  if (value.type != h5::Value::Type::floating || value.width != sizeof(std::uint64_t)) return;
-  for (std::size_t at = 0; at < value.numbers.size(); at += sizeof(std::uint64_t)) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value.numbers[at], sizeof bits);
-    if (is_nan(bits)) std::memcpy(&value.numbers[at], &kNan, sizeof kNan);
+  if (value.type != h5::Value::Type::floating || value.width != sizeof(double)) return;
+  for (std::size_t at = 0; at < value.numbers.size(); at += sizeof(double)) {
+    double number = 0.0;
+    std::memcpy(&number, &value.numbers[at], sizeof number);
+    if (std::isnan(number)) std::memcpy(&value.numbers[at], &kNan, sizeof kNan);
   }
 }
 
+/// Adds what content_hash.h lists to a hash, object by object.
 class ContentHasher {
  public:
-  explicit ContentHasher(const h5::File& file) : file_(&file) {}
+  explicit ContentHasher(const h5::File& file) : file_(file) {}
 
   std::string operator()() {
     add_object("/");
-    return sha_.hex();
+    return hex(sha_.digest());
   }
 
  private:
-  void add_object(const std::string& path) {
-    const bool group = file_->is_group(path);
-    sha_.text(path);
-    sha_.text(group ? "group" : "dataset");
-    if (!group) add_value(file_->value(path));
-    add_attributes(path);
-    if (group) add_children(path);
+  void number(std::uint64_t value) { sha_.bytes(std::as_bytes(std::span(&value, 1))); }
+
+  void text(std::string_view value) {
+    number(value.size());
+    sha_.bytes(std::as_bytes(std::span(value)));
   }
 
-  void add_children(const std::string& path) {
+  void add_object(const std::string& path) {
+    const bool group = file_.is_group(path);
+    text(path);
+    text(group ? "group" : "dataset");
+    if (!group) add_value(file_.value(path));
+    add_attributes(path);
+    if (!group) return;
     const std::string folder = path == "/" ? path : path + "/";
-    for (const std::string& child : file_->children(path)) {
+    for (const std::string& child : file_.children(path)) {
       if (folder + child != "/run") add_object(folder + child);
     }
   }
 
   void add_attributes(const std::string& path) {
-    std::vector<std::string> names = file_->attributes(path);
+    std::vector<std::string> names = file_.attributes(path);
     std::erase_if(names, [&](const std::string& name) {
       return is_bookkeeping(name) || (path == "/" && name == "content_sha256");
     });
-    sha_.number(names.size());
+    number(names.size());
     for (const std::string& name : names) {
-      sha_.text(name);
-      add_value(file_->attribute_value(path, name));
+      text(name);
+      add_value(file_.attribute_value(path, name));
     }
   }
 
   void add_value(h5::Value value) {
-    sha_.text(type_name(value.type));
-    sha_.number(value.width);
-    sha_.number(value.shape.size());
-    for (const std::size_t length : value.shape) sha_.number(length);
+    text(kTypeNames[static_cast<std::size_t>(value.type)]);
+    number(value.width);
+    number(value.shape.size());
+    for (const std::size_t length : value.shape) number(length);
     make_nans_equal(value);
-    sha_.bytes(value.numbers.data(), value.numbers.size());
-    for (const std::string& text : value.strings) sha_.text(text);
+    sha_.bytes(value.numbers);
+    for (const std::string& one : value.strings) text(one);
   }
 
-  const h5::File* file_;
-  ContentSha256 sha_;
+  const h5::File& file_;
+  Sha256 sha_;
 };
 
 }  // namespace
+
+void Sha256::Free::operator()(evp_md_ctx_st* context) const { EVP_MD_CTX_free(context); }
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+  if (context_ == nullptr) throw std::bad_alloc();
+  check(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
+}
+
+void Sha256::bytes(std::span<const std::byte> data) {
+  check(EVP_DigestUpdate(context_.get(), data.data(), data.size()));
+}
+
+Sha256::Digest Sha256::digest() {
+  Digest digest{};
+  check(EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), nullptr));
+  return digest;
+}
+
+Sha256::Digest sha256(std::span<const std::byte> bytes) {
+  Sha256 sha;
+  sha.bytes(bytes);
+  return sha.digest();
+}
+
+std::string hex(std::span<const std::byte> bytes) {
+  std::string text;
+  for (const std::byte byte : bytes) text += fmt::format("{:02x}", std::to_integer<unsigned>(byte));
+  return text;
+}
 
 std::string content_sha256(const h5::File& file) { return ContentHasher(file)(); }
 

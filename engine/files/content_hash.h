@@ -1,10 +1,37 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
 #include <string>
 
 #include "engine/files/h5.h"
 
+// OpenSSL's state of a digest.
+struct evp_md_ctx_st;
+
 namespace poesy {
+
+/// SHA-256 of bytes that come piece by piece.
+class Sha256 {
+ public:
+  using Digest = std::array<std::byte, 32>;  ///< SHA-256 of some bytes.
+
+  Sha256();
+  void bytes(std::span<const std::byte> data);  ///< Appends.
+  Digest digest();                              ///< Nothing may be added afterwards.
+
+ private:
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  std::unique_ptr<evp_md_ctx_st, Free> context_;
+};
+
+Sha256::Digest sha256(std::span<const std::byte> bytes);  ///< Of bytes that are all there.
+
+std::string hex(std::span<const std::byte> bytes);  ///< Lower-case hexadecimal.
 
 /// SHA-256 (lower-case hexadecimal) of everything a result file says, but for `/run` and its own attribute
 /// `content_sha256`. It depends on names, shapes, types and values, not on how HDF5 lays them out.

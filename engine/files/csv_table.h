@@ -44,16 +44,14 @@ std::string write_csv(const std::string& folder, const CsvTable& table);
 
 /// The SI units of things that may differ: "m", or "m or rad".
 std::string si_units(const std::vector<NamedUnit>& things);
-/// The units in which people read them: "mm or deg".
-std::string display_units(const std::vector<NamedUnit>& things);
+std::string display_units(const std::vector<NamedUnit>& things);  ///< The units in which people read them: "mm or deg".
 
 /// The unit of a row of fields.h in CSV. response: of its numbers, where they belong to one.
 std::string csv_unit(const std::string& unit, const StoredResult& result, const NamedUnit* response = nullptr);
 
 /// A table with a line for each error of the result.
 CsvTable lines_of_factors(const StoredResult& result, std::string name);
-/// A table with a line for each pose.
-CsvTable lines_of_poses(const StoredResult& result, std::string name);
+CsvTable lines_of_poses(const StoredResult& result, std::string name);  ///< A table with a line for each pose.
 
 /// A column of the elements first, first + step, ... of a list, or of get(element).
 template <class Thing, class Get = std::identity>

@@ -50,17 +50,27 @@ class ResultBuilder {
  public:
   ResultBuilder() : file_(h5::File::in_memory()) {}
 
-  /// For groups and attributes.
-  h5::File& file() { return file_; }
+  h5::File& file() { return file_; }  ///< For groups and attributes.
 
   /// Adds the axis `name`: the dimension scale /name, one value for each position.
   template <h5::Element T>
-  void add_axis(const std::string& name, const std::vector<T>& values, const Label& label);
+  void add_axis(const std::string& name, const std::vector<T>& values, const Label& label) {
+    axis_length_[name] = values.size();
+    write<T>("/" + name, {values.size()}, values, label);
+    file_.make_scale("/" + name);
+  }
   /// The lengths of these axes. Precondition: they were added.
-  h5::Shape shape(const Axes& axes) const;
+  h5::Shape shape(const Axes& axes) const {
+    h5::Shape shape;
+    for (const std::string& axis : axes) shape.push_back(axis_length_.at(axis));
+    return shape;
+  }
   /// Adds the dataset at path along these axes, which were added before. Its shape is their lengths: none for a scalar.
   template <h5::Element T>
-  void add(const std::string& path, const Axes& axes, std::span<const T> values, const Label& label);
+  void add(const std::string& path, const Axes& axes, std::span<const T> values, const Label& label) {
+    write(path, shape(axes), values, label);
+    for (std::size_t k = 0; k < axes.size(); ++k) file_.attach_scale(path, k, "/" + axes[k]);
+  }
   /// The same from a list.
   template <h5::Element T>
   void add(const std::string& path, const Axes& axes, const std::vector<T>& values, const Label& label) {
@@ -69,28 +79,52 @@ class ResultBuilder {
   /// A single value.
   template <h5::Element T>
   void add_scalar(const std::string& path, const T& value, const Label& label) {
-    add(path, {}, std::span<const T>(&value, 1), label);
+    write(path, {}, std::span<const T>(&value, 1), label);
   }
   /// Lets the group's readers find these axes in the group itself: xarray opens one group at a time.
-  void show_axes(const std::string& group, const Axes& axes);
+  void show_axes(const std::string& group, const Axes& axes) {
+    for (const std::string& axis : axes) {
+      const std::string shown = group + "/" + axis;
+      if (!file_.exists(shown)) file_.link("/" + axis, shown);
+    }
+  }
 
  private:
+  template <h5::Element T>
+  void write(const std::string& path, const h5::Shape& shape, std::span<const T> values, const Label& label) {
+    file_.write<T>(path, shape, values);
+    file_.set_attribute(path, "unit", label.unit);
+    file_.set_attribute(path, "description", label.description);
+  }
+
   h5::File file_;
   std::map<std::string, std::size_t> axis_length_;
 };
 
 /// The number of positions on an axis at the root.
-std::size_t axis_length(const h5::File& file, const std::string& name);
+inline std::size_t axis_length(const h5::File& file, const std::string& name) {
+  return h5::size(file.shape("/" + name));
+}
 
 /// Throws h5::Error where a dataset has another shape.
-void check_shape(const h5::File& file, const std::string& path, const h5::Shape& shape);
+inline void check_shape(const h5::File& file, const std::string& path, const h5::Shape& shape) {
+  if (file.shape(path) != shape) throw h5::Error(path + " does not have the shape it should have");
+}
 
 /// All elements of a dataset. Throws h5::Error where it has another shape.
 template <h5::Element T>
-std::vector<T> read_shaped(const h5::File& file, const std::string& path, const h5::Shape& shape);
+std::vector<T> read_shaped(const h5::File& file, const std::string& path, const h5::Shape& shape) {
+  check_shape(file, path, shape);
+  return file.read<T>(path);
+}
+
 /// The same where its shape is that of its axes.
 template <h5::Element T>
-std::vector<T> read_along(const h5::File& file, const std::string& path, const Axes& axes);
+std::vector<T> read_along(const h5::File& file, const std::string& path, const Axes& axes) {
+  h5::Shape shape;
+  for (const std::string& axis : axes) shape.push_back(axis_length(file, axis));
+  return read_shaped<T>(file, path, shape);
+}
 
 /// The member that holds the elements of a dataset. A list has all of them. Other members have one: the only one of a
 /// scalar, or that of one thing in a list of things. A position that may be missing is stored as -1 then.
@@ -117,7 +151,7 @@ enum class Stored {
 /// A dataset of a group of a result file.
 template <class Found>
 struct FieldRow {
-  /// A row of a table: the members below, in their order.
+  /// A row of a table: the members below, in their order. (As an aggregate with defaults it breaks GCC 12.)
   FieldRow(std::string dataset, Member<Found> elements, Axes along, std::string in, std::string meaning,
            std::string came_with = "", std::vector<Attribute<Found>> beside = {}, Stored as = Stored::as_it_is)
       : name(std::move(dataset)),
@@ -148,12 +182,11 @@ using Fields = std::vector<FieldRow<Found>>;
 /// A group of a result file.
 template <class Found>
 struct Group {
-  std::string path;                               ///< "/sensitivity"
-  std::string description;                        ///< a sentence for people
-  std::vector<Attribute<Found>> attributes = {};  ///< numbers of the group as a whole
-  /// Members that are the lengths of axes.
-  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};
-  Fields<Found> fields;  ///< its datasets
+  std::string path;                                                        ///< "/sensitivity"
+  std::string description;                                                 ///< a sentence for people
+  std::vector<Attribute<Found>> attributes = {};                           ///< numbers of the group as a whole
+  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< Members that are the lengths of axes.
+  Fields<Found> fields;                                                    ///< its datasets
 };
 
 namespace detail {
@@ -163,46 +196,41 @@ inline constexpr bool kIsList = false;
 template <class T>
 inline constexpr bool kIsList<std::vector<T>> = true;
 
-inline double stored(double value) { return value; }
-inline std::uint64_t stored(std::uint64_t value) { return value; }
-inline std::uint8_t stored(std::uint8_t value) { return value; }
-inline std::uint8_t stored(bool value) { return value ? 1 : 0; }
-inline std::string stored(const std::string& value) { return value; }
-inline std::int64_t stored(const std::optional<std::size_t>& position) {
-  return position ? static_cast<std::int64_t>(*position) : -1;
+/// An element as HDF5 has it: a flag as a byte, a missing position as -1, anything else as it is.
+template <class Value>
+auto stored(const Value& value) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return static_cast<std::uint8_t>(value);
+  } else if constexpr (std::is_same_v<Value, std::optional<std::size_t>>) {
+    return value ? static_cast<std::int64_t>(*value) : -1;
+  } else {
+    return value;
+  }
 }
 
-template <class T>
-void restore(T from, T& to) {
-  to = std::move(from);
-}
-inline void restore(std::uint8_t from, bool& to) { to = from != 0; }
-inline void restore(std::int64_t from, std::optional<std::size_t>& to) {
-  to = from < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(from));
+template <class Value>
+using StoredAs = decltype(stored(std::declval<Value>()));
+
+template <class Value>
+void restore(StoredAs<Value> from, Value& to) {
+  if constexpr (std::is_same_v<Value, std::optional<std::size_t>>) {
+    to = from < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(from));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    to = from != 0;
+  } else {
+    to = std::move(from);
+  }
 }
 
 /// An element as a number. Precondition: it is not a text.
 template <class Value>
 double number(const Value& value) {
-  if constexpr (std::is_arithmetic_v<Value>) {
-    return static_cast<double>(value);
-  } else if constexpr (std::is_same_v<Value, std::string>) {
+  if constexpr (std::is_same_v<Value, std::string>) {
     POESY_EXPECTS(false);
     return 0.0;
   } else {
     return static_cast<double>(stored(value));
   }
-}
-
-template <h5::Element T>
-void add_list(ResultBuilder& result, const std::string& path, const Axes& axes, const std::vector<T>& list,
-              const Label& label, Stored as) {
-  if constexpr (std::is_same_v<T, double>) {
-    if (as == Stored::as_whole_numbers) {
-      return result.add(path, axes, std::vector<std::uint64_t>(list.begin(), list.end()), label);
-    }
-  }
-  result.add(path, axes, list, label);
 }
 
 }  // namespace detail
@@ -219,9 +247,15 @@ bool write_field(ResultBuilder& result, const std::string& group, const FieldRow
     if constexpr (detail::kIsList<Value>) {
       const Value& list = things.front().*member;
       if (!field.since.empty() && list.empty() && h5::size(result.shape(field.axes)) > 0) return false;
-      detail::add_list(result, path, field.axes, list, label, field.stored);
+      if constexpr (std::is_same_v<Value, std::vector<double>>) {
+        if (field.stored == Stored::as_whole_numbers) {
+          result.add(path, field.axes, std::vector<std::uint64_t>(list.begin(), list.end()), label);
+          return true;
+        }
+      }
+      result.add(path, field.axes, list, label);
     } else {
-      std::vector<decltype(detail::stored(std::declval<Value>()))> column;
+      std::vector<detail::StoredAs<Value>> column;
       for (const Found& thing : things) column.push_back(detail::stored(thing.*member));
       result.add(path, field.axes, column, label);
     }
@@ -273,7 +307,7 @@ void read_fields(const h5::File& file, const std::string& group, const Fields<Fo
       if constexpr (detail::kIsList<Value>) {
         things.front().*member = read_along<typename Value::value_type>(file, path, field.axes);
       } else {
-        auto column = read_along<decltype(detail::stored(std::declval<Value>()))>(file, path, field.axes);
+        auto column = read_along<detail::StoredAs<Value>>(file, path, field.axes);
         for (std::size_t k = 0; k < things.size(); ++k) detail::restore(std::move(column[k]), things[k].*member);
       }
     };

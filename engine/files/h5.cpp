@@ -1,10 +1,12 @@
 #include "engine/files/h5.h"
 
+#include <fmt/format.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
 #include <algorithm>
-#include <array>
+#include <functional>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -69,11 +71,6 @@ Handle open_dataset(hid_t file, const std::string& path) {
   return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "open dataset", path};
 }
 
-Handle open_attribute(hid_t file, const std::string& path, const std::string& name) {
-  return {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "open",
-          attribute_name(path, name)};
-}
-
 Handle text_type() {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make", "the text type");
   checked(H5Tset_size(type.get(), H5T_VARIABLE), "size", "the text type");
@@ -114,119 +111,101 @@ Shape shape_of(hid_t space, const std::string& object) {
   return {lengths.begin(), lengths.end()};
 }
 
-std::vector<const char*> pointers(std::span<const std::string> strings) {
-  std::vector<const char*> list;
-  for (const std::string& text : strings) list.push_back(text.c_str());
-  return list;
-}
-
-/// The memory that HDF5 takes elements from: the values themselves, or pointers to texts.
-template <class T, class Write>
-herr_t with_elements(std::span<const T> values, const Write& write) {
+/// What HDF5 takes elements from: the values themselves, or a list of pointers to texts.
+template <class T>
+auto elements(std::span<const T> values) {
   if constexpr (std::is_same_v<T, std::string>) {
-    return write(pointers(values).data());
+    std::vector<const char*> pointers;
+    for (const std::string& text : values) pointers.push_back(text.c_str());
+    return pointers;
   } else {
-    return write(values.data());
-  }
-}
-
-/// A dataset or attribute as HDF5 reads it: its type, its space, and the call that reads it.
-struct Source {
-  Handle type;
-  Handle space;
-  std::string object;
-
-  std::size_t count() const { return size(shape_of(space.get(), object)); }
-  bool variable_text() const { return H5Tis_variable_str(type.get()) > 0; }
-};
-
-Source source_of_dataset(hid_t dataset, const std::string& path) {
-  return {.type = {H5Dget_type(dataset), H5Tclose, "read the type of", path},
-          .space = {H5Dget_space(dataset), H5Sclose, "read the shape of", path},
-          .object = path};
-}
-
-Source source_of_attribute(hid_t attribute, const std::string& object) {
-  return {.type = {H5Aget_type(attribute), H5Tclose, "read the type of", object},
-          .space = {H5Aget_space(attribute), H5Sclose, "read the shape of", object},
-          .object = object};
-}
-
-/// Returns HDF5's copies of texts to HDF5.
-class TextBuffer {
- public:
-  TextBuffer(std::size_t count, hid_t type, hid_t space) : pointers_(count, nullptr), type_(type), space_(space) {}
-  TextBuffer(const TextBuffer&) = delete;
-  TextBuffer& operator=(const TextBuffer&) = delete;
-  ~TextBuffer() { H5Dvlen_reclaim(type_, space_, H5P_DEFAULT, pointers_.data()); }
-
-  char** data() { return pointers_.data(); }
-  std::vector<std::string> strings() const {
-    std::vector<std::string> list;
-    for (const char* text : pointers_) list.emplace_back(text == nullptr ? "" : text);
-    return list;
-  }
-
- private:
-  std::vector<char*> pointers_;
-  hid_t type_;
-  hid_t space_;
-};
-
-/// `read(memory type, buffer)` is H5Dread or H5Aread with everything else bound.
-template <class Read>
-std::vector<std::string> read_texts(const Source& source, const Read& read) {
-  if (!source.variable_text()) throw Error(source.object + " is not text of variable length");
-  const Handle type = text_type();
-  // The file's own encoding is kept: HDF5 does not convert between encodings.
-  checked(H5Tset_cset(type.get(), H5Tget_cset(source.type.get())), "set the encoding of", source.object);
-  TextBuffer buffer(source.count(), type.get(), source.space.get());
-  checked(read(type.get(), buffer.data()), "read", source.object);
-  return buffer.strings();
-}
-
-template <class T, class Read>
-std::vector<T> read_all(const Source& source, const Read& read) {
-  if constexpr (std::is_same_v<T, std::string>) {
-    return read_texts(source, read);
-  } else {
-    const Handle type = element_type<T>();
-    std::vector<T> values(source.count());
-    checked(read(type.get(), values.data()), "read", source.object);
     return values;
   }
 }
 
-template <class Read>
-Value read_value(const Source& source, const Read& read) {
+/// An open dataset or attribute.
+struct Source {
+  std::string name;
+  bool is_attribute;
+  Handle object;
+  Handle type{is_attribute ? H5Aget_type(object.get()) : H5Dget_type(object.get()), H5Tclose, "read the type of", name};
+  Handle space{is_attribute ? H5Aget_space(object.get()) : H5Dget_space(object.get()), H5Sclose, "read the shape of",
+               name};
+
+  Shape shape() const { return shape_of(space.get(), name); }
+  void read(hid_t memory_type, void* to) const {
+    checked(is_attribute ? H5Aread(object.get(), memory_type, to)
+                         : H5Dread(object.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to),
+            "read", name);
+  }
+};
+
+Source dataset_at(hid_t file, const std::string& path) {
+  return {.name = path, .is_attribute = false, .object = open_dataset(file, path)};
+}
+
+Source attribute_at(hid_t file, const std::string& path, const std::string& name) {
+  const std::string object = attribute_name(path, name);
+  return {.name = object,
+          .is_attribute = true,
+          .object = {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "open",
+                     object}};
+}
+
+/// Gives HDF5's copies of texts back to HDF5.
+struct TextBuffer {
+  std::vector<char*> pointers;
+  hid_t type;
+  hid_t space;
+
+  ~TextBuffer() { H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data()); }
+};
+
+std::vector<std::string> read_texts(const Source& source) {
+  if (H5Tis_variable_str(source.type.get()) <= 0) throw Error(source.name + " is not text of variable length");
+  const Handle type = text_type();
+  // The file's own encoding is kept: HDF5 does not convert between encodings.
+  checked(H5Tset_cset(type.get(), H5Tget_cset(source.type.get())), "set the encoding of", source.name);
+  TextBuffer buffer{std::vector<char*>(size(source.shape()), nullptr), type.get(), source.space.get()};
+  source.read(type.get(), buffer.pointers.data());
+  std::vector<std::string> list;
+  for (const char* text : buffer.pointers) list.emplace_back(text == nullptr ? "" : text);
+  return list;
+}
+
+template <class T>
+std::vector<T> read_all(const Source& source) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return read_texts(source);
+  } else {
+    const Handle type = element_type<T>();
+    std::vector<T> values(size(source.shape()));
+    source.read(type.get(), values.data());
+    return values;
+  }
+}
+
+Value read_value(const Source& source) {
   Value value;
-  value.shape = shape_of(source.space.get(), source.object);
+  value.shape = source.shape();
   const H5T_class_t kind = H5Tget_class(source.type.get());
   if (kind == H5T_STRING) {
-    value.strings = read_texts(source, read);
+    value.strings = read_texts(source);
     return value;
   }
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(source.object + " is neither numbers nor text");
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(source.name + " is neither numbers nor text");
   value.type = kind == H5T_FLOAT                                ? Value::Type::floating
                : H5Tget_sign(source.type.get()) == H5T_SGN_NONE ? Value::Type::unsigned_integer
                                                                 : Value::Type::signed_integer;
   value.width = H5Tget_size(source.type.get());
   if (value.width > kWidestNumber) {
-    throw Error(source.object + " has numbers of " + std::to_string(value.width) + " bytes");
+    throw Error(source.name + " has numbers of " + std::to_string(value.width) + " bytes");
   }
-  const Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.object);
-  checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.object);
+  const Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.name);
+  checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.name);
   value.numbers.resize(size(value.shape) * value.width);
-  checked(read(type.get(), value.numbers.data()), "read", source.object);
+  source.read(type.get(), value.numbers.data());
   return value;
-}
-
-auto dataset_reader(hid_t dataset) {
-  return [dataset](hid_t type, void* data) { return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data); };
-}
-
-auto attribute_reader(hid_t attribute) {
-  return [attribute](hid_t type, void* data) { return H5Aread(attribute, type, data); };
 }
 
 template <class T>
@@ -238,16 +217,12 @@ void create_attribute(hid_t file, const std::string& path, const std::string& na
   const Handle owner = open_object(file, path);
   const Handle attribute(H5Acreate2(owner.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose, "make", object);
-  checked(with_elements(values, [&](const void* data) { return H5Awrite(attribute.get(), type.get(), data); }), "write",
-          object);
+  checked(H5Awrite(attribute.get(), type.get(), elements(values).data()), "write", object);
 }
 
-herr_t add_link_name(hid_t, const char* name, const H5L_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
-herr_t add_attribute_name(hid_t, const char* name, const H5A_info_t*, void* names) {
+/// Of a link or an attribute.
+template <class Info>
+herr_t add_name(hid_t, const char* name, const Info*, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(name);
   return 0;
 }
@@ -277,9 +252,7 @@ Handle group_properties(hid_t kind) {
 }  // namespace
 
 std::size_t size(const Shape& shape) {
-  std::size_t count = 1;
-  for (const std::size_t length : shape) count *= length;
-  return count;
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies());
 }
 
 File File::in_memory() {
@@ -305,11 +278,6 @@ File File::open(const std::string& path) {
 }
 
 File::File(File&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
-
-File& File::operator=(File&& other) noexcept {
-  std::swap(id_, other.id_);
-  return *this;
-}
 
 File::~File() {
   if (id_ != H5I_INVALID_HID) H5Fclose(id_);
@@ -343,10 +311,7 @@ void File::write(const std::string& path, const Shape& shape, std::span<const T>
   const Handle space = space_of(shape);
   const Handle dataset(H5Dcreate2(id_, path.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
                        H5Dclose, "make dataset", path);
-  const auto write = [&](const void* data) {
-    return H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
-  };
-  checked(with_elements(values, write), "write", path);
+  checked(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, elements(values).data()), "write", path);
 }
 
 template <Element T>
@@ -390,7 +355,7 @@ bool File::is_group(const std::string& path) const { return H5Iget_type(open_obj
 std::vector<std::string> File::children(const std::string& path) const {
   const Handle group = open_object(id_, path);
   std::vector<std::string> names;
-  checked(H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_link_name, &names), "list", path);
+  checked(H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name<H5L_info_t>, &names), "list", path);
   std::ranges::sort(names);
   return names;
 }
@@ -398,7 +363,7 @@ std::vector<std::string> File::children(const std::string& path) const {
 std::vector<std::string> File::attributes(const std::string& path) const {
   const Handle object = open_object(id_, path);
   std::vector<std::string> names;
-  checked(H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_attribute_name, &names),
+  checked(H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name<H5A_info_t>, &names),
           "list the attributes of", path);
   std::ranges::sort(names);
   return names;
@@ -409,34 +374,22 @@ bool File::has_attribute(const std::string& path, const std::string& name) const
                  attribute_name(path, name)) > 0;
 }
 
-Shape File::shape(const std::string& path) const {
-  const Handle dataset = open_dataset(id_, path);
-  const Handle space(H5Dget_space(dataset.get()), H5Sclose, "read the shape of", path);
-  return shape_of(space.get(), path);
-}
+Shape File::shape(const std::string& path) const { return dataset_at(id_, path).shape(); }
 
 template <Element T>
 std::vector<T> File::read(const std::string& path) const {
-  const Handle dataset = open_dataset(id_, path);
-  return read_all<T>(source_of_dataset(dataset.get(), path), dataset_reader(dataset.get()));
+  return read_all<T>(dataset_at(id_, path));
 }
 
 template <Element T>
 std::vector<T> File::attribute(const std::string& path, const std::string& name) const {
-  const Handle attribute = open_attribute(id_, path, name);
-  return read_all<T>(source_of_attribute(attribute.get(), attribute_name(path, name)),
-                     attribute_reader(attribute.get()));
+  return read_all<T>(attribute_at(id_, path, name));
 }
 
-Value File::value(const std::string& path) const {
-  const Handle dataset = open_dataset(id_, path);
-  return read_value(source_of_dataset(dataset.get(), path), dataset_reader(dataset.get()));
-}
+Value File::value(const std::string& path) const { return read_value(dataset_at(id_, path)); }
 
 Value File::attribute_value(const std::string& path, const std::string& name) const {
-  const Handle attribute = open_attribute(id_, path, name);
-  return read_value(source_of_attribute(attribute.get(), attribute_name(path, name)),
-                    attribute_reader(attribute.get()));
+  return read_value(attribute_at(id_, path, name));
 }
 
 #define POESY_H5_ELEMENT(T)                                                                         \
@@ -460,7 +413,7 @@ std::string library_version() {
   unsigned minor = 0;
   unsigned release = 0;
   checked(H5get_libversion(&major, &minor, &release), "ask for the version of", "HDF5");
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+  return fmt::format("{}.{}.{}", major, minor, release);
 }
 
 }  // namespace poesy::h5

@@ -25,12 +25,11 @@ concept Element = std::same_as<T, double> || std::same_as<T, std::int64_t> || st
 /// Length of each axis; empty for a scalar.
 using Shape = std::vector<std::size_t>;
 
-/// Number of elements.
-std::size_t size(const Shape& shape);
+std::size_t size(const Shape& shape);  ///< Number of elements.
 
 /// The value of a dataset or attribute as it is stored, whatever its type.
 struct Value {
-  /// Kinds of numbers, and text.
+  /// Kinds of numbers, and text; content_hash.cpp names them in this order.
   enum class Type { floating, signed_integer, unsigned_integer, text };
 
   Type type = Type::text;            ///< decides which of the members below hold the elements
@@ -44,61 +43,47 @@ struct Value {
 /// without times and with their order of creation. Every member throws Error when HDF5 refuses.
 class File {
  public:
-  /// An empty file that lives in memory only.
-  static File in_memory();
-  /// An existing file, read-only.
-  static File open(const std::string& path);
+  static File in_memory();                    ///< An empty file that lives in memory only.
+  static File open(const std::string& path);  ///< An existing file, read-only.
 
-  /// Leaves a file that may only be destroyed.
-  File(File&& other) noexcept;
-  /// Closes the file that it had.
-  File& operator=(File&& other) noexcept;
+  File(File&& other) noexcept;  ///< Leaves a file that may only be destroyed.
+  File& operator=(File&&) = delete;
   ~File();
 
-  /// The bytes of the whole file, ready to be written to disk.
-  std::vector<std::byte> image() const;
+  std::vector<std::byte> image() const;  ///< The bytes of the whole file, ready to be written to disk.
 
-  /// Creates a group; those above it must exist.
-  void make_group(const std::string& path);
+  void make_group(const std::string& path);  ///< Those above it must exist.
   /// Creates a dataset. Precondition: values.size() == size(shape).
   template <Element T>
   void write(const std::string& path, const Shape& shape, std::span<const T> values);
-  /// Creates an attribute of the object at path: a scalar, or a list.
+  /// Creates an attribute of the object at path: a scalar.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, const T& value);
-  /// A list of values.
+  /// A list.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, std::span<const T> values);
-  /// Makes a one-dimensional dataset a dimension scale named after itself.
-  void make_scale(const std::string& path);
+  void make_scale(const std::string& path);  ///< Makes a one-dimensional dataset a dimension scale of its name.
   /// Lets a scale name the positions along one axis of a dataset.
   void attach_scale(const std::string& dataset, std::size_t axis, const std::string& scale);
-  /// Gives an object a second name (hard link).
-  void link(const std::string& existing, const std::string& second);
+  void link(const std::string& existing, const std::string& second);  ///< Gives an object a second name (hard link).
 
-  /// Whether there is an object.
-  bool exists(const std::string& path) const;
-  /// Whether there is an object, and it is a group.
-  bool is_group(const std::string& path) const;
+  bool exists(const std::string& path) const;    ///< Whether there is an object.
+  bool is_group(const std::string& path) const;  ///< Whether this object is a group.
   /// Names of the links in a group, in the order of their bytes.
   std::vector<std::string> children(const std::string& path) const;
   /// Names of the attributes of an object, in the order of their bytes.
   std::vector<std::string> attributes(const std::string& path) const;
-  /// Whether the object at path has it.
-  bool has_attribute(const std::string& path, const std::string& name) const;
+  bool has_attribute(const std::string& path, const std::string& name) const;  ///< Whether the object at path has it.
 
-  /// Of a dataset; empty for a scalar.
-  Shape shape(const std::string& path) const;
+  Shape shape(const std::string& path) const;  ///< Of a dataset; empty for a scalar.
   /// All elements of a dataset, row-major; numbers are converted to T.
   template <Element T>
   std::vector<T> read(const std::string& path) const;
   /// All elements of an attribute.
   template <Element T>
   std::vector<T> attribute(const std::string& path, const std::string& name) const;
-  /// A dataset as it is stored.
-  Value value(const std::string& path) const;
-  /// An attribute as it is stored.
-  Value attribute_value(const std::string& path, const std::string& name) const;
+  Value value(const std::string& path) const;                                     ///< A dataset as it is stored.
+  Value attribute_value(const std::string& path, const std::string& name) const;  ///< An attribute as it is stored.
 
  private:
   explicit File(std::int64_t id) : id_(id) {}
@@ -109,7 +94,6 @@ class File {
 /// Lets HDF5 give back all it holds, as it does when the program ends. Precondition: there is no File.
 void close_library();
 
-/// Version of the HDF5 library in use, "1.10.8".
-std::string library_version();
+std::string library_version();  ///< Version of the HDF5 library in use, "1.10.8".
 
 }  // namespace poesy::h5

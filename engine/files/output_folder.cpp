@@ -1,6 +1,7 @@
 #include "engine/files/output_folder.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -12,8 +13,8 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/files/content_hash.h"
 #include "engine/files/file_writer.h"
-#include "engine/files/sha256.h"
 #include "engine/study/text_file.h"
 
 namespace poesy {
@@ -27,12 +28,6 @@ constexpr std::string_view kSeparator = "  ";
 constexpr std::size_t kHashLength = 2 * std::tuple_size_v<Sha256::Digest>;
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr const char* kRemedy = "name another folder with -d, or move it away";
-
-/// Whether anything has this name, a link that leads nowhere too.
-bool stands(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(fs::symlink_status(path, ignored));
-}
 
 /// SHA-256 of a file; none when it cannot be read.
 std::optional<std::string> hash_of(const std::string& path) {
@@ -57,15 +52,12 @@ void make_folder(const std::string& folder) {
 }
 
 OutputFolder::OutputFolder(std::string path) : path_(std::move(path)) {
-  if (stands(file(kListOfFiles))) read_list();
-}
-
-std::string OutputFolder::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
-
-void OutputFolder::read_list() {
+  if (!stands(file(kListOfFiles))) return;
   std::istringstream text(read_text(file(kListOfFiles), "list of files", kMostBytes));
   for (std::string line; std::getline(text, line);) read_line(line);
 }
+
+std::string OutputFolder::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
 
 void OutputFolder::read_line(const std::string& line) {
   if (line.starts_with(kUnfinished)) {
@@ -84,20 +76,20 @@ void OutputFolder::claim(const std::string& name) {
   claimed_.push_back(name);
   const std::string path = file(name);
   if (!stands(path)) return;
+  const auto refuse = [&](const std::string& problem) { throw InputError({.file = path}, problem, kRemedy); };
   std::error_code ignored;
   if (fs::symlink_status(path, ignored).type() != fs::file_type::regular) {
-    throw InputError({.file = path}, "is not a plain file and will not be replaced", kRemedy);
+    refuse("is not a plain file and will not be replaced");
   }
   const auto listed = hashes_.find(name);
   if (listed == hashes_.end()) {
-    throw InputError({.file = path},
-                     "exists and was not written by poesy (" + std::string(kListOfFiles) +
-                         " does not list it), and it would be lost",
-                     kRemedy);
+    refuse(
+        fmt::format("exists and was not written by poesy ({} does not list it), and it would be lost", kListOfFiles));
   }
   const bool unfinished = listed->second.empty();
-  if (unfinished || hash_of(path) == listed->second) return;
-  throw InputError({.file = path}, "was changed since poesy wrote it, and the changes would be lost", kRemedy);
+  if (!unfinished && hash_of(path) != listed->second) {
+    refuse("was changed since poesy wrote it, and the changes would be lost");
+  }
 }
 
 void OutputFolder::open() {

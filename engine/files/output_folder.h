@@ -6,8 +6,7 @@
 
 namespace poesy {
 
-/// Makes a folder if it is missing. Throws FileError.
-void make_folder(const std::string& folder);
+void make_folder(const std::string& folder);  ///< Makes a folder if it is missing. Throws FileError.
 
 /// A folder into which a command writes several files, and in which the user may keep files of his own.
 ///
@@ -33,14 +32,11 @@ class OutputFolder {
 
   /// Makes the folder if it is missing, and notes there that the claimed files are being written. Throws FileError.
   void open();
-  /// Lists the claimed files with their hashes. Throws FileError.
-  void close();
+  void close();  ///< Lists the claimed files with their hashes. Throws FileError.
 
-  /// The path of a file in the folder.
-  std::string file(const std::string& name) const;
+  std::string file(const std::string& name) const;  ///< The path of a file in the folder.
 
  private:
-  void read_list();
   void read_line(const std::string& line);
   void write_list() const;
 

@@ -1,11 +1,19 @@
 #include "engine/files/poesy_file.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "engine/files/checkpoint.h"
 
@@ -47,13 +55,126 @@ void check_version(const std::string& path, const h5::File& file) {
   if (version[0] > kMajorVersion) {
     throw FileError(
         path,
-        "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
-            ", newer than this program's " + std::to_string(kMajorVersion) + "." + std::to_string(kMinorVersion),
+        fmt::format("is of format version {}.{}, newer than this program's {}.{}", version[0], version[1],
+                    kMajorVersion, kMinorVersion),
         "use the poesy that wrote it (" + printable(text_attribute(file, "poesy_version")) + ") or a newer one");
   }
 }
 
+constexpr std::string_view kEndedWell = "+";  ///< all that such a child says; any other says what the FileError said
+
+/// A file descriptor.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  int number() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(std::exchange(number_, -1));
+  }
+
+ private:
+  int number_;
+};
+
+[[noreturn]] void fail_to_start(const std::string& path, int reason) {
+  throw FileError(path, "cannot be read: no process to try it in (" + std::generic_category().message(reason) + ")",
+                  "try again when fewer processes run");
+}
+
+/// Lowers a limit of this process. Who passes it by one more is killed, whatever signals are blocked.
+void limit(int resource, rlim_t most) {
+  rlimit limits{};
+  ::getrlimit(resource, &limits);
+  limits.rlim_cur = std::min(most, limits.rlim_cur);
+  limits.rlim_max = std::min(most + 1, limits.rlim_max);
+  ::setrlimit(resource, &limits);
+}
+
+/// Bytes of address space that this process has, 0 where the system does not tell.
+rlim_t address_space() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// No handler of the parent runs in the child, nothing of it is seen, and it ends whatever happens.
+void confine(rlim_t file_bytes) {
+  for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
+  const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  ::dup2(nothing, STDOUT_FILENO);
+  ::dup2(nothing, STDERR_FILENO);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, kTrialSeconds + file_bytes / (1U << 20U));
+  if (const rlim_t had = address_space(); had > 0) limit(RLIMIT_AS, had + kTrialBytes + 16 * file_bytes);
+}
+
+void send(const Descriptor& to, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t sent = ::write(to.number(), text.data(), text.size());
+    if (sent < 0) return;
+    text.remove_prefix(static_cast<std::size_t>(sent));
+  }
+}
+
+/// The child's whole life. It ends without destructors and without what is done at exit: both are the parent's.
+[[noreturn]] void live_as_child(const Descriptor& to, rlim_t file_bytes, const std::function<void()>& read) {
+  confine(file_bytes);
+  try {
+    read();
+    send(to, kEndedWell);
+  } catch (const FileError& error) {
+    send(to, error.what());
+  } catch (...) {
+    // As good as a crash.
+  }
+  ::_exit(0);
+}
+
+/// What comes out of a pipe until its other end is closed.
+std::string receive(const Descriptor& from) {
+  std::string text;
+  std::array<char, 4096> part{};
+  for (;;) {
+    const ssize_t bytes = ::read(from.number(), part.data(), part.size());
+    if (bytes > 0) text.append(part.data(), static_cast<std::size_t>(bytes));
+    if (bytes == 0 || (bytes < 0 && errno != EINTR)) return text;
+  }
+}
+
+/// The status of a child that ended; 0 where this process lets nobody know.
+int status_of(pid_t child) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) return 0;
+  }
+  return status;
+}
+
 }  // namespace
+
+void trial_read(const std::string& path, const std::function<void()>& read) {
+  std::error_code ignored;
+  const auto file_bytes = static_cast<rlim_t>(std::filesystem::file_size(path, ignored));
+  std::array<int, 2> pipe{};
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) fail_to_start(path, errno);
+  const Descriptor from_child(pipe[0]);
+  Descriptor to_parent(pipe[1]);
+  const pid_t child = ::fork();
+  if (child < 0) fail_to_start(path, errno);
+  if (child == 0) live_as_child(to_parent, file_bytes, read);
+  to_parent.close();
+  const std::string said = receive(from_child);
+  const int status = status_of(child);
+  if (said == kEndedWell) return;
+  if (!said.empty()) throw FileError("", said, "");
+  const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+  throw FileError(path, slow ? "is damaged: reading it does not end" : "is damaged: reading it crashes",
+                  kDamagedRemedy);
+}
 
 std::string text_attribute(const h5::File& file, const std::string& name) {
   const auto values = file.attribute<std::string>("/", name);
@@ -86,6 +207,10 @@ void expect_filetype(const std::string& path, const h5::File& file, std::string_
     throw FileError(path, "is a shard of a study, not a whole result", "put all shards together with poesy merge");
   }
   throw FileError(path, "is a whole result, not a shard of one", "give files that poesy run --shard wrote");
+}
+
+std::string mechanism_text(const h5::File& file) {
+  return file.exists("/mechanism/text") ? file.read<std::string>("/mechanism/text").at(0) : std::string();
 }
 
 }  // namespace poesy

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/h5.h"
-#include "engine/files/trial_read.h"
 
 namespace poesy {
 
@@ -18,46 +18,63 @@ inline constexpr std::string_view kShardFile = "poesy-shard";
 /// @}
 /// A reader refuses a newer major version; a minor version only adds.
 inline constexpr std::int64_t kMajorVersion = 1;
-inline constexpr std::int64_t kMinorVersion =
-    0;  ///< from the first release on grows with what older programs may pass over
+/// From the first release on it grows with what older programs may pass over.
+inline constexpr std::int64_t kMinorVersion = 0;
 
 /// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, or of a newer major
 /// version; h5::Error when it is damaged in a way that HDF5 reports.
 h5::File open_poesy_file(const std::string& path);
 
+/// What to do about a damaged file.
+inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
+
+inline constexpr unsigned long kTrialSeconds = 5;         ///< processor time that a child may take to read a file
+inline constexpr unsigned long kTrialBytes = 1UL << 28U;  ///< memory that it may take besides what the program has
+
+/// Calls read() in a child process, so that nothing that comes of it reaches this one; returns if it ended well there.
+///
+/// HDF5 1.10 may crash, loop or ask for all memory over a damaged file before it reports an error, or spoil its own
+/// heap and crash later. The child is a copy of this process at this moment, so what ended well there ends well here.
+/// It may take kTrialSeconds of processor time and one more for each MiB of the file, and kTrialBytes of memory and 16
+/// more for each byte of the file (where /proc tells how much it has already); it says nothing to the terminal.
+///
+/// Throws FileError as read() did, FileError when the child did not come to an end of read(), or when there can be no
+/// child. Precondition: no other thread holds a lock that read() takes (the allocator's own may be held).
+void trial_read(const std::string& path, const std::function<void()>& read);
+
 /// The root's attribute of this name, which holds one text.
 std::string text_attribute(const h5::File& file, const std::string& name);
+
+/// The file that describes the mechanism; empty where there is none.
+std::string mechanism_text(const h5::File& file);
 
 /// Throws FileError, which says what it is instead, when the file's type is not this one.
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype);
 
-/// Opens such a file and gives what `use(file)` gives. Anything that HDF5 reports means a damaged file.
-template <class Use>
-auto use_poesy_file(const std::string& path, const Use& use) {
-  try {
-    const h5::File file = open_poesy_file(path);
-    return use(file);
-  } catch (const FileError&) {
-    throw;
-  } catch (const std::exception& error) {
-    // Besides h5::Error: an empty list where a value should be, a shape too large for memory. It may quote the file.
-    throw FileError(path, "is damaged: " + printable(error.what(), 300), kDamagedRemedy);
-  }
-}
-
 /// Throws FileError when there is no such file to read.
 void check_readable(const std::string& path);
 
-/// The same as use_poesy_file, but of a file over which HDF5 fails in any other way too: it is used in another process
-/// first.
+/// Opens a file that poesy wrote and gives what `use(file)` gives. Because HDF5 fails over a damaged file in other ways
+/// than by errors, the file is used in another process first. Anything that HDF5 reports means a damaged file.
 template <class Use>
 auto with_poesy_file(const std::string& path, const Use& use) {
+  const auto open_and_use = [&] {
+    try {
+      const h5::File file = open_poesy_file(path);
+      return use(file);
+    } catch (const FileError&) {
+      throw;
+    } catch (const std::exception& error) {
+      // Besides h5::Error: an empty list where a value should be, a shape too large for memory. It may quote the file.
+      throw FileError(path, "is damaged: " + printable(error.what(), 300), kDamagedRemedy);
+    }
+  };
   check_readable(path);
   trial_read(path, [&] {
-    static_cast<void>(use_poesy_file(path, use));
+    static_cast<void>(open_and_use());
     h5::close_library();
   });
-  return use_poesy_file(path, use);
+  return open_and_use();
 }
 
 }  // namespace poesy

@@ -11,14 +11,33 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/units.h"
-#include "engine/files/file_kind.h"
-#include "engine/model/pose_set.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/stats/tolerance.h"
+#include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
 namespace poesy {
+
+namespace h5 {
+class File;
+}
+class ResultBuilder;
+struct CsvTable;
+struct StoredResult;
+
+/// How files keep what a kind of study found: a row for each kind.
+struct FileKind {
+  /// Adds the names of errors and responses (add_names), and the kind's groups. found: of the type that the kind finds.
+  void (*write)(ResultBuilder& result, const Study& study, const std::any& found);
+  /// Fills in StoredResult::found, and of the header what the kind's files have. The rest of the header is there.
+  void (*read)(const h5::File& file, StoredResult& result);
+  /// Appends the tables that `poesy export` writes, all but that of the poses.
+  void (*append_tables)(std::vector<CsvTable>& tables, const StoredResult& result);
+};
+
+/// Finds the row of this name; null where there is none.
+using FindFileKind = const FileKind* (*)(std::string_view name);
 
 /// Writes what a study of this kind found; name: the kind's, as the file states it. The file appears whole or not at
 /// all under its name: written beside it under a temporary name, synced, renamed. Throws FileError and leaves an
@@ -38,8 +57,7 @@ struct NamedUnit {
   std::string description = {};  ///< what it is, in words; empty in files of older versions
 };
 
-/// The unit in which people read it: mm for m.
-const Unit& display(const NamedUnit& named);
+const Unit& display(const NamedUnit& named);  ///< The unit in which people read it: mm for m.
 
 /// What a result file of any kind says, read back. Members that the file does not have are empty.
 struct StoredResult {
@@ -47,6 +65,7 @@ struct StoredResult {
   std::string title;           ///< of the study
   std::string model;           ///< name of the mechanism
   std::string study_text;      ///< the study with every default filled in
+  std::string mechanism_text;  ///< the file that describes the mechanism; empty where there is none
   std::string poesy_version;   ///< of the program that wrote it
   std::string git_commit;      ///< of that program
   std::string content_sha256;  ///< as the file states it
@@ -91,10 +110,9 @@ StoredResult read_result(const std::string& path, FindFileKind find_kind);
 
 /// What a recomputed content hash is compared with.
 struct Verification {
-  std::string stored;    ///< the hash that the file carries
-  std::string computed;  ///< the hash of its content as it is now
-  /// Whether the content is what was written.
-  bool matches() const { return stored == computed; }
+  std::string stored;                                  ///< the hash that the file carries
+  std::string computed;                                ///< the hash of its content as it is now
+  bool matches() const { return stored == computed; }  ///< Whether the content is what was written.
 };
 
 /// Recomputes the content hash of a result file. Throws FileError when it cannot be read as one.

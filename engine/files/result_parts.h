@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -11,7 +12,6 @@
 #include "engine/files/fields.h"
 #include "engine/files/result_file.h"
 #include "engine/run/evaluation.h"
-#include "engine/run/shard.h"
 
 /// The parts that result files of all or of several kinds have: for each how it is written, read back, and shown as
 /// CSV.
@@ -32,6 +32,15 @@ std::vector<std::string> texts(const Things& things, const Member& member) {
   return list;
 }
 
+/// The position of a name among these, or among the names of these things. Throws h5::Error where it is not there.
+template <class Things, class Member = std::identity>
+std::size_t position_in(const Things& things, const std::string& name, const std::string& problem,
+                        const Member& member = {}) {
+  const auto found = std::ranges::find(things, name, member);
+  if (found == things.end()) throw h5::Error(problem);
+  return static_cast<std::size_t>(found - things.begin());
+}
+
 /// The SI unit of a thing with a dimension.
 template <class Thing>
 std::string unit_of(const Thing& thing) {
@@ -41,31 +50,24 @@ std::string unit_of(const Thing& thing) {
 /// Names become names of files and cells of tables. Throws h5::Error for one that cannot. path: of the dataset.
 void check_names(const std::vector<std::string>& names, const std::string& path);
 
-/// What every file has: what the file is, /study and /poses. filetype, kind: attributes of the root.
-void add_header(ResultBuilder& result, std::string_view filetype, std::string_view kind, const Study& study,
-                const SelectedPoses& poses);
+/// Composes what every file has (what it is, /study, /poses, and /run with facts about the run), with compose(result)
+/// for the rest, and writes it. filetype, kind: attributes of the root. Throws FileError.
+void compose_file(const std::string& path, std::string_view filetype, std::string_view kind, const Study& study,
+                  const SelectedPoses& poses, const RunFacts& facts,
+                  const std::function<void(ResultBuilder&)>& compose);
 /// What every result has: /factors, /responses, and /metric where the mechanism weighs angles against lengths.
 void add_names(ResultBuilder& result, const Study& study, std::span<const FactorIndex> factors);
-/// Facts about the run: /run.
-void add_facts(ResultBuilder& result, const RunFacts& facts);
-/// Fills in all that every result has.
-void read_header(const h5::File& file, StoredResult& result);
-/// The poses, with what is stored beside them.
-SelectedPoses read_poses(const h5::File& file);
-/// What composing a file wrote to /run.
-RunFacts read_facts(const h5::File& file);
-/// The hash that the file carries; empty where it has none.
-std::string stored_hash(const h5::File& file);
-/// poses.csv.
-CsvTable pose_table(const StoredResult& result);
+void read_header(const h5::File& file, StoredResult& result);  ///< Fills in all that every result has.
+SelectedPoses read_poses(const h5::File& file);                ///< The poses, with what is stored beside them.
+RunFacts read_facts(const h5::File& file);                     ///< What composing a file wrote to /run.
+std::string stored_hash(const h5::File& file);    ///< The hash that the file carries; empty where it has none.
+CsvTable pose_table(const StoredResult& result);  ///< poses.csv.
 
 /// The standard deviations of the errors that the study varies, as /factors/sigma, and what their distributions are
 /// called, as /factors/distribution.
 void add_sigma(ResultBuilder& result, const Study& study);
-/// Fills in `factor_sigma` and `factor_distribution`.
-void read_sigma(const h5::File& file, StoredResult& result);
-/// factors.csv: the standard deviation of each error.
-CsvTable sigma_table(const StoredResult& result);
+void read_sigma(const h5::File& file, StoredResult& result);  ///< Fills in `factor_sigma` and `factor_distribution`.
+CsvTable sigma_table(const StoredResult& result);             ///< factors.csv: the standard deviation of each error.
 
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
@@ -76,8 +78,7 @@ struct SolveNumber {
   std::string name;                               ///< "not_converged", "iterations_mean", ..., "solves_STATUS"
   std::function<double(const SolveCounts&)> get;  ///< of a cell
 };
-/// All of them.
-const std::vector<SolveNumber>& solve_numbers();
+const std::vector<SolveNumber>& solve_numbers();  ///< All of them.
 /// Appends a column for each of them; line n is of the n-th cell.
 void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solves);
 
@@ -86,8 +87,7 @@ void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, c
                   std::uint64_t total);
 /// None in files of older versions. Reads `varied` and `poses` of the result.
 std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result);
-/// failures.csv, of a sampled result.
-CsvTable failure_table(const StoredResult& result);
+CsvTable failure_table(const StoredResult& result);  ///< failures.csv, of a sampled result.
 
 /// How the study's limits were kept: /limits; nothing where it states none.
 void add_limits(ResultBuilder& result, const ModelDescription& model, const std::optional<LimitVerdicts>& verdicts);
@@ -115,8 +115,7 @@ CourseWords convergence_words(Axes axes, const std::string& name, const std::str
 
 /// Adds the group of a course.
 void add_course(ResultBuilder& result, const CourseWords& words, const EstimateCourse& found);
-/// What add_course wrote.
-EstimateCourse read_course(const h5::File& file, const CourseWords& words);
+EstimateCourse read_course(const h5::File& file, const CourseWords& words);  ///< What add_course wrote.
 /// A table for each response with a line for each slot and number of samples. ends: [slots] samples at each pose at
 /// the end; empty where all went through the whole course. Refers to all.
 void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
@@ -128,8 +127,5 @@ void add_convergence(ResultBuilder& result, const CourseWords& words, const std:
 std::optional<ConvergenceResult> read_convergence(const h5::File& file, const CourseWords& words);
 /// convergence.csv and convergence_RESPONSE.csv.
 void append_convergence_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words);
-
-/// What a shard found, of a file that is one: /shard.
-void add_shard(ResultBuilder& result, const Shard& shard, std::span<const Bytes> stages);
 
 }  // namespace poesy

@@ -11,6 +11,7 @@
 #include "engine/files/poesy_file.h"
 #include "engine/files/result_parts.h"
 #include "engine/files/version.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -28,6 +29,7 @@ StoredShard read_checked(const std::string& path, const h5::File& file) {
   stored.poesy_version = text_attribute(file, "poesy_version");
   stored.git_commit = text_attribute(file, "git_commit");
   stored.study_text = file.read<std::string>("/study/text").at(0);
+  stored.mechanism_text = mechanism_text(file);
   stored.poses = read_poses(file);
   stored.shard.count = file.attribute<std::uint64_t>("/shard", "shards").at(0);
   stored.shard.index = file.attribute<std::uint64_t>("/shard", "shard").at(0) - 1;
@@ -40,6 +42,8 @@ StoredShard read_checked(const std::string& path, const h5::File& file) {
   stored.facts = read_facts(file);
   return stored;
 }
+
+std::size_t number(const StoredShard& shard) { return shard.shard.index; }
 
 /// "shard 2 of 5"
 std::string name_of(const Shard& shard) { return fmt::format("shard {} of {}", shard.index + 1, shard.count); }
@@ -56,21 +60,19 @@ void check_version(const StoredShard& shard) {
          "merge with the version that ran the shards");
 }
 
-bool same(const PoseSet& a, const PoseSet& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t m = 0; m < a.size(); ++m) {
-    if (!std::ranges::equal(a[PoseIndex(m)], b[PoseIndex(m)])) return false;
-  }
-  return true;
-}
-
 void check_same_study(const StoredShard& shard, const StoredShard& first) {
   if (shard.study_text != first.study_text) {
     const auto [there, here] = first_difference(shard.study_text, first.study_text);
     refuse(shard, fmt::format("is of another study: it has {} where {} has {}", there, first.path, here),
            "merge shards of one study");
   }
-  if (!same(shard.poses.poses, first.poses.poses)) {
+  if (shard.mechanism_text != first.mechanism_text) {
+    const auto [there, here] = first_difference(shard.mechanism_text, first.mechanism_text);
+    refuse(shard,
+           fmt::format("is of another mechanism: its file has {} where that of {} has {}", there, first.path, here),
+           "merge shards of one mechanism");
+  }
+  if (shard.poses.poses != first.poses.poses) {
     refuse(shard, "has other poses than " + first.path + ", though under the same name", "merge shards of one study");
   }
   if (shard.shard.count != first.shard.count) {
@@ -82,40 +84,39 @@ void check_same_study(const StoredShard& shard, const StoredShard& first) {
   }
 }
 
-/// Precondition: in the order of their numbers, none twice.
+/// Precondition: none twice.
 void check_all_there(std::span<const StoredShard> shards) {
   const std::size_t count = shards.front().shard.count;
-  if (shards.size() == count) return;
   std::string missing;
-  std::size_t next = 0;
-  for (std::size_t index = 0; index < count; ++index) {
-    if (next < shards.size() && shards[next].shard.index == index) {
-      ++next;
-    } else {
-      missing += (missing.empty() ? "" : ", ") + std::to_string(index + 1);
-    }
+  for (std::size_t index = 0; shards.size() < count && index < count; ++index) {
+    if (std::ranges::find(shards, index, number) != shards.end()) continue;
+    missing += (missing.empty() ? "" : ", ") + std::to_string(index + 1);
   }
+  if (missing.empty()) return;
   throw InputError({}, fmt::format("of {} shards these are missing: {}", count, printable(missing, 200)),
                    "run them with --shard and merge all of them");
 }
 
 }  // namespace
 
-void add_shard(ResultBuilder& result, const Shard& shard, std::span<const Bytes> stages) {
-  h5::File& file = result.file();
-  file.make_group("/shard");
-  file.set_attribute("/shard", "description",
-                     std::string("What one shard of the study found, for poesy merge of the same version"));
-  file.set_attribute("/shard", "shard", std::uint64_t{shard.index + 1});
-  file.set_attribute("/shard", "shards", std::uint64_t{shard.count});
-  for (std::size_t k = 0; k < stages.size(); ++k) {
-    std::vector<std::uint8_t> bytes(stages[k].size());
-    std::ranges::transform(stages[k], bytes.begin(), std::to_integer<std::uint8_t>);
-    const std::string path = state_path(k);
-    file.write(path, {bytes.size()}, std::span<const std::uint8_t>(bytes));
-    file.set_attribute(path, "unit", std::string("1"));
-    file.set_attribute(path, "description", std::string("Accumulators of the shard's cells, as bytes"));
-  }
+void write_shard(const std::string& path, const Study& study, const SelectedPoses& poses, const Shard& shard,
+                 std::span<const Bytes> stages, const RunFacts& facts) {
+  compose_file(path, kShardFile, study.analysis.kind->name, study, poses, facts, [&](ResultBuilder& result) {
+    h5::File& file = result.file();
+    file.make_group("/shard");
+    file.set_attribute("/shard", "description",
+                       std::string("What one shard of the study found, for poesy merge of the same version"));
+    file.set_attribute("/shard", "shard", std::uint64_t{shard.index + 1});
+    file.set_attribute("/shard", "shards", std::uint64_t{shard.count});
+    for (std::size_t k = 0; k < stages.size(); ++k) {
+      std::vector<std::uint8_t> bytes(stages[k].size());
+      std::ranges::transform(stages[k], bytes.begin(), std::to_integer<std::uint8_t>);
+      const std::string path_of_state = state_path(k);
+      file.write(path_of_state, {bytes.size()}, std::span<const std::uint8_t>(bytes));
+      file.set_attribute(path_of_state, "unit", std::string("1"));
+      file.set_attribute(path_of_state, "description", std::string("Accumulators of the shard's cells, as bytes"));
+    }
+  });
 }
 
 StoredShard read_shard(const std::string& path) {
@@ -128,8 +129,8 @@ std::vector<Bytes> merge_shards(std::vector<StoredShard>& shards) {
     check_version(shard);
     check_same_study(shard, shards.front());
   }
-  std::ranges::stable_sort(shards, {}, [](const StoredShard& shard) { return shard.shard.index; });
-  const auto twice = std::ranges::adjacent_find(shards, {}, [](const StoredShard& shard) { return shard.shard.index; });
+  std::ranges::stable_sort(shards, {}, number);
+  const auto twice = std::ranges::adjacent_find(shards, {}, number);
   if (twice != shards.end()) {
     refuse(*twice, fmt::format("and {} are both {}", std::next(twice)->path, name_of(twice->shard)), "give each once");
   }

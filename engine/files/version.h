@@ -6,8 +6,7 @@
 
 namespace poesy {
 
-/// "0.1.0"
-std::string poesy_version();
+std::string poesy_version();  ///< "0.1.0"
 
 /// The commit this program was built from, 40 hexadecimal digits, with "-dirty" behind it when files
 /// differed from that commit; "unknown" when it was not built in a git checkout.
@@ -19,7 +18,6 @@ struct LibraryVersion {
   std::string_view version;  ///< as it names itself
 };
 
-/// The compiler and the libraries this program was built with.
-std::span<const LibraryVersion> build_versions();
+std::span<const LibraryVersion> build_versions();  ///< The compiler and the libraries this program was built with.
 
 }  // namespace poesy

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/files/file_kind.h"
-#include "engine/kinds/tolerances.h"
+#include "engine/files/result_file.h"
+#include "engine/model/model.h"
 #include "engine/report/report_kind.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/outlook.h"
@@ -69,10 +69,25 @@ struct GivenErrors {
   std::span<const double> values;                        ///< [rows x P] SI
 };
 
+/// Which tolerances are asked for, as the command line says it.
+struct TolerancesOptions {
+  std::string result;                    ///< path of the result
+  std::string response;                  ///< that they are for; empty: none was named
+  std::optional<std::string> limit;      ///< on the root mean square of the response: "0.05 mm"
+  std::optional<std::string> reference;  ///< the error from which equal effects are counted: "NAME" or "NAME=0.1 mm"
+  std::string folder;                    ///< for what is written; empty: RESULT_tolerances
+  bool extrapolate = false;              ///< although an index changes with size
+};
+
+/// How a kind of study sets tolerances: writes them with the studies that test them, and gives what `poesy tolerances`
+/// prints, broken at `width`. Throws InputError, FileError.
+using SetTolerances = std::string (*)(const StoredResult& result, const TolerancesOptions& options,
+                                      const Catalog& catalog, std::size_t width);
+
 /// A kind of study: how its studies are read, run, stored and shown.
 struct Kind {
   const StudyKind& study;    ///< what it adds to study files
-  const RunKind& run;        ///< how its studies are run
+  RunKind run;               ///< how its studies are run
   const FileKind& file;      ///< how files keep what they found
   const ReportKind& report;  ///< how tables and reports show it
   /// Its solves one by one; null: they were drawn, or they have no addresses.

@@ -1,23 +1,23 @@
 #include "engine/kinds/result_file.h"
 
+#include <algorithm>
+
+#include "engine/base/error.h"
 #include "engine/kinds/registry.h"
 
 namespace poesy {
-namespace {
-
-const FileKind* find_file_kind(std::string_view name) {
-  const Kind* const kind = find_kind(name);
-  return kind == nullptr ? nullptr : &kind->file;
-}
-
-}  // namespace
 
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const std::any& found,
                   const RunFacts& facts) {
   write_result(path, study.analysis.kind->name, kind_of(study).file, study, poses, found, facts);
 }
 
-StoredResult read_result(const std::string& path) { return read_result(path, find_file_kind); }
+StoredResult read_result(const std::string& path) {
+  return read_result(path, [](std::string_view name) -> const FileKind* {
+    const Kind* const kind = find_kind(name);
+    return kind == nullptr ? nullptr : &kind->file;
+  });
+}
 
 std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder) {
   return export_tables(result, kind_of(result).file, folder);
@@ -25,6 +25,16 @@ std::vector<std::string> export_tables(const StoredResult& result, const std::st
 
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder) {
   return export_tables(read_result(result_path), folder);
+}
+
+std::string set_tolerances(const StoredResult& result, const TolerancesOptions& options, const Catalog& catalog,
+                           std::size_t width) {
+  const SetTolerances set = kind_of(result).set_tolerances;
+  if (set != nullptr) return set(result, options, catalog, width);
+  const auto has_tolerances = [](const Kind* kind) { return kind->set_tolerances != nullptr; };
+  const std::string able((*std::ranges::find_if(kinds(), has_tolerances))->study.name);
+  throw InputError({options.result}, "tolerances need indices, but this is a result of kind '" + result.kind + "'",
+                   "give the result of a " + able + " study");
 }
 
 }  // namespace poesy

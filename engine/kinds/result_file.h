@@ -1,12 +1,14 @@
 #pragma once
 
 #include <any>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/kinds/kind.h"
 
-/// Result files of every kind of study.
+/// What is done with the results of every kind of study.
 namespace poesy {
 
 /// Writes the result of a study. found: of the type that its kind finds. The file appears whole or not at all under its
@@ -23,5 +25,9 @@ StoredResult read_result(const std::string& path);
 std::vector<std::string> export_tables(const StoredResult& result, const std::string& folder);
 /// The same for a result that is still to be read.
 std::vector<std::string> export_tables(const std::string& result_path, const std::string& folder);
+
+/// Sets the tolerances of a result, see SetTolerances. Throws InputError also for a kind that has none.
+std::string set_tolerances(const StoredResult& result, const TolerancesOptions& options, const Catalog& catalog,
+                           std::size_t width);
 
 }  // namespace poesy

@@ -102,8 +102,7 @@ struct DeformationMeasure {
   double rounding;       ///< a value up to this cannot be told from zero, SI
 };
 
-/// A point of the platform in its frame: x, y, z in m.
-using PlatformPoint = std::array<double, 3>;
+using PlatformPoint = std::array<double, 3>;  ///< A point of the platform in its frame: x, y, z in m.
 
 /// What the actuators have to do with each error's effect, to first order at one pose. Lengths by which the platform
 /// moves, m per SI unit of the error.
@@ -139,8 +138,7 @@ struct SolverOptions {
   /// platform's metric, once the change's length is below this share of the mechanism's reach. Default 1e-15, Du et al.
   /// 2022, Section 5.1; a study's default is ModelDescription::tolerance.
   double tolerance = 1e-15;
-  /// Default 50, Du et al. 2022, Section 5.1.
-  int max_iterations = 50;
+  int max_iterations = 50;  ///< Default 50, Du et al. 2022, Section 5.1.
 };
 
 /// A factor set that the literature judges as one source of errors.
@@ -183,8 +181,7 @@ struct ModelDescription {
 
   /// Its position; empty where there is none of that name.
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
-  /// Null where there is none of that name.
-  const FactorSet* find_set(std::string_view set_name) const;
+  const FactorSet* find_set(std::string_view set_name) const;  ///< Null where there is none of that name.
 };
 
 /// B samples at one pose: F constant errors, of which V take their own value in each sample.
@@ -238,8 +235,7 @@ class Model {
  public:
   virtual ~Model() = default;
 
-  /// The same for as long as the model lives.
-  virtual const ModelDescription& description() const = 0;
+  virtual const ModelDescription& description() const = 0;  ///< The same for as long as the model lives.
 
   /// Why the mechanism cannot take this pose (SI); empty when it can.
   virtual std::optional<std::string> unreachable(std::span<const double> pose) const = 0;
@@ -257,36 +253,40 @@ class Model {
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
 
   /// The solve of these errors [F] at a reachable pose, SI; none: the model does not show it.
-  virtual std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
-                                          const SolverOptions& options) const;
+  virtual std::optional<SolveTrace> trace(std::span<const double> /*pose*/, std::span<const double> /*errors*/,
+                                          const SolverOptions& /*options*/) const {
+    return std::nullopt;
+  }
 
   /// The pose with these coordinates of a chart (SI), whether the mechanism reaches it or not; empty when there is
   /// none.
-  virtual std::optional<std::vector<double>> pose_from_chart(std::size_t chart,
-                                                             std::span<const double> coordinates) const;
+  virtual std::optional<std::vector<double>> pose_from_chart(std::size_t /*chart*/,
+                                                             std::span<const double> /*coordinates*/) const {
+    return std::nullopt;
+  }
 
   /// Precondition: the model separates its errors and reaches the pose.
-  virtual Separation separation(std::span<const double> pose) const;
+  virtual Separation separation(std::span<const double> /*pose*/) const { return {}; }
 
   /// An error may seem to have an effect on a response, as a standard deviation of its samples, up to this (SI),
   /// because solves round. 0 unless a model says otherwise: then rounding is a fixed part of the effect itself.
-  virtual double rounding(std::size_t response) const;
+  virtual double rounding(std::size_t /*response*/) const { return 0.0; }
 
   /// Infinite unless a model says otherwise.
-  virtual ErrorBound error_bound(FactorIndex factor) const;
+  virtual ErrorBound error_bound(FactorIndex /*factor*/) const { return {}; }
 
   /// Points of the platform by which its limbs' mismatch is weighed, in its frame; empty where none are.
-  virtual std::vector<PlatformPoint> metric_points() const;
+  virtual std::vector<PlatformPoint> metric_points() const { return {}; }
 
   /// How the mechanism can move, in lines for people; none where it was never asked.
-  virtual std::vector<std::string> mobility() const;
+  virtual std::vector<std::string> mobility() const { return {}; }
 
   /// How the mechanism looks at home; empty where the model has no picture.
-  virtual std::optional<Sketch> sketch() const;
+  virtual std::optional<Sketch> sketch() const { return std::nullopt; }
 
   /// What of the geometry is possible, but so unusual that it may be a slip; clauses for people: "the platform (l_A =
   /// 800 mm) is larger than the base (l_B = 200 mm)". None unless a model says otherwise.
-  virtual std::vector<std::string> unusual_geometry() const;
+  virtual std::vector<std::string> unusual_geometry() const { return {}; }
 
  protected:
   Model() = default;
@@ -296,5 +296,39 @@ class Model {
   Model& operator=(const Model&) = default;
   /// @}
 };
+
+/// A mechanism that a study may name.
+struct CatalogEntry {
+  ModelDescription description;  ///< with the published geometry
+  /// Builds the mechanism from the values of description.geometry, in that order (SI), and the position of a fidelity
+  /// among description.fidelities, 0 where there is no choice.
+  /// Throws std::invalid_argument with a clause that names the parameter and the rule it breaks.
+  std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;
+  /// The same mechanism by the other metric, with responses of its own; null where no angle is weighed against a
+  /// length, and in that entry itself.
+  std::shared_ptr<const CatalogEntry> other_metric = nullptr;
+  /// Where the description's metric is "platform": builds it with other points of the platform, at least three (its
+  /// frame, m). Throws std::invalid_argument as build does.
+  std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity,
+                                       std::span<const PlatformPoint> points)>
+      build_with_points = nullptr;
+  std::string file = {};  ///< path of the file that describes it; empty for those of the catalog
+};
+
+/// The entry or its other_metric, whichever weighs by this metric; the entry where nothing is weighed.
+const CatalogEntry& by_metric(const CatalogEntry& entry, std::string_view metric);
+
+/// Mechanisms by name, in the order in which they are listed, and the way to those that somebody describes in a file.
+struct Catalog : std::vector<CatalogEntry> {
+  using vector::vector;
+  /// The mechanism of a file's text; `path` is for messages. Null: there are none from files.
+  /// Throws InputError "FILE:LINE:COL: ..." where the text describes no mechanism.
+  CatalogEntry (*from_text)(const std::string& text, const std::string& path) = nullptr;
+  /// The reference of such files, as Markdown.
+  std::string (*file_reference)() = nullptr;
+};
+
+/// The entry of that name, in capitals or small letters, or nullptr.
+const CatalogEntry* find(const Catalog& catalog, std::string_view model_name);
 
 }  // namespace poesy

@@ -19,10 +19,4 @@ void SobolSequence::next(std::span<double> point) {
   for (double& coordinate : point) coordinate = static_cast<double>(generator_->sequence()) * 0x1p-64;
 }
 
-std::vector<double> sobol_points(std::size_t count, std::size_t dimensions) {
-  std::vector<double> points(count * dimensions);
-  if (!points.empty()) SobolSequence(dimensions).next(points);
-  return points;
-}
-
 }  // namespace poesy

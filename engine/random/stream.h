@@ -29,30 +29,4 @@ void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<do
 /// Maps 64 bits to (cell + 0.5) / 2^53 with cell the upper 53 bits, kept below 1.
 double uniform_from_bits(std::uint64_t bits);
 
-/// The same stream as a Boost.Random engine (also a C++ UniformRandomBitGenerator), for
-/// distributions and shuffles that take an engine: call k returns random_bits(address, k).
-class StreamEngine {
- public:
-  /// Of a standard engine.
-  using result_type = std::uint64_t;
-
-  /// Begins with the stream's first sample.
-  explicit StreamEngine(const StreamAddress& address) : address_(address) {}
-
-  /// Of a standard engine.
-  /// @{
-  static constexpr result_type min() { return 0; }
-  static constexpr result_type max() { return ~result_type{0}; }
-  /// @}
-
-  /// The next sample's bits.
-  result_type operator()() { return random_bits(address_, SampleIndex(next_++)); }
-  /// Passes so many samples over.
-  void discard(std::uint64_t count) { next_ += count; }
-
- private:
-  StreamAddress address_;
-  std::uint64_t next_ = 0;
-};
-
 }  // namespace poesy

@@ -4,16 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
-#include <utility>
+#include <ranges>
 
-#include "engine/stats/rounding.h"
+#include "engine/base/units.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {
 
 Cell cell(std::string text, double value) {
   return {std::move(text), std::isfinite(value) ? std::optional(value) : std::nullopt};
+}
+
+/// "4.25 mm"; the number alone where there is no unit.
+std::string with_unit_text(const std::string& number, const NamedUnit& named) {
+  const std::string unit = unit_text(named);
+  return unit.empty() ? number : number + " " + unit;
+}
+
+std::string readable_quoted(std::string_view quoted) {
+  try {
+    return readable_text(parse_quantity(quoted), 6);
+  } catch (const QuantityError&) {
+    return std::string(quoted);
+  }
 }
 
 }  // namespace
@@ -76,10 +92,8 @@ Common common(const std::vector<std::string>& a, const std::vector<std::string>&
 }
 
 std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others) {
-  std::vector<std::string> list;
-  for (const std::string& name : these) {
-    if (std::ranges::find(others, name) == others.end()) list.push_back(name);
-  }
+  std::vector<std::string> list = these;
+  std::erase_if(list, [&](const std::string& name) { return std::ranges::find(others, name) != others.end(); });
   return list;
 }
 
@@ -92,9 +106,7 @@ std::string metric_text(const StoredResult& result) {
 }
 
 std::string response_text(const NamedUnit& response, double si) {
-  const Unit& unit = display(response);
-  const std::string value = fmt::format("{:.4g}", si / unit.si);
-  return unit.name == "1" ? value : fmt::format("{} {}", value, unit.name);
+  return with_unit_text(fmt::format("{:.4g}", si / display(response).si), response);
 }
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
@@ -102,10 +114,8 @@ std::string coordinates_text(const StoredResult& result, std::size_t pose) {
   std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];
-    const Unit& unit = display(named);
-    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", named.name,
-                        number_text(result.poses[PoseIndex(pose)][c] / unit.si, 3), unit.name == "1" ? "" : " ",
-                        unit.name == "1" ? "" : unit.name);
+    const std::string number = number_text(result.poses[PoseIndex(pose)][c] / display(named).si, 3);
+    text += (text.empty() ? "" : ", ") + named.name + " " + with_unit_text(number, named);
   }
   return text;
 }
@@ -162,6 +172,53 @@ Cell percent_cell(double share) { return cell(percent_number(share), 100.0 * sha
 Cell index_cell(double index, double scale, double rounding) {
   if (is_too_small_to_tell(index, rounding)) return text_cell(kTooSmall);
   return cell(std::abs(index) < rounding ? "0" : number_text(index * scale), index * scale);
+}
+
+std::vector<StudySetting> study_settings(std::string_view study_text) {
+  std::vector<StudySetting> list;
+  std::map<std::string, std::size_t> repeated;
+  std::string section;
+  for (const auto part : std::views::split(study_text, '\n')) {
+    const std::string_view line(part.begin(), part.end());
+    const std::size_t equals = line.find(" = ");
+    if (line.starts_with("[[") && line.ends_with("]]")) {
+      const std::string name(line.substr(2, line.size() - 4));
+      section = name + " " + std::to_string(++repeated[name]);
+    } else if (line.starts_with('[') && line.ends_with(']')) {
+      section = line.substr(1, line.size() - 2);
+    } else if (equals != std::string_view::npos) {
+      list.push_back({section, std::string(line.substr(0, equals)), std::string(line.substr(equals + 3))});
+    }
+  }
+  return list;
+}
+
+std::string study_setting(std::string_view study_text, std::string_view section, std::string_view key) {
+  for (const StudySetting& setting : study_settings(study_text)) {
+    if (setting.section == section && setting.key == key) return setting.value;
+  }
+  return {};
+}
+
+std::string readable_setting(std::string_view value) {
+  std::string text;
+  while (!value.empty()) {
+    const char first = value.front();
+    const std::size_t end = first == '"' ? value.find('"', 1) : std::string_view::npos;
+    if (end != std::string_view::npos) {
+      text += readable_quoted(value.substr(1, end - 1));
+      value.remove_prefix(end + 1);
+      continue;
+    }
+    if (first != '{' && first != '}') text += first;
+    value.remove_prefix(1);
+  }
+  const std::size_t begin = text.find_first_not_of(' ');
+  return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
+}
+
+std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key) {
+  return readable_setting(study_setting(study_text, section, key));
 }
 
 }  // namespace poesy

@@ -1,75 +1,59 @@
-#include "engine/report/json_tables.h"
+#include "engine/report/tables.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "engine/base/units.h"
 #include "engine/report/display.h"
-#include "engine/report/study_settings.h"
 
 namespace poesy {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Null where the study's text does not say it.
-Json seed_of(const StoredResult& result) {
-  const Json seed = Json::parse(study_setting(result.study_text, "run", "seed"), nullptr, false);
-  return seed.is_number_unsigned() ? seed : Json(nullptr);
+// Found by the JSON library through their arguments, for lists of these parts as well.
+
+static void to_json(Json& json, const NamedUnit& thing) {
+  json = {{"name", thing.name}, {"unit", thing.unit}, {"description", thing.description}};
 }
 
-Json solves_json(const SolveCounts& solves) {
-  Json by_status = Json::object();
-  for (std::size_t s = 0; s < kStatusNames.size(); ++s) {
-    by_status[std::string(kStatusNames[s])] = solves.by_status[s];
-  }
-  return {{"total", solves.total()}, {"not_converged", solves.not_converged()}, {"by_status", by_status}};
-}
-
-Json column_json(const Column& column) {
-  return {{"name", column.name},
+static void to_json(Json& json, const Column& column) {
+  json = {{"name", column.name},
           {"heading", column.heading},
           {"unit", column.unit},
           {"kind", column.kind == Column::Kind::number ? "number" : "text"}};
 }
 
-Json value_json(const Column& column, const Cell& cell) {
-  if (column.kind == Column::Kind::text) return cell.text;
-  return cell.value ? Json(*cell.value) : Json(nullptr);
-}
-
-Json table_json(const Table& table) {
-  Json columns = Json::array();
-  for (const Column& column : table.columns) columns.push_back(column_json(column));
+static void to_json(Json& json, const Table& table) {
   Json rows = Json::array();
   Json shown = Json::array();
   for (const std::vector<Cell>& row : table.rows) {
-    Json values = Json::object();
-    Json texts = Json::array();
+    Json& values = rows.emplace_back(Json::object());
+    Json& texts = shown.emplace_back(Json::array());
     for (std::size_t c = 0; c < row.size(); ++c) {
-      values[table.columns[c].name] = value_json(table.columns[c], row[c]);
-      texts.push_back(row[c].text);
+      const auto& [text, value] = row[c];
+      const bool number = table.columns[c].kind == Column::Kind::number;
+      values[table.columns[c].name] = !number ? Json(text) : value ? Json(*value) : Json(nullptr);
+      texts.push_back(text);
     }
-    rows.push_back(std::move(values));
-    shown.push_back(std::move(texts));
   }
-  return {{"name", table.name}, {"caption", table.caption}, {"columns", columns},
-          {"rows", rows},       {"shown", shown},           {"notes", table.notes}};
+  json = {{"name", table.name},      {"caption", table.caption},  {"columns", table.columns},
+          {"rows", std::move(rows)}, {"shown", std::move(shown)}, {"notes", table.notes}};
 }
 
-/// Names with their SI units and what they mean.
-Json named_json(const std::vector<NamedUnit>& things) {
-  Json list = Json::array();
-  for (const NamedUnit& thing : things) {
-    list.push_back({{"name", thing.name}, {"unit", thing.unit}, {"description", thing.description}});
+static void to_json(Json& json, const SolveCounts& solves) {
+  Json by_status = Json::object();
+  for (std::size_t s = 0; s < kStatusNames.size(); ++s) {
+    by_status[std::string(kStatusNames[s])] = solves.by_status[s];
   }
-  return list;
+  json = {{"total", solves.total()}, {"not_converged", solves.not_converged()}, {"by_status", std::move(by_status)}};
 }
 
-Json tables_json(std::span<const Table> tables) {
-  Json list = Json::array();
-  for (const Table& table : tables) list.push_back(table_json(table));
-  return list;
+namespace {
+
+/// Null where the study's text does not say it.
+Json seed_of(const StoredResult& result) {
+  const Json seed = Json::parse(study_setting(result.study_text, "run", "seed"), nullptr, false);
+  return seed.is_number_unsigned() ? seed : Json(nullptr);
 }
 
 /// A result without its tables.
@@ -84,9 +68,9 @@ Json summary_json(const StoredResult& result, const SolveCounts& solves) {
           {"content_sha256", result.content_sha256},
           {"seed", seed_of(result)},
           {"poses", result.poses.size()},
-          {"errors", named_json(result.factors)},
-          {"responses", named_json(result.responses)},
-          {"solves", solves_json(solves)},
+          {"errors", result.factors},
+          {"responses", result.responses},
+          {"solves", solves},
           {"run",
            {{"created", result.facts.created},
             {"threads", result.facts.threads},
@@ -105,7 +89,8 @@ std::string text_of(const Json& all) { return all.dump(2, ' ', false, Json::erro
 
 std::string json_of(const StoredResult& result, const SolveCounts& solves, std::span<const Table> tables) {
   Json all = summary_json(result, solves);
-  all["tables"] = tables_json(tables);
+  all["tables"] = Json::array();
+  for (const Table& table : tables) all["tables"].push_back(table);
   return text_of(all);
 }
 
@@ -113,7 +98,7 @@ std::string json_of(const RankedResult& a, const RankedResult& b, const TwoRanki
   return text_of({{"results", Json::array({ranked_json(a), ranked_json(b)})},
                   {"kendall_tau", std::isnan(rankings.tau) ? Json(nullptr) : Json(rankings.tau)},
                   {"remarks", rankings.remarks},
-                  {"tables", tables_json({&rankings.table, 1})}});
+                  {"tables", Json::array({rankings.table})}});
 }
 
 }  // namespace poesy

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "engine/report/html/markup.h"
+#include "engine/report/html/page.h"
 
 namespace poesy {
 namespace {

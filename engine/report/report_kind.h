@@ -2,13 +2,9 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "engine/report/html/comparison.h"
-#include "engine/report/html/page.h"
 #include "engine/report/html/parts.h"
-#include "engine/report/rankings.h"
 #include "engine/report/solves.h"
 #include "engine/report/tables.h"
 
@@ -41,5 +37,12 @@ struct ReportKind {
 
 /// The tables of a result of this kind: its limits, the kind's own, how adaptive samples came to their end.
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options);
+
+/// The report of one result, or the comparison of two, as one HTML document that needs no other file: what was run,
+/// warnings, figures with their numbers, tables. It reads without JavaScript, which draws the figures alone. Whatever
+/// comes from a file is escaped. Throws InputError for two results that have nothing to be compared: different kinds,
+/// mechanisms, or neither errors, cases or sources, nor responses in common.
+/// Precondition: one result or two; kind is that of the first.
+std::string html_report(const ReportKind& kind, std::span<const ReportedResult> results);
 
 }  // namespace poesy

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/text.h"
 #include "engine/report/display.h"
-#include "engine/report/study_settings.h"
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 
 namespace poesy {
 namespace {
@@ -24,13 +22,11 @@ double max_not_converged(const StoredResult& result) {
   return share;
 }
 
-/// Why numbers cannot be trusted where too many solves did not converge; empty below.
-std::string doubt_text(double share) {
-  if (!(share > kManyNotConverged)) return {};
-  return " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where "
-         "they are many. Left out, they make numbers too small, because they are mostly the large errors; included, "
-         "they fill them with unfinished iterates.";
-}
+/// Why numbers cannot be trusted where too many solves did not converge.
+constexpr std::string_view kDoubt =
+    " That is more than 1 %: all numbers rest on the rest, and both ways of treating such solves are wrong where they "
+    "are many. Left out, they make numbers too small, because they are mostly the large errors; included, they fill "
+    "them with unfinished iterates.";
 
 /// " The largest shares: ..." of the rows and of the poses; empty where there is nothing to tell apart.
 std::string largest_shares_text(const StoredResult& result, const SolveTally& tally) {
@@ -45,7 +41,7 @@ std::string largest_shares_text(const StoredResult& result, const SolveTally& ta
 }
 
 std::string count_line(std::uint64_t failed, std::uint64_t solves) {
-  const double share = solves == 0 ? 0.0 : static_cast<double>(failed) / static_cast<double>(solves);
+  const double share = solves == 0 ? 0.0 : share_of(failed, solves);
   return fmt::format("{} of {} ({}) did not converge", count_text(failed), counted(solves, "solve", "solves"),
                      percent_text(share));
 }
@@ -69,9 +65,8 @@ std::string listed_text(const StoredResult& result, const SolveTally& tally, std
 }
 
 std::vector<double> shares_of(const std::vector<SolveCounts>& sums) {
-  std::vector<double> list;
-  list.reserve(sums.size());
-  for (const SolveCounts& sum : sums) list.push_back(share_not_converged(sum));
+  std::vector<double> list(sums.size());
+  std::ranges::transform(sums, list.begin(), share_not_converged);
   return list;
 }
 
@@ -102,11 +97,6 @@ std::vector<double> SolveTally::shares_by_pose() const {
   return shares_of(sums);
 }
 
-double share_not_converged(const SolveCounts& solves) {
-  if (solves.total() == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
-}
-
 std::string at_first_fidelity(const SolveTally& tally) {
   return tally.second ? fmt::format(" at fidelity \"{}\"", tally.second->first) : std::string();
 }
@@ -115,8 +105,8 @@ std::string unsolved_text(const StoredResult& result, const SolveTally& tally) {
   const SolveCounts total = tally.total();
   const double share = share_not_converged(total);
   return fmt::format("{} of {} solves{} ({}) did not converge.{}{}", count_text(total.not_converged()),
-                     count_text(total.total()), at_first_fidelity(tally), percent_text(share), doubt_text(share),
-                     largest_shares_text(result, tally));
+                     count_text(total.total()), at_first_fidelity(tally), percent_text(share),
+                     share > kManyNotConverged ? kDoubt : "", largest_shares_text(result, tally));
 }
 
 std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,

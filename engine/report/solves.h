@@ -21,6 +21,11 @@ constexpr double unremarkable_failure_share(double allowed) {
   return allowed < 1.0 ? allowed : kDefault;
 }
 
+/// NaN for none of none.
+constexpr double share_of(std::uint64_t part, std::uint64_t all) {
+  return static_cast<double>(part) / static_cast<double>(all);
+}
+
 /// Whether so many solves of a result did not converge that a reader is warned: more than unremarkable_failure_share.
 bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves);
 
@@ -42,15 +47,16 @@ struct SolveTally {
   std::vector<SolveCounts> cells;                       ///< [rows x M]
   std::optional<SecondFidelity> second = std::nullopt;  ///< where the result compares two fidelities
 
-  /// All solves, those of the first fidelity where there are two.
-  SolveCounts total() const;
+  SolveCounts total() const;                   ///< All solves, those of the first fidelity where there are two.
   std::vector<double> shares() const;          ///< [rows x M] that did not converge; NaN where there is no solve
   std::vector<double> shares_by_row() const;   ///< [rows] likewise
   std::vector<double> shares_by_pose() const;  ///< [M] likewise
 };
 
 /// The share of solves that did not converge; NaN where there is none.
-double share_not_converged(const SolveCounts& solves);
+inline double share_not_converged(const SolveCounts& solves) {
+  return share_of(solves.not_converged(), solves.total());
+}
 
 /// " at fidelity \"full\"", the first of two; empty where the result does not compare two.
 std::string at_first_fidelity(const SolveTally& tally);

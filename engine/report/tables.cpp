@@ -5,14 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
-#include <vector>
 
+#include "engine/base/error.h"
 #include "engine/report/display.h"
 #include "engine/report/report_kind.h"
-#include "engine/report/text_table.h"
-#include "engine/run/evaluation.h"
 
 namespace poesy {
 namespace {
@@ -144,12 +140,11 @@ std::optional<Table> limits_table(const StoredResult& result) {
               .notes = {rule(*verdicts)}};
   for (const LimitVerdict& one : verdicts->limits) {
     const Unit& unit = display(result.responses[one.response]);
-    const double share = static_cast<double>(one.within) / static_cast<double>(one.tried);
     kept += one.passed ? 1 : 0;
     table.rows.push_back({text_cell(one.passed ? "PASS" : "FAIL"), text_cell(result.responses[one.response].name),
                           text_cell(unit.name), text_cell(judged_by(*verdicts)),
                           number_cell(one.value / unit.si, kDigits), number_cell(one.limit / unit.si, kDigits),
-                          percent_cell(share), text_cell(place(result, one))});
+                          percent_cell(share_of(one.within, one.tried)), text_cell(place(result, one))});
   }
   const std::size_t all = verdicts->limits.size();
   table.caption = kept == all ? fmt::format("PASS: {} kept", all == 1 ? "the limit is" : "all limits are")
@@ -192,6 +187,32 @@ std::string not_settled_text(const StoredResult& result, const Settling& settlin
       "{} of {} {} did not reach the interval of +-{} that the study asks for, with at most {} samples at each pose.",
       missing, settling.responses.size() * found.samples.size(), settling.quantities,
       percent_text(found.relative_error), count_text(found.max));
+}
+
+void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
+                      const std::string& path_b) {
+  const auto check = [&](std::string_view what, const std::string& of_a, const std::string& of_b) {
+    if (of_a == of_b) return;
+    throw InputError({.file = path_b},
+                     fmt::format("cannot be compared with {}: its {} is '{}', not '{}'", path_a, what, of_b, of_a),
+                     "compare two results of one kind and mechanism, or look at each alone");
+  };
+  check("kind", a.kind, b.kind);
+  check("mechanism", a.model, b.model);
+}
+
+bool differ_in_metric(const StoredResult& a, const StoredResult& b) {
+  return !a.metric.empty() && !b.metric.empty() && a.metric != b.metric;
+}
+
+std::string ranked_text(char letter, const RankedResult& ranked) {
+  const StoredResult& result = ranked.result;
+  std::string text = result.title.empty() ? fmt::format("{}: {}", letter, ranked.path)
+                                          : fmt::format("{}: {} ({})", letter, result.title, ranked.path);
+  if (!result.metric.empty()) text += "; metric: " + metric_text(result);
+  return text + fmt::format("; ranked by {}; {} of {} did not converge", ranked.response,
+                            count_text(ranked.solves.not_converged()),
+                            counted(ranked.solves.total(), "solve", "solves"));
 }
 
 }  // namespace poesy

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 
@@ -62,8 +62,55 @@ const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response)
 /// PASS or FAIL for each limit, with the value that was found and the limit; none where the study states none.
 std::optional<Table> limits_table(const StoredResult& result);
 
-/// All mechanisms, a line each.
-std::string models_text(const Catalog& catalog);
+/// A result, and the response by which its errors are ranked; it must have it.
+struct RankedResult {
+  const StoredResult& result;  ///< must outlive this
+  std::string path;            ///< of the result
+  std::string response;        ///< name
+  SolveCounts solves;          ///< all of them
+};
+
+/// Two rankings of the same errors by their effects, at the sizes that each study gives them.
+struct TwoRankings {
+  Table table;                       ///< of each error its rank and effect in A and in B, in an order of A
+  double tau;                        ///< Kendall's, of the effects; NaN where it is not known
+  std::vector<std::string> remarks;  ///< Sentences for people: the tau, how the metrics differ, what is left out.
+};
+
+/// Throws InputError, at the path of B, where the results are of two kinds or mechanisms.
+void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
+                      const std::string& path_b);
+
+/// Whether two results are by different metrics, as far as both say it; files of older versions do not.
+bool differ_in_metric(const StoredResult& a, const StoredResult& b);
+
+/// What a reader must know of one of them, on one line: "A: title (path); metric: ...; ranked by gap; 5 of 1 000 solves
+/// did not converge".
+std::string ranked_text(char letter, const RankedResult& ranked);
+
+/// A result's summary and its tables as one JSON object, for programs:
+///
+/// - kind, model, title, poesy_version, git_commit, content_sha256
+/// - metric: name, null where nothing is weighed; metric_points: [[x, y, z]] in m, null where it has none
+/// - seed, where the study has one; poses
+/// - errors, responses: [{name, unit (SI), description}], the description empty in files of older versions
+/// - solves: total, not_converged, by_status: {converged, stagnated, ...}
+/// - run: created, threads, wall_seconds
+/// - tables: [{name, caption, columns: [{name, heading, unit, kind}], rows, shown, notes}]
+///
+/// A row of `rows` has the values by the names of the columns: numbers so that they read back as the same double, in
+/// the column's unit, null where there is none; text as it is. `shown` has the texts of the same cells, as a list for
+/// each row. Text that is not UTF-8 is made so. solves: all of the result.
+std::string json_of(const StoredResult& result, const SolveCounts& solves, std::span<const Table> tables);
+
+/// Two rankings beside each other as one JSON object:
+///
+///     results: [{path, response (that ranks), and of the result all that is above but its tables}, ...], A before B
+///     kendall_tau (null where it is not known), remarks: [sentences]
+///     tables: [the one table, as above]
+std::string json_of(const RankedResult& a, const RankedResult& b, const TwoRankings& rankings);
+
+std::string models_text(const Catalog& catalog);  ///< All mechanisms, a line each.
 
 /// One mechanism: geometry, pose coordinates, workspace, factors, factor sets, responses, details.
 std::string model_text(const CatalogEntry& entry);

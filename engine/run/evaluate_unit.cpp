@@ -1,13 +1,9 @@
 #include "engine/run/evaluate_unit.h"
 
-#include "engine/run/history_points.h"
-
-#include <algorithm>
 #include <array>
 
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
-#include "engine/run/counts.h"
 
 namespace poesy {
 namespace {
@@ -15,6 +11,28 @@ namespace {
 /// Largest error to expect: one draw in 16 000 of a normal lies beyond four standard deviations.
 double expected_range(const Distribution& distribution) {
   return std::min(distribution.half_width(), 4.0 * distribution.standard_deviation());
+}
+
+/// Counts how the unit's samples ended.
+template <class Unit>
+void count_ends(const WorkUnit& unit, const UnitOutcomes& outcomes, Unit& found) {
+  for (std::size_t b = 0; b < unit.count; ++b) {
+    found.solves.add(outcomes.status[b], outcomes.iterations[b]);
+    found.failed.add(SampleIndex(unit.first.value + b), outcomes.status[b]);
+  }
+}
+
+/// Solves and failures of a unit or a cell, behind what it has of its responses.
+template <class Unit>
+void write_ends(const Unit& unit, ByteWriter& to) {
+  unit.solves.write(to);
+  unit.failed.write(to);
+}
+
+template <class Unit>
+void read_ends(ByteReader& from, std::uint64_t first, Unit& unit) {
+  unit.solves = SolveCounts::read(from);
+  unit.failed = FailedSamples::read(from, unit.solves.not_converged(), first, first + unit.solves.total());
 }
 
 }  // namespace
@@ -28,15 +46,13 @@ void UnitStats::merge(const UnitStats& other) {
 
 void UnitStats::write(ByteWriter& to) const {
   for (const Moments& moments : responses) moments.write(to);
-  solves.write(to);
-  failed.write(to);
+  write_ends(*this, to);
 }
 
 UnitStats UnitStats::read(ByteReader& from, std::size_t responses, std::uint64_t first) {
   UnitStats stats;
   for (std::size_t r = 0; r < responses; ++r) stats.responses.push_back(Moments::read(from));
-  stats.solves = SolveCounts::read(from);
-  stats.failed = FailedSamples::read(from, stats.solves.not_converged(), first, first + stats.solves.total());
+  read_ends(from, first, stats);
   return stats;
 }
 
@@ -54,41 +70,80 @@ CellUnit CellUnit::read(ByteReader& from, std::size_t responses, std::uint64_t f
   return unit;
 }
 
+void PoseUnit::write(ByteWriter& to) const {
+  for (const ResponseUnit& response : responses) {
+    response.moments.write(to);
+    response.values.write(to);
+  }
+  write_ends(*this, to);
+}
+
+PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses, std::uint64_t first) {
+  PoseUnit unit;
+  unit.responses.resize(responses);
+  for (ResponseUnit& response : unit.responses) {
+    response.moments = Moments::read(from);
+    response.values = BucketedValues::read(from);
+  }
+  read_ends(from, first, unit);
+  return unit;
+}
+
+std::vector<std::size_t> history_points(const Plan& plan) {
+  std::vector<std::size_t> points;
+  if (plan.adaptive()) return points;
+  for (std::size_t left = plan.samples() / 100, decade = 100; left > 0; left /= 10, decade *= 10) {
+    for (const std::size_t step : {1U, 2U, 5U}) {
+      if (step <= left) points.push_back(step * decade);
+    }
+  }
+  return points;
+}
+
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points) {
   if (unit.first.value > 0) return {};
   return points.first(static_cast<std::size_t>(std::ranges::lower_bound(points, unit.count) - points.begin()));
 }
 
-UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
+UnitSolver::UnitSolver(const Plan& plan, const Model& model, std::size_t varied)
     : plan_(&plan),
       responses_(model.description().responses.size()),
+      values_(varied * Plan::kUnitSamples),
       evaluator_(model.evaluator(plan.solver())),
-      values_(Plan::kUnitSamples),
       outcome_(responses_ * Plan::kUnitSamples),
       status_(Plan::kUnitSamples),
-      iterations_(Plan::kUnitSamples),
-      points_(history_points(plan)) {}
+      iterations_(Plan::kUnitSamples) {}
+
+void UnitSolver::draw(const WorkUnit& unit, std::size_t slot, std::span<double> row) const {
+  fill_uniforms({plan_->seed(), Purpose::error_samples, plan_->factors()[slot], unit.pose}, unit.first, row);
+  plan_->distributions()[slot].transform(row);
+}
+
+UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range) {
+  const std::span values = std::span(values_).first(varied.size() * count);
+  const std::span outcome = std::span(outcome_).first(responses_ * count);
+  const std::span status = std::span(status_).first(count);
+  const std::span iterations = std::span(iterations_).first(count);
+  evaluator_->evaluate({plan_->poses()[pose], plan_->background(), varied, values, count, range},
+                       {outcome, status, iterations, {}});
+  return {values, outcome, status, iterations};
+}
+
+UnitEvaluator::UnitEvaluator(const Plan& plan, const Model& model)
+    : UnitSolver(plan, model, 1), points_(history_points(plan)) {}
 
 UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit) { return solve(unit, std::array{1.0}); }
 
 UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> scales) {
   const std::size_t count = scales.size() * unit.count;
   POESY_EXPECTS(count <= Plan::kUnitSamples);
-  const std::span values = std::span(values_).first(count);
-  const std::span draws = values.first(unit.count);
-  const std::span outcome = std::span(outcome_).first(responses_ * count);
-  const FactorIndex factor = plan_->factors()[unit.slot];
-  fill_uniforms({plan_->seed(), Purpose::error_samples, factor, unit.pose}, unit.first, draws);
-  plan_->distributions()[unit.slot].transform(draws);
+  const std::span draws = std::span(values_).first(unit.count);
+  draw(unit, unit.slot, draws);
   for (std::size_t k = scales.size(); k-- > 0;) {  // the first ones last, because the others are made of them
-    for (std::size_t b = 0; b < unit.count; ++b) values[k * unit.count + b] = scales[k] * draws[b];
+    for (std::size_t b = 0; b < unit.count; ++b) values_[k * unit.count + b] = scales[k] * draws[b];
   }
-  const std::span status = std::span(status_).first(count);
-  const std::span iterations = std::span(iterations_).first(count);
-  evaluator_->evaluate({plan_->poses()[unit.pose], plan_->background(), std::span(&factor, 1), values, count,
-                        expected_range(plan_->distributions()[unit.slot])},
-                       {outcome, status, iterations, {}});
-  return {values, outcome, status, iterations};
+  return UnitSolver::solve(unit.pose, plan_->factors().subspan(unit.slot, 1), count,
+                           expected_range(plan_->distributions()[unit.slot]));
 }
 
 CellUnit UnitEvaluator::operator()(const WorkUnit& unit) {
@@ -98,10 +153,9 @@ CellUnit UnitEvaluator::operator()(const WorkUnit& unit) {
   CellUnit found;
   found.responses.reserve(responses_);
   found.within.resize(points.size() * responses_);
+  count_ends(unit, outcomes, found);
   kept_.clear();
   for (std::size_t b = 0; b < unit.count; ++b) {
-    found.solves.add(outcomes.status[b], outcomes.iterations[b]);
-    found.failed.add(SampleIndex(unit.first.value + b), outcomes.status[b]);
     if (counts(outcomes.status[b], plan_->not_converged())) kept_.push_back(b);
   }
   for (std::size_t r = 0; r < responses_; ++r) {
@@ -112,6 +166,42 @@ CellUnit UnitEvaluator::operator()(const WorkUnit& unit) {
       const auto count = static_cast<std::size_t>(std::ranges::lower_bound(kept_, points[k]) - kept_.begin());
       found.within[k * responses_ + r] = local_index_with_error(Moments::of(kept.first(count)), sigma);
     }
+  }
+  return found;
+}
+
+PoseUnitEvaluator::PoseUnitEvaluator(const Plan& plan, const Model& model)
+    : UnitSolver(plan, model, plan.factors().size()) {
+  kept_.reserve(Plan::kUnitSamples);
+}
+
+UnitOutcomes PoseUnitEvaluator::solve(const WorkUnit& unit) {
+  for (std::size_t v = 0; v < plan_->factors().size(); ++v) {
+    draw(unit, v, std::span(values_).subspan(v * unit.count, unit.count));
+  }
+  return UnitSolver::solve(unit.pose, plan_->factors(), unit.count, 0.0);
+}
+
+std::span<const double> PoseUnitEvaluator::only_counting(std::span<const double> outcomes,
+                                                         std::span<const SolveStatus> status) {
+  kept_.clear();
+  for (std::size_t b = 0; b < outcomes.size(); ++b) {
+    if (counts(status[b], plan_->not_converged())) kept_.push_back(outcomes[b]);
+  }
+  return kept_;
+}
+
+PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
+  const UnitOutcomes outcomes = solve(unit);
+  PoseUnit found;
+  count_ends(unit, outcomes, found);
+  found.responses.reserve(responses_);
+  const bool all_count =
+      std::ranges::all_of(outcomes.status, [&](SolveStatus status) { return counts(status, plan_->not_converged()); });
+  for (std::size_t r = 0; r < responses_; ++r) {
+    const auto all = outcomes.responses.subspan(r * unit.count, unit.count);
+    const std::span<const double> kept = all_count ? all : only_counting(all, outcomes.status);
+    found.responses.push_back({Moments::of(kept), BucketedValues(kept)});
   }
   return found;
 }

@@ -1,14 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "engine/model/model.h"
-#include "engine/run/failed_samples.h"
 #include "engine/run/result.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/moments.h"
+#include "engine/stats/quantile_sketch.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -28,7 +29,7 @@ struct UnitStats {
   static UnitStats read(ByteReader& from, std::size_t responses, std::uint64_t first);
 };
 
-/// What one work unit of a sensitivity study hands on: besides, how the indices stood within it.
+/// What one work unit of a sensitivity study hands on: its statistics, and the indices over the first of its samples.
 struct CellUnit : UnitStats {
   std::vector<LocalIndex> within;  ///< [K x R] of the unit's first samples, up to each of points_within()
 
@@ -38,9 +39,40 @@ struct CellUnit : UnitStats {
   static CellUnit read(ByteReader& from, std::size_t responses, std::uint64_t first, std::size_t points);
 };
 
-/// Those of the history points (engine/run/history_points.h) that lie between the unit's samples; only in the first
-/// unit of a cell there are any. Refers to the points.
+/// What one work unit of a Monte Carlo study contributes to one response, over the samples that count.
+struct ResponseUnit {
+  Moments moments;        ///< mean and spread
+  BucketedValues values;  ///< the same samples, ready for a sketch
+};
+
+/// What one work unit of a Monte Carlo study contributes.
+struct PoseUnit {
+  std::vector<ResponseUnit> responses;  ///< [R]
+  SolveCounts solves;                   ///< how its solves ended
+  FailedSamples failed;                 ///< the first of them
+
+  /// For a message.
+  void write(ByteWriter& to) const;
+  /// Of samples from `first` on.
+  static PoseUnit read(ByteReader& from, std::size_t responses, std::uint64_t first);
+};
+
+/// The numbers of samples of a cell at which a sensitivity study with a fixed number of samples looks at its indices,
+/// ascending: 100, 200, 500, 1000, 2000, 5000, ... up to Plan::samples(), which is one of them only by chance. More
+/// samples only add to the list. Those above Plan::kUnitSamples are whole units. None where the samples are adaptive.
+std::vector<std::size_t> history_points(const Plan& plan);
+
+/// The history points between the unit's samples; only in the first unit of a cell there are any. Refers to the points.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
+
+/// The most poses at which a sensitivity study is checked a second time.
+inline constexpr std::size_t kSomePoses = 32;
+
+/// The number of such poses in a study with this many poses.
+constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses, poses); }
+
+/// The n-th of them: evenly spaced over the order of the study's poses. Precondition: n < some_poses(poses).
+constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
 
 /// What the samples of one work unit came to. Refers to the scratch of who solved them, until it solves others.
 struct UnitOutcomes {
@@ -50,8 +82,31 @@ struct UnitOutcomes {
   std::span<const std::uint32_t> iterations;  ///< [B] that each took
 };
 
-/// Solves work units serially. Owns the scratch of one thread; stats depend on the plan and the unit alone.
-class UnitEvaluator {
+/// What evaluators of work units share: the model's evaluator and the scratch of one thread. Refers to the plan.
+class UnitSolver {
+ protected:
+  /// varied: errors that vary at once.
+  UnitSolver(const Plan& plan, const Model& model, std::size_t varied);
+
+  /// Fills a row of draws of the factor in this slot.
+  void draw(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
+  /// Solves the first [varied x count] of values_ at a pose.
+  UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range);
+
+  const Plan* plan_;            ///< whose units are solved
+  std::size_t responses_;       ///< R
+  std::vector<double> values_;  ///< [V x B]
+
+ private:
+  std::unique_ptr<Evaluator> evaluator_;
+  std::vector<double> outcome_;  ///< [R x B]
+  std::vector<SolveStatus> status_;
+  std::vector<std::uint32_t> iterations_;
+};
+
+/// Solves work units of a sensitivity study serially. Owns the scratch of one thread; stats depend on the plan and the
+/// unit alone.
+class UnitEvaluator : private UnitSolver {
  public:
   /// Refers to both.
   UnitEvaluator(const Plan& plan, const Model& model);
@@ -65,15 +120,27 @@ class UnitEvaluator {
   UnitOutcomes solve(const WorkUnit& unit, std::span<const double> scales);
 
  private:
-  const Plan* plan_;
-  std::size_t responses_;
-  std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> values_;
-  std::vector<double> outcome_;
-  std::vector<SolveStatus> status_;
-  std::vector<std::uint32_t> iterations_;
   std::vector<std::size_t> kept_;    ///< samples that count
   std::vector<std::size_t> points_;  ///< of the history
+};
+
+/// Solves work units of a Monte Carlo study serially, all factors varying together. Factor f draws from the address
+/// that it has in a sensitivity study. Owns the scratch of one thread; what a unit gives depends on the plan and the
+/// unit.
+class PoseUnitEvaluator : private UnitSolver {
+ public:
+  /// Refers to both.
+  PoseUnitEvaluator(const Plan& plan, const Model& model);
+
+  /// Solves the whole unit.
+  PoseUnit operator()(const WorkUnit& unit);
+  /// As UnitEvaluator::solve.
+  UnitOutcomes solve(const WorkUnit& unit);
+
+ private:
+  std::span<const double> only_counting(std::span<const double> outcomes, std::span<const SolveStatus> status);
+
+  std::vector<double> kept_;  ///< one response of the samples that count
 };
 
 }  // namespace poesy

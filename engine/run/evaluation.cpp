@@ -1,9 +1,13 @@
 #include "engine/run/evaluation.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
-#include "engine/run/evaluation_state.h"
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
 #include "engine/run/fold.h"
 
 namespace poesy {
@@ -11,62 +15,15 @@ namespace {
 
 /// Rows that are solved in one go at one pose.
 constexpr std::size_t kBlockRows = 256;
+/// No other state begins with this number.
+constexpr std::uint64_t kKind = 3;
 
-/// Solves blocks of rows of an error table and scatters what they give into the result.
-class TableEvaluator {
- public:
-  TableEvaluator(const Model& model, const SolverOptions& solver, const PoseSet& poses, const ErrorTable& errors,
-                 EvaluationResult& result)
-      : poses_(&poses),
-        errors_(&errors),
-        result_(&result),
-        zeros_(model.description().factors.size(), 0.0),
-        evaluator_(model.evaluator(solver)) {}
-
-  /// Samples first_sample .. of pose m are the rows first_row .. of the table.
-  SolveCounts operator()(PoseIndex pose, std::size_t first_sample, std::size_t first_row, std::size_t count) {
-    const std::size_t varied = errors_->factors.size();
-    values_.resize(varied * count);
-    for (std::size_t v = 0; v < varied; ++v) {
-      for (std::size_t b = 0; b < count; ++b) {
-        values_[v * count + b] = errors_->values[(first_row + b) * varied + v];
-      }
-    }
-    const std::size_t start = pose.value * result_->samples + first_sample;
-    responses_.resize(result_->responses * count);
-    details_.resize(result_->details * count);
-    const std::span status = std::span(result_->status).subspan(start, count);
-    const std::span iterations = std::span(result_->iterations).subspan(start, count);
-    evaluator_->evaluate({(*poses_)[pose], zeros_, errors_->factors, values_, count},
-                         {responses_, status, iterations, details_});
-    scatter(start, count);
-    SolveCounts solves;
-    for (std::size_t b = 0; b < count; ++b) solves.add(status[b], iterations[b]);
-    return solves;
-  }
-
- private:
-  void scatter(std::size_t start, std::size_t count) {
-    const std::size_t all = result_->poses * result_->samples;
-    for (std::size_t r = 0; r < result_->responses; ++r) {
-      std::copy_n(&responses_[r * count], count, &result_->response[r * all + start]);
-    }
-    for (std::size_t d = 0; d < result_->details; ++d) {
-      for (std::size_t b = 0; b < count; ++b) {
-        result_->detail[(start + b) * result_->details + d] = details_[d * count + b];
-      }
-    }
-  }
-
-  const PoseSet* poses_;
-  const ErrorTable* errors_;
-  EvaluationResult* result_;
-  std::vector<double> zeros_;
-  std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> values_;
-  std::vector<double> responses_;
-  std::vector<double> details_;
-};
+/// How the solves first .. end - 1 of [M x S] ended.
+SolveCounts solves_of(const EvaluationResult& result, std::size_t first, std::size_t end) {
+  SolveCounts solves;
+  for (std::size_t n = first; n < end; ++n) solves.add(result.status[n], result.iterations[n]);
+  return solves;
+}
 
 EvaluationResult empty_evaluation(const Model& model, const PoseSet& poses, std::size_t samples, Outcomes outcomes) {
   const ModelDescription& description = model.description();
@@ -98,21 +55,39 @@ class TableWork {
         solver_(solver),
         poses_(poses),
         errors_(errors),
+        zeros_(model.description().factors.size(), 0.0),
         paired_(pairing == Pairing::row_by_row),
         shard_(shard),
         result_(empty_evaluation(model, poses, paired_ ? 1 : errors.rows, outcomes)),
         done_(result_, kBlockRows, shard) {}
 
+  /// The scratch of one thread.
+  struct Worker {
+    std::unique_ptr<Evaluator> evaluator;
+    std::vector<double> values;
+    std::vector<double> responses;
+    std::vector<double> details;
+  };
+
   std::size_t begin_round() {
     pending_ = done_.pending();
     return pending_.end - pending_.first;
   }
-  TableEvaluator worker() { return {model_, solver_, poses_, errors_, result_}; }
-  SolveCounts solve(TableEvaluator& evaluate, std::size_t n) const {
+  Worker worker() const { return {model_.evaluator(solver_), {}, {}, {}}; }
+  SolveCounts solve(Worker& worker, std::size_t n) {
     const std::size_t blocks = (result_.samples + kBlockRows - 1) / kBlockRows;
     const std::size_t pose = (pending_.first + n) / blocks;
     const std::size_t first = (pending_.first + n) % blocks * kBlockRows;
-    return evaluate(PoseIndex(pose), first, paired_ ? pose : first, std::min(kBlockRows, result_.samples - first));
+    const std::size_t count = std::min(kBlockRows, result_.samples - first);
+    take_rows(paired_ ? pose : first, count, worker.values);
+    worker.responses.resize(result_.responses * count);
+    worker.details.resize(result_.details * count);
+    const std::size_t start = pose * result_.samples + first;
+    worker.evaluator->evaluate({poses_[PoseIndex(pose)], zeros_, errors_.factors, worker.values, count},
+                               {worker.responses, std::span(result_.status).subspan(start, count),
+                                std::span(result_.iterations).subspan(start, count), worker.details});
+    scatter(worker, start, count);
+    return solves_of(result_, start, start + count);
   }
   const SolveCounts& merge(std::size_t, const SolveCounts& solves) {
     done_.add_block();
@@ -132,10 +107,32 @@ class TableWork {
   EvaluationResult result() && { return std::move(result_); }
 
  private:
+  /// Rows of the table as [V x B].
+  void take_rows(std::size_t first, std::size_t count, std::vector<double>& values) const {
+    const std::size_t varied = errors_.factors.size();
+    values.resize(varied * count);
+    for (std::size_t v = 0; v < varied; ++v) {
+      for (std::size_t b = 0; b < count; ++b) values[v * count + b] = errors_.values[(first + b) * varied + v];
+    }
+  }
+
+  void scatter(const Worker& from, std::size_t start, std::size_t count) {
+    const std::size_t all = result_.poses * result_.samples;
+    for (std::size_t r = 0; r < result_.responses; ++r) {
+      std::copy_n(&from.responses[r * count], count, &result_.response[r * all + start]);
+    }
+    for (std::size_t d = 0; d < result_.details; ++d) {
+      for (std::size_t b = 0; b < count; ++b) {
+        result_.detail[(start + b) * result_.details + d] = from.details[d * count + b];
+      }
+    }
+  }
+
   const Model& model_;
   const SolverOptions& solver_;
   const PoseSet& poses_;
   const ErrorTable& errors_;
+  std::vector<double> zeros_;
   bool paired_;
   Shard shard_;
   EvaluationResult result_;
@@ -145,11 +142,7 @@ class TableWork {
 
 }  // namespace
 
-SolveCounts EvaluationResult::total() const {
-  SolveCounts sum;
-  for (std::size_t n = 0; n < status.size(); ++n) sum.add(status[n], iterations[n]);
-  return sum;
-}
+SolveCounts EvaluationResult::total() const { return solves_of(*this, 0, status.size()); }
 
 std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverOptions& solver, const PoseSet& poses,
                                                const ErrorTable& errors, Pairing pairing, const RunOptions& options,
@@ -157,6 +150,114 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
   TableWork work(model, solver, poses, errors, pairing, outcomes, options.shard.value_or(Shard()));
   if (!fold(work, options) || options.shard) return std::nullopt;
   return std::move(work).result();
+}
+
+LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
+                         NotConverged policy) {
+  const bool paired = pairing == Pairing::row_by_row;
+  const std::size_t rows = paired ? found.poses : found.samples;
+  LimitVerdicts verdicts;
+  for (const ResponseLimit& limit : limits) {
+    LimitVerdict verdict{.response = limit.response, .limit = limit.most, .value = kNaN, .tried = rows};
+    for (std::size_t row = 0; row < rows; ++row) {
+      bool within = found.poses > 0;
+      for (std::size_t m = paired ? row : 0; m < (paired ? row + 1 : found.poses); ++m) {
+        const std::size_t at = paired ? m : m * found.samples + row;
+        const double magnitude = std::abs(found.response[limit.response * found.status.size() + at]);
+        const bool counted = counts(found.status[at], policy);
+        within = within && counted && magnitude <= limit.most;
+        if (!counted || std::isnan(magnitude) || magnitude <= verdict.value) continue;
+        verdict.value = magnitude;
+        verdict.pose = m;
+        verdict.row = row;
+      }
+      if (within) ++verdict.within;
+    }
+    verdict.passed = verdict.within == verdict.tried;
+    verdicts.limits.push_back(verdict);
+  }
+  return verdicts;
+}
+
+EvaluationProgress::EvaluationProgress(EvaluationResult& result, std::size_t block_rows, const Shard& shard)
+    : result_(&result),
+      block_rows_(block_rows),
+      blocks_per_pose_((result.samples + block_rows - 1) / block_rows),
+      blocks_(shard.of(result.poses * blocks_per_pose_)),
+      next_(blocks_.first) {
+  POESY_EXPECTS(block_rows > 0);
+}
+
+std::size_t EvaluationProgress::outcomes(std::size_t block) const {
+  if (blocks_per_pose_ == 0) return 0;
+  return block / blocks_per_pose_ * result_->samples +
+         std::min(block % blocks_per_pose_ * block_rows_, result_->samples);
+}
+
+SolveCounts EvaluationProgress::total() const { return solves_of(*result_, outcomes(blocks_.first), outcomes(next_)); }
+
+std::array<std::uint64_t, 6> EvaluationProgress::sizes() const {
+  return {kKind, result_->poses, result_->samples, result_->responses, result_->details, block_rows_};
+}
+
+Bytes EvaluationProgress::state() const {
+  ByteWriter to;
+  for (const std::uint64_t number : sizes()) to.number(number);
+  to.number(blocks_.first);
+  to.number(next_);
+  write_outcomes(outcomes(blocks_.first), outcomes(next_), to);
+  return to.take();
+}
+
+void EvaluationProgress::restore(std::span<const std::byte> state) {
+  ByteReader from(state);
+  while (from.left() > 0) restore_one(from);
+}
+
+void EvaluationProgress::restore_one(ByteReader& from) {
+  const auto expect = [&](std::uint64_t number) {
+    if (from.number() != number) throw BytesError("is the state of another kind, size or part of a study");
+  };
+  std::ranges::for_each(sizes(), expect);
+  expect(next_);
+  const std::size_t first = next_;
+  const auto end = static_cast<std::size_t>(from.number_up_to(blocks_.end));
+  if (end < first) throw BytesError("has blocks that end before they begin");
+  next_ = end;
+  read_outcomes(outcomes(first), outcomes(end), from);
+}
+
+void EvaluationProgress::write_outcomes(std::size_t first, std::size_t end, ByteWriter& to) const {
+  const std::size_t all = result_->poses * result_->samples;
+  for (std::size_t r = 0; r < result_->responses; ++r) {
+    to.reals(std::span(result_->response).subspan(r * all + first, end - first));
+  }
+  to.reals(std::span(result_->detail).subspan(first * result_->details, (end - first) * result_->details));
+  for (std::size_t n = first; n < end; ++n) {
+    to.number(static_cast<std::uint64_t>(result_->status[n]));
+    to.number(result_->iterations[n]);
+  }
+}
+
+void EvaluationProgress::read_outcomes(std::size_t first, std::size_t end, ByteReader& from) {
+  const std::size_t all = result_->poses * result_->samples;
+  for (std::size_t r = 0; r < result_->responses; ++r) {
+    from.reals(std::span(result_->response).subspan(r * all + first, end - first));
+  }
+  from.reals(std::span(result_->detail).subspan(first * result_->details, (end - first) * result_->details));
+  for (std::size_t n = first; n < end; ++n) {
+    result_->status[n] = static_cast<SolveStatus>(from.number_up_to(kStatusNames.size() - 1));
+    result_->iterations[n] = static_cast<std::uint32_t>(from.number_up_to(std::numeric_limits<std::uint32_t>::max()));
+  }
+}
+
+void EvaluationProgress::write_block(std::size_t block, ByteWriter& to) const {
+  write_outcomes(outcomes(block), outcomes(block + 1), to);
+}
+
+SolveCounts EvaluationProgress::read_block(std::size_t block, ByteReader& from) {
+  read_outcomes(outcomes(block), outcomes(block + 1), from);
+  return solves_of(*result_, outcomes(block), outcomes(block + 1));
 }
 
 }  // namespace poesy

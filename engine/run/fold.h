@@ -2,14 +2,40 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "engine/base/bytes.h"
 #include "engine/run/checkpoints.h"
-#include "engine/run/run_in_order.h"
+#include "engine/run/result.h"
+#include "engine/run/run_in_slots.h"
 #include "engine/run/run_options.h"
 
 namespace poesy {
+
+/// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, each with its own worker, and finish(n, output)
+/// in the order of n. A few outputs per thread are in flight at any time. Returns false when stopped. With a team, work
+/// is done on all ranks, and finish called on rank 0 alone (run_over_ranks): pack(n, output, to) writes an output,
+/// unpack(n, from) gives it back on rank 0.
+template <class MakeWorker, class Work, class Finish, class Pack, class Unpack>
+bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish,
+                  Pack pack, Unpack unpack) {
+  using Worker = std::invoke_result_t<MakeWorker>;
+  using Output = std::invoke_result_t<Work, Worker&, std::size_t>;
+  const bool alone = options.team == nullptr;
+  std::vector<Output> outputs(alone ? pool_slots(options) : rank_slots(options));
+  const SlotWork in_slots{[&]() -> SlotJob {
+                            return [&, worker = std::make_shared<Worker>(make_worker())](
+                                       std::size_t n, std::size_t slot) { outputs[slot] = work(*worker, n); };
+                          },
+                          [&](std::size_t n, std::size_t slot) { finish(n, std::exchange(outputs[slot], Output{})); },
+                          [&](std::size_t n, std::size_t slot, ByteWriter& to) { pack(n, outputs[slot], to); },
+                          [&](std::size_t n, std::size_t slot, ByteReader& from) { outputs[slot] = unpack(n, from); }};
+  return alone ? run_alone(count, options, in_slots) : run_over_ranks(count, options, in_slots);
+}
 
 /// Does the work of one stage of a study and merges what it gives, in its order: on all threads and ranks, from the
 /// checkpoint's state on, in as many rounds as the stage wants. The accumulator has the same bits afterwards for any
@@ -33,15 +59,19 @@ bool fold(Work& work, const RunOptions& options) {
   const auto state = [&] { return work.state(); };
   Stage stage(options.checkpoints, options.team);
   stage.begin(restore);
-  ProgressCounter counter(work.solved(), options);
+  const SolveCounts before = work.solved();
+  Progress progress{before.total(), before.total(), before.not_converged(), before.total()};
   for (;;) {
     const std::size_t count = work.begin_round();
-    counter.expect_left(work.left());
+    progress.total = progress.solves + work.left();
     const bool complete = run_in_order(
         count, options, [&] { return work.worker(); },
         [&](auto& worker, std::size_t n) { return work.solve(worker, n); },
         [&](std::size_t n, const auto& piece) {
-          counter.add(work.merge(n, piece));
+          const SolveCounts& solves = work.merge(n, piece);
+          progress.solves += solves.total();
+          progress.not_converged += solves.not_converged();
+          if (options.progress) options.progress(progress);
           stage.merged(state);
         },
         [&](std::size_t n, const auto& piece, ByteWriter& to) { work.write(n, piece, to); },

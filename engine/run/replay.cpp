@@ -3,7 +3,6 @@
 #include "engine/base/contract.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/evaluation.h"
-#include "engine/run/pose_unit.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {

@@ -4,16 +4,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/model/pose_set.h"
+#include "engine/base/index.h"
 #include "engine/model/status.h"
-#include "engine/run/failed_samples.h"
+#include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
 namespace poesy {
+
+/// Whether a sample that ended so enters statistics. A singular or non-finite one never does.
+constexpr bool counts(SolveStatus status, NotConverged policy) {
+  return solved(status) || (policy == NotConverged::include && usable(status));
+}
 
 /// How solves ended and what they cost, summed over samples.
 struct SolveCounts {
@@ -39,6 +45,59 @@ struct SolveCounts {
 
 /// Of all cells.
 SolveCounts total_of(const std::vector<SolveCounts>& cells);
+
+/// A sample that was not solved.
+struct FailedSample {
+  SampleIndex sample;  ///< position in the stream of its cell
+  SolveStatus status;  ///< how it ended
+
+  /// Whether both members are equal.
+  bool operator==(const FailedSample&) const = default;
+};
+
+/// The first samples of one cell, or of a part of it, that were not solved. Allocates once, when one
+/// fails.
+class FailedSamples {
+ public:
+  /// No more of a cell are kept; which ones depends on its samples alone.
+  static constexpr std::size_t kMost = 10;
+
+  /// Samples come in ascending order.
+  void add(SampleIndex sample, SolveStatus status) {
+    if (solved(status) || first_.size() == kMost) return;
+    first_.reserve(kMost);
+    first_.push_back({sample, status});
+  }
+  /// Precondition: all samples of `later` come after those of this.
+  void merge(const FailedSamples& later);
+
+  /// In the order of samples, at most kMost.
+  std::span<const FailedSample> first() const { return first_; }
+
+  /// For a state or a message.
+  void write(ByteWriter& to) const;
+  /// Of samples first .. end - 1, so many of which failed. Throws BytesError for what cannot be theirs.
+  static FailedSamples read(ByteReader& from, std::uint64_t failures, std::uint64_t first, std::uint64_t end);
+
+ private:
+  std::vector<FailedSample> first_;
+};
+
+/// Where a sample stands that was not solved: its address.
+struct Failure {
+  std::size_t slot;     ///< position among the study's factors; 0 where all vary together
+  PoseIndex pose;       ///< among the study's
+  FailedSample failed;  ///< which sample, and how it ended
+
+  /// Whether address and end are equal.
+  bool operator==(const Failure&) const = default;
+};
+
+/// A result lists no more failures than this.
+inline constexpr std::size_t kMostFailuresListed = 1000;
+
+/// Appends the failures of a cell, as far as the list has room.
+void append_failures(std::size_t slot, PoseIndex pose, const FailedSamples& cell, std::vector<Failure>& list);
 
 /// What quantities were after the first samples of each pose: R responses, P slots (the factors of a sensitivity study;
 /// one in a Monte Carlo study), K numbers of samples. A quantity is a global index in a sensitivity study and a mean
@@ -66,7 +125,7 @@ struct ConvergenceResult {
   std::vector<std::uint64_t> samples;       ///< [P] at each pose
 };
 
-/// How a limit of a response was kept (engine/run/verdict.h). SI; values are magnitudes.
+/// How a limit of a response was kept (engine/run/evaluation.h). SI; values are magnitudes.
 struct LimitVerdict {
   std::size_t response = 0;  ///< position among the responses
   double limit = 0.0;        ///< the study's

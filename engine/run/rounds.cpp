@@ -8,7 +8,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/study/milestones.h"
+#include "engine/study/plan.h"
 
 namespace poesy {
 namespace {

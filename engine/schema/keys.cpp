@@ -19,34 +19,23 @@ bool stands_for_names(std::string_view name) {
   return !name.empty() && std::ranges::all_of(name, [](unsigned char letter) { return std::isupper(letter) != 0; });
 }
 
-/// Takes the first name of a path off it.
-std::string_view first_name(std::string_view& path) {
-  const std::size_t end = std::min(path.find('.'), path.size());
-  const std::string_view name = path.substr(0, end);
-  path.remove_prefix(std::min(end + 1, path.size()));
-  return name;
-}
+bool is_name_of_model(const StudyKey& key) { return stands_for_names(key.name); }
 
+/// Whether a path is that of a described table, name by name.
 bool fits(std::string_view described, std::string_view path) {
-  while (!described.empty() && !path.empty()) {
-    const std::string_view pattern = first_name(described);
-    const std::string_view name = first_name(path);
-    if (pattern != without_number(name) && !stands_for_names(pattern)) return false;
-  }
-  return described.empty() && path.empty();
-}
-
-std::string plain(std::string_view text) {
-  std::string out(text);
-  std::erase(out, '`');
-  return out;
+  const auto first_name = [](std::string_view rest) { return rest.substr(0, rest.find('.')); };
+  const std::string_view pattern = first_name(described);
+  const std::string_view name = first_name(path);
+  if (pattern != without_number(name) && !stands_for_names(pattern)) return false;
+  const bool ends = pattern.size() == described.size();
+  if (ends || name.size() == path.size()) return ends && name.size() == path.size();
+  return fits(described.substr(pattern.size() + 1), path.substr(name.size() + 1));
 }
 
 /// "required where select is interior, boundary or grid".
 std::string condition(const StudyTable& table, const StudyKey& key) {
-  const std::string where =
-      key.only_for.empty() ? "" : fmt::format("where {} is {}", table.chooser, either(key.only_for));
-  return key.required ? (where.empty() ? "required" : "required " + where) : where;
+  if (key.only_for.empty()) return key.required ? "required" : "";
+  return fmt::format("{}where {} is {}", key.required ? "required " : "", table.chooser, either(key.only_for));
 }
 
 std::string as_sentence(std::string_view clause) {
@@ -89,35 +78,21 @@ std::string cell(std::string_view text) {
   return out;
 }
 
-std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
-
-/// "`a`, `b`".
-std::string codes(const std::vector<std::string_view>& words) {
-  std::string text;
-  for (const std::string_view word : words) text += (text.empty() ? "" : ", ") + code(word);
-  return text;
-}
-
 std::string heading(const StudyTable& table) {
   if (table.paths.front().empty()) return "The file itself";
-  std::string text;
-  for (const std::string_view path : table.paths) {
-    text += (text.empty() ? "" : ", ") + code("[" + std::string(path) + "]");
-  }
-  return text;
+  return fmt::format("`[{}]`", fmt::join(table.paths, "]`, `["));
 }
 
-std::string type_text(const StudyKey& key) { return key.type + (key.bounds.empty() ? "" : ", " + key.bounds); }
-
+/// For which words of the chooser the key holds.
 std::string holds_text(const StudyKey& key) {
   if (key.only_for.empty()) return "all";
-  return codes(key.only_for) + (key.may_stay ? "; else ignored" : "");
+  return fmt::format("`{}`{}", fmt::join(key.only_for, "`, `"), key.may_stay ? "; else ignored" : "");
 }
 
 std::string row(const StudyKey& key, bool chosen) {
-  const std::string holds = chosen ? fmt::format(" {} |", holds_text(key)) : "";
-  return fmt::format("| `{}` | {} | {} |{} {} |\n", key.name, type_text(key),
-                     key.required ? "*required*" : cell(key.usual), holds, cell(key.meaning));
+  return fmt::format("| `{}` | {}{}{} | {} |{} {} |\n", key.name, key.type, key.bounds.empty() ? "" : ", ", key.bounds,
+                     key.required ? "*required*" : cell(key.usual), chosen ? fmt::format(" {} |", holds_text(key)) : "",
+                     cell(key.meaning));
 }
 
 /// The words of each key that takes some.
@@ -147,17 +122,12 @@ const StudyKey* StudyTable::find(std::string_view key) const {
   return found == keys.end() ? nullptr : &*found;
 }
 
-std::vector<std::string_view> StudyTable::names() const {
-  std::vector<std::string_view> list;
-  for (const StudyKey& key : keys) list.push_back(key.name);
-  return list;
-}
+std::vector<std::string_view> StudyTable::names() const { return poesy::names(keys); }
 
 bool StudyTable::has_names_of_model() const { return std::ranges::any_of(keys, is_name_of_model); }
 
 std::string StudyTable::owner_of(std::string_view word) const {
-  const std::string begin = owner.empty() ? std::string(chooser) + " =" : std::string(owner);
-  return begin + " \"" + std::string(word) + "\"";
+  return fmt::format("{} \"{}\"", owner.empty() ? fmt::format("{} =", chooser) : owner, word);
 }
 
 std::string StudyTable::remedy(std::string_view key) const {
@@ -180,8 +150,6 @@ const StudyTable* find_table(const StudyTables& tables, std::string_view path) {
   return nullptr;
 }
 
-bool is_name_of_model(const StudyKey& key) { return stands_for_names(key.name); }
-
 bool holds_for(std::span<const std::string_view> only_for, std::string_view word) {
   return only_for.empty() || std::ranges::find(only_for, word) != only_for.end();
 }
@@ -190,8 +158,10 @@ std::string explanation(const StudyTable& table, const StudyKey& key) {
   std::string text(key.meaning);
   if (!key.bounds.empty()) text += " " + as_sentence(key.bounds);
   if (key.required || !(key.only_for.empty() || key.may_stay)) text += " " + as_sentence(condition(table, key));
-  if (!key.usual.empty()) text += " Default: " + plain(key.usual) + ".";
-  return text;
+  if (key.usual.empty()) return text;
+  std::string usual = key.usual;
+  std::erase(usual, '`');
+  return text + " Default: " + usual + ".";
 }
 
 std::string tables_reference(const StudyTables& tables) {

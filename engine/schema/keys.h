@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "engine/schema/keys_section.h"
 
 /// A key of a study file is one typed row: its name, the member that it sets, its bounds and its meaning. Reading, the
@@ -45,12 +46,9 @@ struct StudyTable {
   std::string_view owner = {};    ///< how messages speak of the chooser's word: "select ="
   std::vector<StudyKey> keys;     ///< in the order in which they are listed
 
-  /// Null where it has none of that name.
-  const StudyKey* find(std::string_view key) const;
-  /// The keys' names, in order.
-  std::vector<std::string_view> names() const;
-  /// Whether it has a key that stands for names of the model's.
-  bool has_names_of_model() const;
+  const StudyKey* find(std::string_view key) const;  ///< Null where it has none of that name.
+  std::vector<std::string_view> names() const;       ///< The keys' names, in order.
+  bool has_names_of_model() const;                   ///< Whether it has a key that stands for names of the model's.
   /// `select = "grid"`: what a key does not belong to that does not hold for this word.
   std::string owner_of(std::string_view word) const;
   /// What to do where the key is missing; a name of the model's has that of the key that stands for it.
@@ -61,9 +59,6 @@ struct StudyTable {
 /// numbers: "errors.override.delta_1", "analysis.groups[0]". Null where there is none.
 const StudyTable* find_table(const StudyTables& tables, std::string_view path);
 
-/// Whether a key stands for names of the model's.
-bool is_name_of_model(const StudyKey& key);
-
 /// Whether the key holds where the table's chooser is this word.
 bool holds_for(std::span<const std::string_view> only_for, std::string_view word);
 
@@ -73,14 +68,12 @@ std::string explanation(const StudyTable& table, const StudyKey& key);
 /// The tables as Markdown, each with its keys and their words.
 std::string tables_reference(const StudyTables& tables);
 
-/// Text of any number of lines as comment lines of TOML.
-std::string comment(std::string_view text);
+std::string comment(std::string_view text);  ///< Text of any number of lines as comment lines of TOML.
 
 /// What a template says of keys. Every text is whole lines of TOML. Precondition: there are such tables and keys.
 class TemplateLines {
  public:
-  /// The tables must outlive it.
-  explicit TemplateLines(const StudyTables& tables) : tables_(&tables) {}
+  explicit TemplateLines(const StudyTables& tables) : tables_(&tables) {}  ///< The tables must outlive it.
 
   /// A line that shows this key, with its explanation: behind it where that fits, else in comment lines before it, with
   /// the words that it takes.
@@ -95,8 +88,7 @@ class TemplateLines {
   std::string inline_table(std::string_view table) const;
   /// The key's example.
   std::string_view example(std::string_view table, std::string_view key) const;
-  /// What is said of a table as a whole.
-  std::string_view meaning(std::string_view table) const;
+  std::string_view meaning(std::string_view table) const;  ///< What is said of a table as a whole.
 
  private:
   const StudyTable& table(std::string_view path) const;
@@ -105,8 +97,7 @@ class TemplateLines {
   const StudyTables* tables_;
 };
 
-/// A TOML string: in quotes, with what needs it escaped.
-std::string in_quotes(std::string_view text);
+std::string in_quotes(std::string_view text);  ///< A TOML string: in quotes, with what needs it escaped.
 
 /// A value of this dimension as a study file has it, exact when read back: "0.001 m" in quotes, or a bare number.
 std::string exact_value(double si, Dimension dimension);
@@ -114,8 +105,29 @@ std::string exact_value(double si, Dimension dimension);
 /// The same in the unit in which people read it, where that is as exact and shorter: "60 mm" rather than "0.06 m".
 std::string readable_value(double si, Dimension dimension);
 
-/// Values as a TOML list: "[a, b]".
-std::string list_text(std::span<const std::string> values);
+using ValueText = std::string (*)(double si, Dimension dimension);  ///< One of these two.
+
+std::string list_text(std::span<const std::string> values);  ///< Values as a TOML list: "[a, b]".
+
+/// Named things as a TOML inline table, "{ a = 1, b = 2 }", where value(k) is the text of the k-th.
+template <class Named, class Value>
+std::string inline_table(const std::vector<Named>& things, Value value) {
+  std::string text;
+  for (std::size_t k = 0; k < things.size(); ++k) {
+    text += (k == 0 ? "{ " : ", ") + std::string(things[k].name) + " = " + std::string(value(k));
+  }
+  return text + " }";
+}
+
+/// Calls read(k, value) for each of the things that the section has a key for, in their order. Throws InputError for
+/// other keys; `what` says what the keys are.
+template <class Named, class Read>
+void read_named(const StudySection& section, const std::vector<Named>& things, std::string_view what, Read read) {
+  section.allow(names(things), what);
+  for (std::size_t k = 0; k < things.size(); ++k) {
+    if (const auto value = section.find(things[k].name)) read(k, *value);
+  }
+}
 
 /// What a number without a unit must be.
 struct NumberBounds {
@@ -126,12 +138,9 @@ struct NumberBounds {
   std::string remedy;      ///< for a number outside: "it must lie between 0 and 1, e.g. 0.95"
 };
 
-/// Greater than zero.
-NumberBounds above_zero(std::string_view example);
-/// Greater than one.
-NumberBounds above_one(std::string_view example);
-/// Between 0 and 1, both excluded.
-NumberBounds between_0_and_1(std::string_view example);
+NumberBounds above_zero(std::string_view example);       ///< Greater than zero.
+NumberBounds above_one(std::string_view example);        ///< Greater than one.
+NumberBounds between_0_and_1(std::string_view example);  ///< Between 0 and 1, both excluded.
 
 /// A number inside the bounds. Throws InputError at the value's place.
 double read_number(const StudyValue& value, const NumberBounds& bounds);
@@ -195,8 +204,7 @@ auto& at(Object& object, Member member, Rest... rest) {
 template <class Class, class Type, class... Rest>
 Class owner_of(Type Class::*, Rest...);
 
-/// "1e-15", "1e8" for 1e+08.
-std::string without_plus(std::string text);
+std::string without_plus(std::string text);  ///< "1e-15", "1e8" for 1e+08.
 
 /// The value of a default-constructed object, as readers see it.
 template <class Object>

@@ -137,6 +137,12 @@ std::vector<StudyValue> StudyValue::list() const {
   return values;
 }
 
+std::vector<StudyValue> StudyValue::list(std::size_t size, std::string_view remedy) const {
+  std::vector<StudyValue> values = list();
+  if (values.size() != size) fail("has " + std::to_string(values.size()) + " values", remedy);
+  return values;
+}
+
 StudySection::StudySection(const toml::table& table, std::string name, Place place, const StudyTables& tables)
     : table_(&table),
       name_(std::move(name)),

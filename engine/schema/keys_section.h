@@ -18,8 +18,7 @@ namespace poesy {
 
 class StudySection;
 struct StudyTable;
-/// The tables of a study file, with every key.
-using StudyTables = std::vector<StudyTable>;
+using StudyTables = std::vector<StudyTable>;  ///< The tables of a study file, with every key.
 
 /// One value of a study file. Every function throws InputError at the value's place when the value is not what is
 /// asked for. Refers to the parsed file, which must outlive it.
@@ -28,35 +27,27 @@ class StudyValue {
   /// `name` is the value's full name for messages: "errors.linear.sigma".
   StudyValue(const toml::node& node, std::string name, const Place& section, const StudyTables& tables);
 
-  /// Its full name, for messages.
-  const std::string& full_name() const { return name_; }
-  /// Where it stands.
-  const Place& place() const { return place_; }
-  /// Whether it is a text in quotes.
-  bool is_text() const { return node_->is_string(); }
-  /// Whether it is a table.
-  bool is_section() const { return node_->is_table(); }
+  const std::string& full_name() const { return name_; }  ///< For messages.
+  const Place& place() const { return place_; }           ///< Where it stands.
+  bool is_text() const { return node_->is_string(); }     ///< Whether it is a text in quotes.
+  bool is_section() const { return node_->is_table(); }   ///< Whether it is a table.
   /// Whether it is true or false; empty for any other value.
   std::optional<bool> boolean() const { return node_->value_exact<bool>(); }
 
-  /// A text in quotes.
-  std::string text() const;
+  std::string text() const;  ///< A text in quotes.
   /// An integer within these bounds, both included.
   std::int64_t whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;
-  /// A finite number without a unit.
-  double number() const;
-  /// SI.
-  double quantity(Dimension dimension) const;
+  double number() const;                       ///< A finite number without a unit.
+  double quantity(Dimension dimension) const;  ///< SI.
   /// Whether it is the number 0, which needs no unit.
   bool is_zero() const;
-  /// SI, above zero.
-  double positive_quantity(Dimension dimension) const;
-  /// The position among these words.
-  std::size_t word(std::span<const std::string_view> words) const;
-  /// A table.
-  StudySection section() const;
+  double positive_quantity(Dimension dimension) const;              ///< SI, above zero.
+  std::size_t word(std::span<const std::string_view> words) const;  ///< The position among these words.
+  StudySection section() const;                                     ///< A table.
   /// The elements of a list, named with their positions.
   std::vector<StudyValue> list() const;
+  /// The same; throws with this remedy when there are not so many.
+  std::vector<StudyValue> list(std::size_t size, std::string_view remedy) const;
 
   /// "NAME PROBLEM; REMEDY" at the value's place.
   [[noreturn]] void fail(std::string_view problem, std::string_view remedy) const;
@@ -76,12 +67,9 @@ class StudySection {
   /// `name` is empty for the file as a whole. The tables must outlive it.
   StudySection(const toml::table& table, std::string name, Place place, const StudyTables& tables);
 
-  /// Where it begins.
-  const Place& place() const { return place_; }
-  /// Whether it has no key.
-  bool empty() const { return table_->empty(); }
-  /// The keys that the file gives, in the order of their bytes.
-  std::vector<std::string> keys() const;
+  const Place& place() const { return place_; }   ///< Where it begins.
+  bool empty() const { return table_->empty(); }  ///< Whether it has no key.
+  std::vector<std::string> keys() const;          ///< The keys that the file gives, in the order of their bytes.
 
   /// Throws for a key that is not described (engine/schema/keys.h). For sections whose keys are all fixed.
   void allow() const;
@@ -92,12 +80,10 @@ class StudySection {
   /// Throws when the key is there: it "does not belong to OWNER".
   void refuse(std::string_view key, std::string_view owner) const;
 
-  /// Empty when it is missing.
-  std::optional<StudyValue> find(std::string_view key) const;
+  std::optional<StudyValue> find(std::string_view key) const;  ///< Empty when it is missing.
   /// Throws when it is missing; the remedy is that of its description, unless another is given.
   StudyValue require(std::string_view key, std::string_view remedy = {}) const;
-  /// Empty when it is missing.
-  StudySection section(std::string_view key) const;
+  StudySection section(std::string_view key) const;  ///< Empty when it is missing.
 
  private:
   Place place_of_key(std::string_view key) const;

@@ -190,4 +190,23 @@ Estimate corrected_global_index(std::span<const LocalIndex> poses, double conf_l
 
 bool changes_with_size(double change) { return std::abs(change) > kIndexHolds; }
 
+double index_rounding(double response_rounding, double sigma) {
+  return std::max(kIndexRounding, response_rounding / sigma);
+}
+
+double size_rounding(double linear, double angular) {
+  return kIndexRounding * std::fmax(linear, angular);  // passes over NaN
+}
+
+bool has_effect(double index, double rounding) { return index >= rounding; }
+
+bool is_too_small_to_tell(double index, double rounding) {
+  return rounding > kIndexOfInterest && !has_effect(index, rounding);
+}
+
+double told_from_rounding(double index, double rounding) {
+  if (std::isnan(index) || has_effect(index, rounding)) return index;
+  return is_too_small_to_tell(index, rounding) ? kNaN : 0.0;
+}
+
 }  // namespace poesy

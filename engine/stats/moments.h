@@ -7,32 +7,37 @@
 
 namespace poesy {
 
+/// A confidence interval; NaN at both ends where there are too few samples.
+struct Interval {
+  double low;   ///< lower end
+  double high;  ///< upper end
+};
+
+/// An estimate with its interval.
+struct Estimate {
+  double value;       ///< what is estimated
+  Interval interval;  ///< of the value, at the level that was asked for
+};
+
 /// Count, mean and central moments to fourth order of a stream of numbers, in one pass and mergeable
 /// (Welford; Chan et al. 1983; Pebay 2008, Sandia report SAND2008-6212, Eqs. 1.1-1.7, 2.1-2.4).
 class Moments {
  public:
-  /// The order changes rounding only.
-  void add(double value);
+  void add(double value);  ///< The order changes rounding only.
   /// The moments of a block of numbers that is in memory: twice over it, faster than adding them one by one.
   static Moments of(std::span<const double> values);
   /// The moments of both streams together. Merging in the same order gives the same bits.
   void merge(const Moments& other);
 
-  /// Values.
-  std::uint64_t count() const { return count_; }
-  /// 0 when empty.
-  double mean() const { return mean_; }
-  /// Sample variance, divided by count - 1; NaN below two values.
-  double variance() const;
-  /// Of the sample (n - 1); NaN with fewer than two values.
-  double standard_deviation() const;
+  std::uint64_t count() const { return count_; }  ///< Values.
+  double mean() const { return mean_; }           ///< 0 when empty.
+  double variance() const;                        ///< Sample variance, divided by count - 1; NaN below two values.
+  double standard_deviation() const;              ///< Of the sample (n - 1); NaN with fewer than two values.
   /// Kurtosis m4 / m2^2 of the sample (3 for a normal); NaN when the variance is zero or undefined.
   double kurtosis() const;
 
-  /// Every bit of it, and back.
-  void write(ByteWriter& to) const;
-  /// Throws BytesError for what no values give.
-  static Moments read(ByteReader& from);
+  void write(ByteWriter& to) const;       ///< Every bit of it, and back.
+  static Moments read(ByteReader& from);  ///< Throws BytesError for what no values give.
 
  private:
   std::uint64_t count_ = 0;
@@ -47,5 +52,23 @@ double sample_mean_square(double mean, double standard_deviation, double count);
 
 /// The root mean square of `count` values with this mean and sample standard deviation; NaN without values.
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count);
+
+/// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.
+/// Precondition: 0 < conf_level < 1.
+Interval mean_interval(const Moments& moments, double conf_level);
+
+/// Samples of M groups by their numbers, means and sample standard deviations, [M] each.
+struct Groups {
+  std::span<const std::uint64_t> count;  ///< [groups] samples
+  std::span<const double> mean;          ///< [groups] their mean
+  std::span<const double> std;           ///< [groups] their sample standard deviation
+};
+
+/// The mean of all samples of all groups together, with its interval when the groups are fixed and only what is in them
+/// was drawn (stratified sampling; Cochran 1977, Sampling Techniques, Eqs. 5.7 and 5.16): a variance of
+/// sum of n_m s_m^2 / N^2, and Student's quantile with Satterthwaite's degrees of freedom. For one group that of
+/// mean_interval. Groups without a sample do not count; one of a single sample gives NaN at both ends.
+/// Precondition: 0 < conf_level < 1.
+Estimate stratified_mean(const Groups& groups, double conf_level);
 
 }  // namespace poesy

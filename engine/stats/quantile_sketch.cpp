@@ -169,11 +169,7 @@ BucketedValues BucketedValues::read(ByteReader& from) {
 
 void QuantileSketch::Store::reach(std::size_t lowest, std::size_t highest) {
   if (lowest > highest) return;
-  if (counts.empty()) {
-    first = lowest;
-    counts.resize(highest - lowest + 1);
-    return;
-  }
+  if (counts.empty()) first = lowest;
   if (lowest < first) {
     counts.insert(counts.begin(), first - lowest, 0);
     first = lowest;

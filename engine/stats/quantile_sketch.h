@@ -17,8 +17,7 @@ std::uint64_t quantile_rank(double q, std::uint64_t n);
 /// A block of numbers as a sketch takes it: all that can be worked out without the sketch.
 struct BucketedValues {
   BucketedValues() = default;
-  /// Precondition: all values are finite.
-  explicit BucketedValues(std::span<const double> values);
+  explicit BucketedValues(std::span<const double> values);  ///< Precondition: all values are finite.
 
   std::vector<std::uint32_t> buckets;  ///< of each number, with the sign above the bits of the bucket
   std::uint32_t lowest = 0;            ///< bucket of the smallest magnitude that is not taken for zero
@@ -31,8 +30,7 @@ struct BucketedValues {
 
   /// As much of it as a sketch takes, in two bytes for each number (four where the magnitudes span 2^128 or more).
   void write(ByteWriter& to) const;
-  /// Throws BytesError for what no numbers give.
-  static BucketedValues read(ByteReader& from);
+  static BucketedValues read(ByteReader& from);  ///< Throws BytesError for what no numbers give.
 };
 
 /// One filled bucket of a sketch.
@@ -54,15 +52,11 @@ class QuantileSketch {
   /// extremes; numbers below 2^-1022 in magnitude (subnormal) are taken for zero.
   static constexpr double kRelativeError = 0x1p-9;
 
-  /// Precondition: all values are finite.
-  void add(std::span<const double> values) { add(BucketedValues(values)); }
-  /// The same, worked out before.
-  void add(const BucketedValues& values);
-  /// Exact, and so in any order.
-  void merge(const QuantileSketch& other);
+  void add(std::span<const double> values) { add(BucketedValues(values)); }  ///< Precondition: all values are finite.
+  void add(const BucketedValues& values);                                    ///< The same, worked out before.
+  void merge(const QuantileSketch& other);                                   ///< Exact, and so in any order.
 
-  /// Values.
-  std::uint64_t count() const;
+  std::uint64_t count() const;  ///< Values.
   /// Exact; NaN when empty.
   double min() const { return count() == 0 ? std::numeric_limits<double>::quiet_NaN() : min_; }
   /// Exact; NaN when empty.
@@ -80,8 +74,7 @@ class QuantileSketch {
   /// Every count of it, and back: about two bytes for each bucket. read() throws BytesError for counts that no stream
   /// of numbers gives.
   void write(ByteWriter& to) const;
-  /// The opposite of write().
-  static QuantileSketch read(ByteReader& from);
+  static QuantileSketch read(ByteReader& from);  ///< The opposite of write().
 
  private:
   /// Counts of the buckets first, first + 1, ... of one sign; a bucket is numbered by the leading bits of a magnitude.

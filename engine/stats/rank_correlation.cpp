@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 
 namespace poesy {
 namespace {
@@ -41,18 +42,13 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 /// What of x and y is known in both.
-struct Known {
-  std::vector<double> x;
-  std::vector<double> y;
-};
-
-Known known(std::span<const double> x, std::span<const double> y) {
+std::pair<std::vector<double>, std::vector<double>> known(std::span<const double> x, std::span<const double> y) {
   POESY_EXPECTS(x.size() == y.size());
-  Known both;
+  std::pair<std::vector<double>, std::vector<double>> both;
   for (std::size_t n = 0; n < x.size(); ++n) {
     if (std::isnan(x[n]) || std::isnan(y[n])) continue;
-    both.x.push_back(x[n]);
-    both.y.push_back(y[n]);
+    both.first.push_back(x[n]);
+    both.second.push_back(y[n]);
   }
   return both;
 }
@@ -67,20 +63,19 @@ int order(double a, double b) {
 }  // namespace
 
 double rank_correlation(std::span<const double> x, std::span<const double> y) {
-  const Known both = known(x, y);
-  if (both.x.size() < 3) return std::numeric_limits<double>::quiet_NaN();
-  return correlation(mean_ranks(both.x), mean_ranks(both.y));
+  const auto [known_x, known_y] = known(x, y);
+  return known_x.size() < 3 ? kNaN : correlation(mean_ranks(known_x), mean_ranks(known_y));
 }
 
 double kendall_tau(std::span<const double> x, std::span<const double> y) {
-  const Known both = known(x, y);
+  const auto [known_x, known_y] = known(x, y);
   int agree = 0;
   int ordered_x = 0;
   int ordered_y = 0;
-  for (std::size_t n = 0; n < both.x.size(); ++n) {
+  for (std::size_t n = 0; n < known_x.size(); ++n) {
     for (std::size_t m = 0; m < n; ++m) {
-      const int of_x = order(both.x[n], both.x[m]);
-      const int of_y = order(both.y[n], both.y[m]);
+      const int of_x = order(known_x[n], known_x[m]);
+      const int of_y = order(known_y[n], known_y[m]);
       agree += of_x * of_y;
       ordered_x += of_x * of_x;
       ordered_y += of_y * of_y;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/units.h"
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 
 /// Tolerances from the indices of a sensitivity study. A tolerance here is the standard deviation of a normal error, in
 /// SI; infinity says that the error has no effect on its own, NaN that its effect is not known.
@@ -14,7 +14,7 @@ namespace poesy {
 
 /// One response of a sensitivity study of P errors at M poses, SI. Refers to the study's arrays.
 struct ResponseStudy {
-  std::vector<double> index;           ///< [P] global, as far as it can be told from rounding (stats/rounding.h)
+  std::vector<double> index;           ///< [P] global, as far as it can be told from rounding (stats/indices.h)
   std::span<const double> sigma;       ///< [P] of the errors, as the study sets them
   std::span<const double> count;       ///< [P x M] samples
   std::span<const double> mean;        ///< [P x M] of the response, one error varying

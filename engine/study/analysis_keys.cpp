@@ -1,18 +1,14 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 
 #include "engine/base/text.h"
 #include "engine/study/study_kind.h"
-#include "engine/study/study_text.h"
 
 namespace poesy {
 namespace {
-
-FactorIndex factor_named(const StudyValue& value, const ModelDescription& model) {
-  return FactorIndex(value.word(names(model.factors)));
-}
 
 std::vector<FactorIndex> all_factors(const ModelDescription& model) {
   std::vector<FactorIndex> factors;
@@ -32,11 +28,7 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   value.fail("is '" + printable(written) + "', which is no factor set of the model", suggestion(written, known));
 }
 
-/// The name of the factor set that a study of this kind takes when it names none.
-std::string_view usual_set(const StudyKind& kind, const ModelDescription& model) {
-  return model.find_set(kind.usual_factors) != nullptr ? kind.usual_factors : "all";
-}
-
+/// Those of a study of this kind that names none.
 std::vector<FactorIndex> usual_factors(const StudyKind& kind, const ModelDescription& model) {
   const FactorSet* set = model.find_set(kind.usual_factors);
   return set != nullptr ? set->factors : all_factors(model);
@@ -55,7 +47,8 @@ std::string factors_line(const Study& study) {
 }
 
 std::string shown_factors(const TemplateLines& lines, const Study& study) {
-  const std::string_view usual = usual_set(*study.analysis.kind, study.model());
+  const std::string_view own = study.analysis.kind->usual_factors;
+  const std::string_view usual = study.model().find_set(own) != nullptr ? own : "all";
   return "# Factor sets:\n" + sets_comment(study.model()) +
          lines.explained("analysis", "factors", fmt::format("factors = \"{}\"", usual));
 }
@@ -194,12 +187,9 @@ std::string shown_background(const TemplateLines& lines, const Study& study) {
 /// In the order of the model's responses.
 void read_response_limits(const StudyValue& value, Study& study, const Reading&) {
   const std::vector<Response>& responses = study.model().responses;
-  const StudySection section = value.section();
-  section.allow(names(responses), "response");
-  for (std::size_t r = 0; r < responses.size(); ++r) {
-    const auto own = section.find(responses[r].name);
-    if (own) study.analysis.limits.push_back({r, own->positive_quantity(responses[r].dimension)});
-  }
+  read_named(value.section(), responses, "response", [&](std::size_t r, const StudyValue& own) {
+    study.analysis.limits.push_back({r, own.positive_quantity(responses[r].dimension)});
+  });
   if (study.analysis.limits.empty()) value.fail("states no limit", "write a response with its limit, or leave it out");
 }
 
@@ -217,8 +207,7 @@ std::string response_limits_lines(const Study& study) {
 std::string shown_limits(const TemplateLines& lines, const Study& study) {
   const std::vector<Response>& responses = study.model().responses;
   if (responses.empty()) return {};
-  std::string list = "Responses:";
-  for (const Response& response : responses) list += " " + response.name;
+  const std::string list = fmt::format("Responses: {}", fmt::join(names(responses), " "));
   const auto length = std::ranges::find(responses, Dimension::length, &Response::dimension);
   const Response& response = length == responses.end() ? responses.front() : *length;
   return comment(list) + lines.explained("analysis", "limits",
@@ -276,16 +265,6 @@ std::vector<StudyRow> shared_rows() {
   };
 }
 
-StudyTable response_limits_table() {
-  return {.paths = {"analysis.limits"},
-          .meaning = "'poesy models MODEL' lists the responses.",
-          .keys = {{.name = "RESPONSE",
-                    .type = "quantity",
-                    .bounds = "greater than 0",
-                    .usual = "none",
-                    .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}};
-}
-
 /// For which kinds each row holds, and what is said of `kind`. Kinds whose factors a study names come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
@@ -316,7 +295,7 @@ std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescri
   if (value.is_text()) return factors_of_set(value, model);
   std::vector<FactorIndex> factors;
   for (const StudyValue& element : value.list()) {
-    const FactorIndex factor = factor_named(element, model);
+    const FactorIndex factor(element.word(names(model.factors)));
     if (std::find(factors.begin(), factors.end(), factor) != factors.end()) {
       element.fail("names '" + model.factors[factor.value].name + "' a second time, but factors must differ",
                    "remove one of them");
@@ -325,6 +304,13 @@ std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescri
   }
   if (factors.empty()) value.fail("is empty", "name at least one factor, or a factor set");
   return factors;
+}
+
+std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model) {
+  if (const std::string set = set_name(factors, model); !set.empty()) return in_quotes(set);
+  std::string text = "[";
+  for (const FactorIndex factor : factors) text += "\n  " + in_quotes(model.factors[factor.value].name) + ",";
+  return text + "\n]";
 }
 
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual) {
@@ -355,8 +341,17 @@ StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<c
   describe_kinds(table, kinds);
   std::ranges::find(table.rows, "factors", &StudyRow::name)->usual = usual_factors_text(kinds);
   std::ranges::stable_sort(table.rows, {}, [&](const StudyRow& row) { return std::ranges::find(order, row.name); });
-  StudyTables tables{described(table), response_limits_table(), described(adaptive_keys()),
-                     described(background_keys())};
+  StudyTables tables{
+      described(table),
+      {.paths = {"analysis.limits"},
+       .meaning = "'poesy models MODEL' lists the responses.",
+       .keys = {{.name = "RESPONSE",
+                 .type = "quantity",
+                 .bounds = "greater than 0",
+                 .usual = "none",
+                 .meaning = "A value of this response is good up to here; one that has a sign, by its magnitude."}}},
+      described(adaptive_keys()),
+      described(background_keys())};
   for (const StudyKind* kind : kinds) {
     if (kind->tables == nullptr) continue;
     for (StudyTable& inner : kind->tables()) tables.push_back(std::move(inner));

@@ -1,29 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
-#include "engine/study/study_text.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
 using Shape = Distribution::Shape;
-
-Distribution make_distribution(Shape shape, double sigma, double half_width) {
-  switch (shape) {
-    case Shape::normal:
-      return Distribution::normal(sigma);
-    case Shape::truncated_normal:
-      return Distribution::truncated_normal(sigma, half_width);
-    case Shape::uniform:
-      return Distribution::uniform(half_width);
-    case Shape::triangular:
-      break;
-  }
-  return Distribution::triangular(half_width);
-}
 
 /// SI. Fourth powers of an error, and of indices down to rounding times it, then are far above the smallest double.
 constexpr double kSmallest = 1e-30;
@@ -35,6 +22,13 @@ struct Parameters {
   double half_width = 0.0;  ///< likewise
   Dimension dimension = Dimension::length;
 };
+
+Distribution distribution_of(const Parameters& parameters) {
+  const auto& [shape, sigma, half_width, dimension] = parameters;
+  if (shape == Shape::normal) return Distribution::normal(sigma);
+  if (shape == Shape::truncated_normal) return Distribution::truncated_normal(sigma, half_width);
+  return shape == Shape::uniform ? Distribution::uniform(half_width) : Distribution::triangular(half_width);
+}
 
 KeyValue<Parameters> size_at(double Parameters::*member) {
   const auto read = [=](const StudyValue& value, Parameters& parameters) {
@@ -87,7 +81,7 @@ Distribution read_distribution(const StudyValue& value, Dimension dimension) {
     static_cast<void>(section.require(row.name, "the distribution \"" + word + "\" needs it"));
   }
   try {
-    return make_distribution(parameters.shape, parameters.sigma, parameters.half_width);
+    return distribution_of(parameters);
   } catch (const std::invalid_argument& reason) {
     value.fail(std::string("is impossible: ") + reason.what(), "correct its parameters");
   }
@@ -104,17 +98,10 @@ void read_usual(const StudyValue& value, Study& study, const Reading&) {
 }
 
 void read_override(const StudyValue& value, Study& study, const Reading&) {
-  const StudySection overrides = value.section();
   const std::vector<Factor>& factors = study.model().factors;
-  overrides.allow(names(factors), "factor");
-  for (std::size_t f = 0; f < factors.size(); ++f) {
-    const auto own = overrides.find(factors[f].name);
-    if (own) study.errors.by_factor[f] = read_distribution(*own, factors[f].dimension);
-  }
-}
-
-bool same(const Distribution& a, const Distribution& b) {
-  return a.shape() == b.shape() && a.sigma() == b.sigma() && a.half_width() == b.half_width();
+  read_named(value.section(), factors, "factor", [&](std::size_t f, const StudyValue& own) {
+    study.errors.by_factor[f] = read_distribution(own, factors[f].dimension);
+  });
 }
 
 std::string distribution_text(const Distribution& distribution, Dimension dimension, ValueText value) {
@@ -129,21 +116,14 @@ std::string distribution_text(const Distribution& distribution, Dimension dimens
 
 /// The distribution that most factors of this dimension have: what `linear` or `angular` is set to.
 Distribution commonest_distribution(const Study& study, Dimension dimension) {
-  const std::vector<Distribution>& all = study.errors.by_factor;
   const std::vector<Factor>& factors = study.model().factors;
-  Distribution usual = default_distribution(dimension);
-  std::ptrdiff_t most = 0;
+  std::vector<Distribution> all;
   for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (factors[f].dimension != dimension) continue;
-    std::ptrdiff_t shared = 0;
-    for (std::size_t g = 0; g < factors.size(); ++g) {
-      shared += factors[g].dimension == dimension && same(all[f], all[g]) ? 1 : 0;
-    }
-    if (shared <= most) continue;
-    usual = all[f];
-    most = shared;
+    if (factors[f].dimension == dimension) all.push_back(study.errors.by_factor[f]);
   }
-  return usual;
+  const auto uses = [&](const Distribution& distribution) { return std::ranges::count(all, distribution); };
+  const auto commonest = std::ranges::max_element(all, {}, uses);
+  return commonest == all.end() ? default_distribution(dimension) : *commonest;
 }
 
 template <Dimension kDimension>
@@ -159,7 +139,7 @@ std::string override_lines(const Study& study) {
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
     const Distribution& own = study.errors.by_factor[f];
-    if (same(own, factor.dimension == Dimension::length ? linear : angular)) continue;
+    if (own == (factor.dimension == Dimension::length ? linear : angular)) continue;
     text += factor.name + " = " + distribution_text(own, factor.dimension, exact_value) + "\n";
   }
   return text.empty() ? "" : "\n[errors.override]\n" + text;
@@ -183,6 +163,28 @@ StudyRow usual_row(std::string_view meaning) {
           .lines = usual_line<kDimension>};
 }
 
+/// At what gives the factor its distribution.
+[[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, const std::string& problem) {
+  const StudySection errors = root.section("errors");
+  const auto own = errors.section("override").find(factor.name);
+  const auto value = own ? own : errors.find(error_kind(factor.dimension));
+  if (!value) refuse_error(errors, error_kind(factor.dimension), problem);
+  const StudySection distribution = value->section();
+  refuse_error(distribution, distribution.find("half_width") ? "half_width" : "sigma", problem);
+}
+
+/// Of the distributions of what varies: the largest possible error, for a normal its standard deviation.
+void check_distributions(const StudySection& root, const Study& study, const Model& model) {
+  for (const FactorIndex factor : study.analysis.factors) {
+    const Distribution& distribution = study.errors.by_factor[factor.value];
+    const bool bounded = std::isfinite(distribution.half_width());
+    const auto problem =
+        beyond_bound(model, factor, bounded ? distribution.half_width() : distribution.standard_deviation(),
+                     bounded ? "a largest error" : "a standard deviation");
+    if (problem) refuse_distribution(root, model.description().factors[factor.value], *problem);
+  }
+}
+
 }  // namespace
 
 const StudyRows& errors_keys() {
@@ -201,13 +203,14 @@ const StudyRows& errors_keys() {
 }
 
 StudyTables errors_tables() {
-  const StudyTable overrides{.paths = {"errors.override"},
-                             .meaning = "'poesy models MODEL' lists the errors.",
-                             .keys = {{.name = "FACTOR",
-                                       .type = "table",
-                                       .usual = "that of its dimension",
-                                       .meaning = "Distribution of this error."}}};
-  return {described(errors_keys()), overrides, described(distribution_keys())};
+  return {described(errors_keys()),
+          {.paths = {"errors.override"},
+           .meaning = "'poesy models MODEL' lists the errors.",
+           .keys = {{.name = "FACTOR",
+                     .type = "table",
+                     .usual = "that of its dimension",
+                     .meaning = "Distribution of this error."}}},
+          described(distribution_keys())};
 }
 
 Distribution usual_distribution(const StudySection& root, Dimension dimension) {
@@ -220,6 +223,32 @@ void read_errors_section(Study& study, const Reading& reading) {
     study.errors.by_factor.push_back(default_distribution(factor.dimension));
   }
   read_keys(errors_keys(), reading.root.section("errors"), study, reading);
+}
+
+void refuse_error(const StudySection& section, std::string_view key, const std::string& problem) {
+  if (const auto value = section.find(key)) value->fail(problem, kTooLargeRemedy);
+  throw InputError(section.place(), "the default of " + std::string(key) + " " + problem, kTooLargeRemedy);
+}
+
+void check_error_size(const Model& model, FactorIndex factor, double linear, double angular,
+                      const StudySection& section) {
+  const Dimension dimension = model.description().factors[factor.value].dimension;
+  const double size = dimension == Dimension::length ? linear : angular;
+  if (const auto problem = beyond_bound(model, factor, size, "an error")) {
+    refuse_error(section, error_kind(dimension), *problem);
+  }
+}
+
+void check_error_bounds(const StudySection& root, const Study& study, const Model& model) {
+  const StudySection analysis = root.section("analysis");
+  const StudyKind& kind = *study.analysis.kind;
+  if (kind.varies != Varies::none) check_distributions(root, study, model);
+  if (const auto& held = study.analysis.background) {
+    for (const FactorIndex factor : held->factors) {
+      check_error_size(model, factor, held->linear, held->angular, analysis.section("background"));
+    }
+  }
+  if (kind.check_errors != nullptr) kind.check_errors(analysis, study, model);
 }
 
 }  // namespace poesy

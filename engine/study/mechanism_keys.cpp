@@ -1,6 +1,6 @@
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
-#include "engine/study/study_text.h"
+#include "engine/study/study.h"
+#include "engine/study/study_kind.h"
 #include "engine/study/text_file.h"
 
 namespace poesy {
@@ -48,13 +48,10 @@ std::string file_line(const Study& study) {
 
 void read_geometry(const StudyValue& value, Study& study, const Reading&) {
   const std::vector<GeometryParameter>& parameters = study.model().geometry;
-  const StudySection section = value.section();
-  section.allow(names(parameters), "parameter");
   study.mechanism.place = value.place();
-  for (std::size_t g = 0; g < parameters.size(); ++g) {
-    const auto own = section.find(parameters[g].name);
-    if (own) study.mechanism.geometry[g] = own->quantity(parameters[g].dimension);
-  }
+  read_named(value.section(), parameters, "parameter", [&](std::size_t g, const StudyValue& own) {
+    study.mechanism.geometry[g] = own.quantity(parameters[g].dimension);
+  });
 }
 
 /// Sets `fidelity`, and `compared` for "both", which a model with two fidelities offers.
@@ -130,13 +127,13 @@ const StudyRows& mechanism_keys() {
 }
 
 StudyTables mechanism_tables() {
-  const StudyTable geometry{.paths = {"mechanism.geometry"},
-                            .meaning = "'poesy models MODEL' lists the parameters.",
-                            .keys = {{.name = "PARAMETER",
-                                      .type = "quantity",
-                                      .usual = "its published value",
-                                      .meaning = "A parameter of the geometry."}}};
-  return {described(mechanism_keys()), geometry};
+  return {described(mechanism_keys()),
+          {.paths = {"mechanism.geometry"},
+           .meaning = "'poesy models MODEL' lists the parameters.",
+           .keys = {{.name = "PARAMETER",
+                     .type = "quantity",
+                     .usual = "its published value",
+                     .meaning = "A parameter of the geometry."}}}};
 }
 
 void read_mechanism(Study& study, const Reading& reading) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "engine/base/index.h"
-#include "engine/model/pose_set.h"
 #include "engine/random/distribution.h"
 #include "engine/study/study.h"
 
@@ -36,42 +35,30 @@ class Plan {
   /// Of a study of drawn errors, at these poses. Copies what it needs. Precondition: the study has a kind.
   Plan(const Study& study, PoseSet poses);
 
-  /// Factors that are studied one by one; 1 where all vary together.
-  std::size_t slots() const { return slots_; }
+  std::size_t slots() const { return slots_; }  ///< Factors that are studied one by one; 1 where all vary together.
   /// A cell is one slot at one pose. Cells are counted slot by slot, pose by pose.
   std::size_t cells() const { return slots_ * poses_.size(); }
-  /// Units of one slot at one pose.
-  std::size_t units_per_cell() const { return units_per_cell_; }
-  /// Of the whole plan.
-  std::size_t units() const { return cells() * units_per_cell_; }
-  /// Unit u: cell by cell, samples in order.
-  WorkUnit unit(std::size_t u) const;
+  std::size_t units_per_cell() const { return units_per_cell_; }   ///< Units of one slot at one pose.
+  std::size_t units() const { return cells() * units_per_cell_; }  ///< Of the whole plan.
+  WorkUnit unit(std::size_t u) const;                              ///< Unit u: cell by cell, samples in order.
 
   /// The first sample of a cell's unit; the number of samples for the unit after the last.
   std::size_t first_sample(std::size_t unit) const { return std::min(unit * kUnitSamples, samples_); }
 
-  /// At each pose, of one slot.
-  std::size_t samples() const { return samples_; }
+  std::size_t samples() const { return samples_; }  ///< At each pose, of one slot.
   /// How a study may come to an end before each cell has samples().
   const std::optional<AdaptiveSamples>& adaptive() const { return adaptive_; }
-  /// The same with another number of samples.
-  Plan with_samples(std::size_t samples) const;
-  /// Of the draws.
-  std::uint64_t seed() const { return seed_; }
-  /// In the order of the study.
-  const PoseSet& poses() const { return poses_; }
-  /// That vary, positions in the model's list.
-  std::span<const FactorIndex> factors() const { return factors_; }
+  Plan with_samples(std::size_t samples) const;                      ///< The same with another number of samples.
+  std::uint64_t seed() const { return seed_; }                       ///< Of the draws.
+  const PoseSet& poses() const { return poses_; }                    ///< In the order of the study.
+  std::span<const FactorIndex> factors() const { return factors_; }  ///< That vary, positions in the model's list.
   /// Distribution of each varied factor, in the order of factors().
   std::span<const Distribution> distributions() const { return distributions_; }
   /// Constant errors, [F]; zero for those that vary, also while another one does.
   std::span<const double> background() const { return background_; }
-  /// For each sample.
-  const SolverOptions& solver() const { return solver_; }
-  /// What becomes of samples that are not solved.
-  NotConverged not_converged() const { return not_converged_; }
-  /// Of all units together.
-  std::uint64_t solves() const;
+  const SolverOptions& solver() const { return solver_; }        ///< For each sample.
+  NotConverged not_converged() const { return not_converged_; }  ///< What becomes of samples that are not solved.
+  std::uint64_t solves() const;                                  ///< Of all units together.
 
  private:
   PoseSet poses_;
@@ -86,5 +73,11 @@ class Plan {
   SolverOptions solver_;
   NotConverged not_converged_;
 };
+
+/// The numbers of samples at a pose at which a study with adaptive samples decides what goes on, ascending: `min`
+/// rounded up to whole units (Plan::kUnitSamples), then each 1.5 times the last, rounded up likewise, as far as they
+/// are below `max`. A larger max only adds to the list. At max itself nothing is left to decide. Empty where the first
+/// is not below max.
+std::vector<std::size_t> milestones(std::size_t min, std::size_t max);
 
 }  // namespace poesy

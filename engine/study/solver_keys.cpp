@@ -1,9 +1,9 @@
-#include <array>
+#include <fmt/format.h>
+
 #include <limits>
 
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
-#include "engine/study/study_text.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -27,6 +27,16 @@ void read_version(const StudyValue& value, Study&, const Reading&) {
   value.fail("is " + std::to_string(number) + ", but this poesy knows version 1 only", "use a newer poesy");
 }
 
+/// Points as a TOML list of lists.
+std::string points_text(std::span<const PlatformPoint> points, ValueText value) {
+  std::vector<std::string> list;
+  for (const PlatformPoint& point : points) {
+    const auto coordinate = [&](std::size_t c) { return value(point[c], Dimension::length); };
+    list.push_back(fmt::format("[{}, {}, {}]", coordinate(0), coordinate(1), coordinate(2)));
+  }
+  return list_text(list);
+}
+
 /// Throws where nothing is weighed by a metric.
 void require_metric(std::string_view key, const Study& study, const Reading& reading) {
   if (!study.model().metric.empty()) return;
@@ -43,10 +53,7 @@ void read_metric(const StudyValue& value, Study& study, const Reading& reading) 
 
 /// A point of the platform: three lengths.
 PlatformPoint read_point(const StudyValue& value) {
-  const std::vector<StudyValue> coordinates = value.list();
-  if (coordinates.size() != 3) {
-    value.fail("has " + std::to_string(coordinates.size()) + " values", "a point has three, [\"60 mm\", 0, 0]");
-  }
+  const std::vector<StudyValue> coordinates = value.list(3, "a point has three, [\"60 mm\", 0, 0]");
   PlatformPoint point{};
   for (std::size_t c = 0; c < point.size(); ++c) {
     point[c] = coordinates[c].is_zero() ? 0.0 : coordinates[c].quantity(Dimension::length);
@@ -96,16 +103,16 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
 
 /// "fail" is short for "exclude" and a limit of 0.
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
-  constexpr std::array kPolicies{NotConverged::exclude, NotConverged::include, NotConverged::exclude};
-  constexpr std::size_t kFail = 2;
-  const std::size_t word = value.word(names(row_of(solver_keys(), "not_converged").value.words));
-  study.not_converged = kPolicies[word];
-  if (word != kFail) return;
+  const std::vector<std::string_view> known = names(row_of(solver_keys(), "not_converged").value.words);
+  const std::string_view word = known[value.word(known)];
+  study.not_converged = word == name(NotConverged::include) ? NotConverged::include : NotConverged::exclude;
+  if (word != "fail") return;
   reading.root.section("solver").refuse("max_not_converged", "not_converged = \"fail\", which allows none");
   study.max_not_converged = 0.0;
 }
 
-std::vector<StudyRow> metric_rows() {
+std::vector<StudyRow> solver_rows() {
+  const NumberBounds share{0.0, 1.0, true, "from 0 to 1", "it is a share of all samples, from 0 to 1, e.g. 0.001"};
   return {
       StudyRow{.name = "metric",
                .value = {.type = "text",
@@ -126,11 +133,7 @@ std::vector<StudyRow> metric_rows() {
                           "not on a line.",
                .reader = read_points,
                .lines = points_line,
-               .shown = shown_points}};
-}
-
-std::vector<StudyRow> iteration_rows() {
-  return {
+               .shown = shown_points},
       StudyRow{
           .name = "method",
           .value = word_at<Method>({{Method::newton, "the model's own, fast and far-reaching"},
@@ -146,22 +149,18 @@ std::vector<StudyRow> iteration_rows() {
                .shown = shown_tolerance},
       StudyRow{.name = "max_iterations",
                .value = whole_at(1, std::numeric_limits<int>::max(), &Study::solver, &SolverOptions::max_iterations),
-               .meaning = "Iterations after which a sample counts as not converged."}};
-}
-
-std::vector<StudyRow> failure_rows() {
-  const NumberBounds share{0.0, 1.0, true, "from 0 to 1", "it is a share of all samples, from 0 to 1, e.g. 0.001"};
-  return {StudyRow{.name = "not_converged",
-                   .value = {.type = "text",
-                             .words = {{name(NotConverged::exclude), "they are left out of all statistics"},
-                                       {name(NotConverged::include), "the last iterate counts"},
-                                       {"fail", "exclude, with max_not_converged = 0"}},
-                             .text = [](const Study& study) { return in_quotes(name(study.not_converged)); }},
-                   .meaning = "What becomes of samples that did not converge.",
-                   .reader = read_not_converged},
-          StudyRow{.name = "max_not_converged",
-                   .value = number_at(share, &Study::max_not_converged),
-                   .meaning = "Share of all samples; if more fail, the run ends with exit code 5, its result kept."}};
+               .meaning = "Iterations after which a sample counts as not converged."},
+      StudyRow{.name = "not_converged",
+               .value = {.type = "text",
+                         .words = {{name(NotConverged::exclude), "they are left out of all statistics"},
+                                   {name(NotConverged::include), "the last iterate counts"},
+                                   {"fail", "exclude, with max_not_converged = 0"}},
+                         .text = [](const Study& study) { return in_quotes(name(study.not_converged)); }},
+               .meaning = "What becomes of samples that did not converge.",
+               .reader = read_not_converged},
+      StudyRow{.name = "max_not_converged",
+               .value = number_at(share, &Study::max_not_converged),
+               .meaning = "Share of all samples; if more fail, the run ends with exit code 5, its result kept."}};
 }
 
 /// A row for a table of the file, which is read by itself.
@@ -204,14 +203,9 @@ const StudyRows& file_keys() {
 }
 
 const StudyRows& solver_keys() {
-  static const StudyRows keys = [] {
-    StudyRows table{.paths = {"solver"},
-                    .meaning = "How samples are solved, and what becomes of those that are not.",
-                    .rows = metric_rows()};
-    for (const auto& more : {iteration_rows(), failure_rows()})
-      table.rows.insert(table.rows.end(), more.begin(), more.end());
-    return table;
-  }();
+  static const StudyRows keys{.paths = {"solver"},
+                              .meaning = "How samples are solved, and what becomes of those that are not.",
+                              .rows = solver_rows()};
   return keys;
 }
 

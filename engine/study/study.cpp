@@ -1,9 +1,13 @@
 #include "engine/study/study.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
-#include "engine/base/contract.h"
-#include "engine/base/units.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 
@@ -20,6 +24,45 @@ constexpr std::array<std::string_view, 2> kMethodNames{"newton", "gauss-newton"}
 template <class Enum, std::size_t kCount>
 std::string_view name_among(const std::array<std::string_view, kCount>& names, Enum value) {
   return names.at(static_cast<std::size_t>(value));
+}
+
+/// Of the background, those that neither vary nor are zero.
+std::vector<FactorIndex> held_errors(const Study& study) {
+  const std::vector<double> errors = background_errors(study.analysis.background, study.model());
+  std::vector<FactorIndex> held;
+  for (const FactorIndex factor : study.analysis.background->factors) {
+    const bool varies = std::ranges::find(study.analysis.factors, factor) != study.analysis.factors.end();
+    if (!varies && errors[factor.value] != 0.0) held.push_back(factor);
+  }
+  return held;
+}
+
+/// "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1 and delta_2", "12 errors".
+std::string owners_text(const std::vector<FactorIndex>& held, const Study& study) {
+  const std::vector<FactorIndex>& named = study.analysis.background->factors;
+  const std::string all = held.size() == named.size() ? "" : fmt::format("{} of the ", held.size());
+  if (const std::string set = set_name(named, study.model()); !set.empty()) {
+    return fmt::format("{}{} {} of set '{}'", all, named.size(), named.size() == 1 ? "error" : "errors", set);
+  }
+  constexpr std::size_t kMostNames = 3;
+  if (held.size() > kMostNames) return fmt::format("{} errors", held.size());
+  std::vector<std::string> names;
+  for (const FactorIndex factor : held) names.push_back(study.model().factors[factor.value].name);
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
+/// "1 mm and 1 deg", of the dimensions that the held errors have.
+std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study) {
+  const Background& background = *study.analysis.background;
+  std::vector<std::string> sizes;
+  for (const Quantity size :
+       {Quantity{background.linear, Dimension::length}, Quantity{background.angular, Dimension::angle}}) {
+    const auto has_it = [&](FactorIndex factor) {
+      return study.model().factors[factor.value].dimension == size.dimension;
+    };
+    if (std::ranges::any_of(held, has_it)) sizes.push_back(readable_text(size, 6));
+  }
+  return fmt::format("{}", fmt::join(sizes, " and "));
 }
 
 }  // namespace
@@ -74,6 +117,34 @@ std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
         mechanism.points_place, reason.what(),
         "name points around the platform, such as its joints' centres, or leave the key out to take these");
   }
+}
+
+std::string set_name(std::span<const FactorIndex> factors, const ModelDescription& model) {
+  for (const FactorSet& set : model.factor_sets) {
+    if (std::equal(factors.begin(), factors.end(), set.factors.begin(), set.factors.end())) return set.name;
+  }
+  if (model.find_set("all") != nullptr || factors.size() != model.factors.size()) return {};
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (factors[f].value != f) return {};
+  }
+  return "all";
+}
+
+std::optional<std::string> beyond_bound(const Model& model, FactorIndex factor, double size, std::string_view what) {
+  const ErrorBound bound = model.error_bound(factor);
+  if (std::abs(size) < bound.size) return std::nullopt;
+  const Factor& named = model.description().factors[factor.value];
+  return "gives " + named.name + " " + std::string(what) + " of " + readable_text({size, named.dimension}) +
+         ", no less than " + bound.part + " (" + readable_text({bound.size, named.dimension}) + ")";
+}
+
+std::string held_errors_text(const Study& study) {
+  if (!study.analysis.background) return {};
+  const std::vector<FactorIndex> held = held_errors(study);
+  if (held.empty()) return {};
+  const std::string_view overrides = study.analysis.kind->overrides;
+  const std::string unless = overrides.empty() ? "" : fmt::format(", unless {} another value", overrides);
+  return fmt::format("held constant{}: {} at {}", unless, owners_text(held, study), sizes_text(held, study));
 }
 
 }  // namespace poesy

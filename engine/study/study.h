@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/index.h"
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 #include "engine/random/distribution.h"
 #include "engine/study/poses/pose_selection.h"
 
@@ -56,7 +57,7 @@ struct Background {
 /// Samples until the intervals are narrow enough, at the least `min` and at the most Analysis::samples at each pose;
 /// see engine/run/rounds.h.
 struct AdaptiveSamples {
-  std::size_t min = 1000;       ///< before the first decision; rounded up to whole units (engine/study/milestones.h)
+  std::size_t min = 1000;       ///< before the first decision; rounded up to whole units (milestones())
   double relative_error = 0.0;  ///< half-width of an interval at conf_level over what it is the interval of
 };
 
@@ -66,7 +67,7 @@ struct ResponseLimit {
   double most;           ///< SI, above zero
 };
 
-/// By which number of its draws a study's limits are judged; see engine/run/verdict.h.
+/// By which number of its draws a study's limits are judged; see LimitVerdict.
 enum class Judge {
   rms,   ///< the response's root mean square over the draws of all poses
   share  ///< what a share of the draws stays within at the worst pose
@@ -96,13 +97,11 @@ const Options& asked_of(const Analysis& analysis) {
   return *asked;
 }
 
-/// The same to be changed.
+/// The same to be changed; the options of another kind that the study had before are dropped.
 template <class Options>
 Options& asked_of(Analysis& analysis) {
-  if (!analysis.asked.has_value()) analysis.asked = Options{};
-  auto* asked = std::any_cast<Options>(&analysis.asked);
-  POESY_EXPECTS(asked != nullptr);
-  return *asked;
+  if (std::any_cast<Options>(&analysis.asked) == nullptr) analysis.asked = Options{};
+  return *std::any_cast<Options>(&analysis.asked);
 }
 
 /// What becomes of samples without a solution.
@@ -124,31 +123,35 @@ struct Study {
   double max_not_converged = 1.0;
   std::uint64_t seed = 1;  ///< of all draws
 
-  /// Of the mechanism.
-  const ModelDescription& model() const { return mechanism.entry->description; }
+  const ModelDescription& model() const { return mechanism.entry->description; }  ///< Of the mechanism.
 };
 
-/// Names as written in a study file.
-std::string_view name(PoseSelection::Select select);
-/// As a study file has it.
-std::string_view name(Judge judge);
-/// Every one, in the order in which they are listed.
-inline constexpr std::array kJudges{Judge::rms, Judge::share};
-/// As a study file has it.
-std::string_view name(NotConverged policy);
-/// As a study file has it.
-std::string_view name(SolverOptions::Method method);
+std::string_view name(PoseSelection::Select select);            ///< As a study file has it.
+std::string_view name(Judge judge);                             ///< As a study file has it.
+inline constexpr std::array kJudges{Judge::rms, Judge::share};  ///< Every one, in the order in which they are listed.
+std::string_view name(NotConverged policy);                     ///< As a study file has it.
+std::string_view name(SolverOptions::Method method);            ///< As a study file has it.
 
 /// The constant errors, [F]: the background's value where it applies, else zero.
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);
 
-/// Those of the errors that the study varies, [P], SI.
-std::vector<double> standard_deviations(const Study& study);
+std::vector<double> standard_deviations(const Study& study);  ///< Those of the errors that the study varies, [P], SI.
 
 /// The mechanism at its second fidelity alone. Precondition: it compares two.
 MechanismChoice at_compared_fidelity(MechanismChoice mechanism);
 
 /// Builds the study's mechanism. Throws InputError at the mechanism's place when the geometry is impossible.
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism);
+
+/// The name of the factor set that these are, or "all"; empty when they are no set.
+std::string set_name(std::span<const FactorIndex> factors, const ModelDescription& model);
+
+/// Where an error of this size (SI, its sign does not matter) makes no sense, a clause that says so: "gives a_x_1 an
+/// error of 300 mm, no less than the radius of the base (250 mm)"; `what` is "an error".
+std::optional<std::string> beyond_bound(const Model& model, FactorIndex factor, double size, std::string_view what);
+
+/// Which errors the study's background holds, at which size, on one line: "held constant: 30 errors of set 'benign' at
+/// 1 mm and 1 deg". Empty where it holds none. Errors that vary are not held, nor are those whose size is zero.
+std::string held_errors_text(const Study& study);
 
 }  // namespace poesy

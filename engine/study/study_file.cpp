@@ -1,14 +1,14 @@
 #include "engine/study/study_file.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "engine/base/contract.h"
 #include "engine/base/text.h"
-#include "engine/schema/keys_section.h"
-#include "engine/study/keys.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/text_file.h"
 
@@ -62,16 +62,17 @@ void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
   const AtPose asked = study.analysis.kind->at_pose(study);
+  const auto product = [&](std::string_view of, double times) {
+    return fmt::format("poses times {} is {}, but ", of, shortest(poses * times));
+  };
   if (poses * asked.values > static_cast<double>(kMostCells)) {
     throw InputError(root.section("poses").place(),
-                     "poses times " + std::string(asked.of_values) + " is " + shortest(poses * asked.values) +
-                         ", but a result holds at most " + std::to_string(kMostCells),
-                     "ask for fewer poses or " + std::string(asked.of_values));
+                     product(asked.of_values, asked.values) + fmt::format("a result holds at most {}", kMostCells),
+                     fmt::format("ask for fewer poses or {}", asked.of_values));
   }
   if (poses * asked.solves > static_cast<double>(kMostSolves)) {
     throw InputError(root.section("analysis").place(),
-                     "poses times " + std::string(asked.of_solves) + " is " + shortest(poses * asked.solves) +
-                         ", but at most " + std::to_string(kMostSolves) + " can be solved",
+                     product(asked.of_solves, asked.solves) + fmt::format("at most {} can be solved", kMostSolves),
                      "ask for fewer samples");
   }
 }
@@ -113,7 +114,40 @@ Study study_from(const Reading& reading) {
   return study;
 }
 
+/// The keys that hold for the study's kind.
+StudyRows analysis_keys_of(const Study& study) {
+  const StudyKind& kind = *study.analysis.kind;
+  StudyRows keys = analysis_keys(kind);
+  std::erase_if(keys.rows, [&](const StudyRow& row) { return row.name != keys.chooser && !kind.has_key(row.name); });
+  return keys;
+}
+
 }  // namespace
+
+bool StudyKind::has_key(std::string_view key) const { return std::ranges::find(keys, key) != keys.end(); }
+
+StudyKinds study_kinds_of(std::vector<const StudyKind*> all, std::span<const std::string_view> order) {
+  StudyKinds kinds{std::move(all), {described(file_keys())}};
+  const auto analysis = std::ranges::find(kinds.tables.front().keys, "analysis", &StudyKey::name);
+  analysis->usual = "a " + std::string(kinds.all.front()->name) + " study";
+  for (const StudyTables& more :
+       {mechanism_tables(), poses_tables(), errors_tables(), analysis_tables(kinds.all, order),
+        StudyTables{described(solver_keys()), described(run_keys())}}) {
+    kinds.tables.insert(kinds.tables.end(), more.begin(), more.end());
+  }
+  return kinds;
+}
+
+const StudyKind* find(const StudyKinds& kinds, std::string_view name) {
+  const auto found = std::ranges::find(kinds.all, name, [](const StudyKind* kind) { return kind->name; });
+  return found == kinds.all.end() ? nullptr : *found;
+}
+
+std::vector<std::string_view> names(const StudyKinds& kinds) {
+  std::vector<std::string_view> list;
+  for (const StudyKind* kind : kinds.all) list.push_back(kind->name);
+  return list;
+}
 
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds) {
   if (begins_like_hdf5(path)) {
@@ -131,6 +165,14 @@ Study study_of_text(const std::string& text, const std::string& path, const Cata
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   if (use == StudyUse::run) check_error_bounds(root, study, *model);
   return study;
+}
+
+std::string resolved_text(const Study& study) {
+  POESY_EXPECTS(study.analysis.kind != nullptr);
+  return fmt::format("{}\n[mechanism]\n{}\n[poses]\n{}\n[errors]\n{}\n[analysis]\n{}\n[solver]\n{}\n[run]\n{}",
+                     keys_text(file_keys(), study), keys_text(mechanism_keys(), study), keys_text(poses_keys(), study),
+                     keys_text(errors_keys(), study), keys_text(analysis_keys_of(study), study),
+                     keys_text(solver_keys(), study), keys_text(run_keys(), study));
 }
 
 }  // namespace poesy

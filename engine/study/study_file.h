@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -34,7 +34,6 @@ std::string resolved_text(const Study& study);
 /// Precondition: there is a template for the mechanism (StudyKind::no_template).
 std::string template_text(const CatalogEntry& entry, const StudyKind& kind, const StudyKinds& kinds);
 
-/// The whole reference of study files, as Markdown.
-std::string study_reference(const StudyKinds& kinds);
+std::string study_reference(const StudyKinds& kinds);  ///< The whole reference of study files, as Markdown.
 
 }  // namespace poesy

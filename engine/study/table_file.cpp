@@ -1,26 +1,23 @@
 #include "engine/study/table_file.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <functional>
-#include <map>
-#include <optional>
-#include <string_view>
-#include <utility>
-#include <vector>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "engine/base/error.h"
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <map>
+
 #include "engine/base/text.h"
-#include "engine/base/units.h"
-#include "engine/study/csv_lines.h"
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
+#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
 
-bool contains(std::span<const std::string_view> list, std::string_view name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
-}
+using Names = std::vector<std::string_view>;
+
+bool contains(const Names& list, std::string_view name) { return std::ranges::find(list, name) != list.end(); }
 
 /// A column of numbers that a table may have.
 struct KnownColumn {
@@ -31,10 +28,10 @@ struct KnownColumn {
 
 /// What the header of a table may name.
 struct KnownColumns {
-  std::vector<KnownColumn> numbers;           ///< what is read
-  std::vector<std::string_view> facts = {};   ///< other columns that `poesy export` writes: passed over
-  std::vector<std::string_view> labels = {};  ///< of which one may name the rows
-  std::string_view what;                      ///< a column of numbers, for messages: "pose coordinate"
+  std::vector<KnownColumn> numbers;  ///< what is read
+  Names facts = {};                  ///< other columns that `poesy export` writes: passed over
+  Names labels = {};                 ///< of which one may name the rows
+  std::string_view what;             ///< a column of numbers, for messages: "pose coordinate"
 };
 
 /// A column of a table that is being read.
@@ -57,8 +54,7 @@ struct Title {
     const std::size_t bracket = text.find('[');
     if (bracket == std::string_view::npos || !text.ends_with(']')) return;
     unit = text.substr(bracket + 1, text.size() - bracket - 2);
-    name = text.substr(0, text.find_last_not_of(" \t", bracket - 1) + 1);
-    if (bracket == 0) name = {};
+    name = trimmed(text.substr(0, bracket));
   }
 
   std::string_view name;
@@ -68,15 +64,13 @@ struct Title {
 /// The size in SI of a column's unit.
 double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
   if (!title.unit || *title.unit == si_unit(dimension)) return 1.0;
-  const std::string remedy = "write one of: " + unit_names(dimension) + ", or leave it out for SI";
-  const std::string column = "column '" + printable(cell.text) + "'";
   const Unit* unit = find_unit(*title.unit);
-  if (unit == nullptr) throw InputError(cell.place, column + " has an unknown unit", remedy);
-  if (unit->dimension == dimension) return unit->si;
-  throw InputError(cell.place,
-                   column + " has a unit of " + std::string(name(unit->dimension)) + ", but this column is a " +
-                       std::string(name(dimension)),
-                   remedy);
+  if (unit != nullptr && unit->dimension == dimension) return unit->si;
+  const std::string problem =
+      unit == nullptr ? "an unknown unit"
+                      : fmt::format("a unit of {}, but this column is a {}", name(unit->dimension), name(dimension));
+  throw InputError(cell.place, fmt::format("column '{}' has {}", printable(cell.text), problem),
+                   fmt::format("write one of: {}, or leave it out for SI", unit_names(dimension)));
 }
 
 [[noreturn]] void refuse_unknown(const CsvCell& cell, const Title& title, const KnownColumns& known) {
@@ -88,8 +82,7 @@ double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
     throw InputError(cell.place, "columns are separated by tabs, but poesy reads commas",
                      "save the table with commas between columns");
   }
-  throw InputError(cell.place,
-                   "column '" + printable(title.name) + "' is no " + std::string(known.what) + " of the model",
+  throw InputError(cell.place, fmt::format("column '{}' is no {} of the model", printable(title.name), known.what),
                    suggestion(title.name, names(known.numbers)));
 }
 
@@ -125,55 +118,55 @@ std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known)
   return columns;
 }
 
+/// The names of the columns of numbers.
+Names names_of_numbers(std::span<const TableColumn> columns) {
+  Names list;
+  for (const TableColumn& column : columns) {
+    if (column.role == TableColumn::Role::number) list.push_back(column.name);
+  }
+  return list;
+}
+
 /// Whether a table of poses has a column of times.
 enum class Timed { no, yes };
 
 constexpr std::string_view kTime = "t";
 constexpr std::string_view kExportedTime = "time";
 
-std::vector<std::string_view> header(const std::vector<PoseCoordinate>& coordinates, Timed timed) {
-  std::vector<std::string_view> columns;
-  columns.reserve(coordinates.size() + 1);
-  if (timed == Timed::yes) columns.push_back(kTime);
-  for (const PoseCoordinate& coordinate : coordinates) columns.push_back(coordinate.name);
-  return columns;
-}
-
 /// The columns that a table of poses may have: one list for the pose's own coordinates, then one for each chart.
-std::vector<std::vector<std::string_view>> possible_headers(const ModelDescription& model, Timed timed) {
-  std::vector<std::vector<std::string_view>> headers{header(model.pose_coordinates, timed)};
-  for (const PoseChart& chart : model.charts) headers.push_back(header(chart.coordinates, timed));
+std::vector<Names> possible_headers(const ModelDescription& model, Timed timed) {
+  const auto header = [&](const std::vector<PoseCoordinate>& coordinates) {
+    Names columns;
+    if (timed == Timed::yes) columns.push_back(kTime);
+    std::ranges::copy(names(coordinates), std::back_inserter(columns));
+    return columns;
+  };
+  std::vector<Names> headers{header(model.pose_coordinates)};
+  for (const PoseChart& chart : model.charts) headers.push_back(header(chart.coordinates));
   return headers;
 }
 
-std::string one_of(const std::vector<std::vector<std::string_view>>& headers) {
-  std::string text;
-  for (const auto& header : headers) {
-    text += text.empty() ? "" : " | ";
-    for (const std::string_view name : header) text += (name == header.front() ? "" : ",") + std::string(name);
-  }
-  return text;
+std::string one_of(const std::vector<Names>& headers) {
+  std::vector<std::string> list;
+  for (const Names& header : headers) list.push_back(fmt::format("{}", fmt::join(header, ",")));
+  return fmt::format("{}", fmt::join(list, " | "));
 }
 
-/// The position of the header whose names these columns are, in any order.
-std::size_t header_of(std::span<const std::string_view> columns,
-                      const std::vector<std::vector<std::string_view>>& headers, const std::string& path) {
-  const auto missing = [&](const std::vector<std::string_view>& header) {
-    return std::find_if(header.begin(), header.end(), [&](auto name) { return !contains(columns, name); });
-  };
-  const std::vector<std::string_view>* unfinished = nullptr;
+/// The position of the header whose names these different columns are, in any order.
+std::size_t header_of(const Names& columns, const std::vector<Names>& headers, const std::string& path) {
+  const Names* unfinished = nullptr;
   for (std::size_t k = 0; k < headers.size(); ++k) {
-    const auto fits = [&](std::string_view column) { return contains(headers[k], column); };
-    if (!std::all_of(columns.begin(), columns.end(), fits)) continue;
-    if (missing(headers[k]) == headers[k].end()) return k;
+    if (!std::ranges::all_of(columns, [&](auto column) { return contains(headers[k], column); })) continue;
+    if (columns.size() == headers[k].size()) return k;
     if (unfinished == nullptr) unfinished = &headers[k];
   }
-  const std::string possible = headers.size() == 1 ? "" : "; possible are " + one_of(headers);
   if (unfinished == nullptr) {
     throw InputError({path, 1, 1}, "the columns mix coordinates that do not belong together",
                      "name the columns of one kind only: " + one_of(headers));
   }
-  throw InputError({path, 1, 1}, "column '" + std::string(*missing(*unfinished)) + "' is missing",
+  const auto missing = std::ranges::find_if(*unfinished, [&](auto name) { return !contains(columns, name); });
+  const std::string possible = headers.size() == 1 ? "" : "; possible are " + one_of(headers);
+  throw InputError({path, 1, 1}, fmt::format("column '{}' is missing", *missing),
                    "name every pose coordinate of the model in the first line" + possible);
 }
 
@@ -188,8 +181,8 @@ double number(const CsvCell& cell, const TableColumn& column) {
   if (const auto value = parse_number(cell.text)) return *value * column.si;
   throw InputError(
       cell.place,
-      "'" + printable(cell.text) + "' in column '" + printable(column.title) + "' " + number_problem(cell.text),
-      "write a plain number, in SI units unless the first line names another: '" + column.with_unit() + "'");
+      fmt::format("'{}' in column '{}' {}", printable(cell.text), printable(column.title), number_problem(cell.text)),
+      fmt::format("write a plain number, in SI units unless the first line names another: '{}'", column.with_unit()));
 }
 
 /// Appends a row's label.
@@ -214,10 +207,9 @@ void read_row(CsvLines& lines, std::span<const TableColumn> columns, const Check
   const Place line = lines.next_place();
   const std::vector<CsvCell> cells = lines.next();
   if (cells.size() != columns.size()) {
-    throw InputError(
-        cells.size() > columns.size() ? cells[columns.size()].place : line,
-        "this line should have " + std::to_string(columns.size()) + " cells, but has " + std::to_string(cells.size()),
-        "write one number a column, with commas between them and decimal points (0.5, not 0,5)");
+    throw InputError(cells.size() > columns.size() ? cells[columns.size()].place : line,
+                     fmt::format("this line should have {} cells, but has {}", columns.size(), cells.size()),
+                     "write one number a column, with commas between them and decimal points (0.5, not 0,5)");
   }
   std::size_t n = 0;
   for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -238,15 +230,6 @@ Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const Chec
   Rows rows;
   while (!lines.done()) read_row(lines, columns, check, rows);
   return rows;
-}
-
-/// The names of the columns of numbers.
-std::vector<std::string_view> names_of_numbers(std::span<const TableColumn> columns) {
-  std::vector<std::string_view> list;
-  for (const TableColumn& column : columns) {
-    if (column.role == TableColumn::Role::number) list.push_back(column.name);
-  }
-  return list;
 }
 
 /// The columns of a table of poses or a trajectory. `poesy export` calls the time "time", and adds the numbers of the
@@ -271,43 +254,39 @@ KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   return known;
 }
 
-/// Takes the times, the column before all others, apart from the coordinates. Throws unless they ascend.
-std::vector<double> take_times(std::vector<double>& values, std::size_t width, const std::string& path) {
-  std::vector<double> time;
-  std::vector<double> rest;
-  for (std::size_t row = 0; row * width < values.size(); ++row) {
-    const double t = values[row * width];
-    if (row > 0 && !(t > time.back())) {
-      const std::string line = std::to_string(row + 1);
-      throw InputError({path, row + 2, 1},
-                       t == time.back()
-                           ? "t = " + shortest(t) + " s stands here a second time, after line " + line
-                           : "t = " + shortest(t) + " s follows t = " + shortest(time.back()) + " s of line " + line,
-                       "sort the rows by t, each time once");
-    }
-    time.push_back(t);
-    rest.insert(rest.end(), values.begin() + std::ptrdiff_t(row * width + 1),
-                values.begin() + std::ptrdiff_t((row + 1) * width));
-  }
-  values = std::move(rest);
-  return time;
+/// Throws unless the last time comes after the one before.
+void check_order(const std::vector<double>& time, const std::string& path) {
+  if (time.size() < 2 || time.back() > time.end()[-2]) return;
+  const std::string before = shortest(time.end()[-2]);
+  throw InputError(
+      {path, time.size() + 1, 1},
+      time.back() == time.end()[-2]
+          ? fmt::format("t = {} s stands here a second time, after line {}", shortest(time.back()), time.size())
+          : fmt::format("t = {} s follows t = {} s of line {}", shortest(time.back()), before, time.size()),
+      "sort the rows by t, each time once");
 }
 
 TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDescription& model, Timed timed) {
   const KnownColumns known = pose_columns(model, timed);
   const std::vector<TableColumn> all = read_header(lines, known);
-  const std::vector<std::string_view> columns = names_of_numbers(all);
-  const auto headers = possible_headers(model, timed);
+  const Names columns = names_of_numbers(all);
+  const std::vector<Names> headers = possible_headers(model, timed);
   const std::size_t kind = header_of(columns, headers, path);
-  const std::vector<std::string_view>& wanted = headers[kind];
-  const std::vector<double> written = read_rows(lines, all, {}).values;
-  std::vector<double> values(written.size());
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const auto target = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), columns[k]) - wanted.begin());
-    for (std::size_t row = 0; row < values.size(); row += columns.size()) values[row + target] = written[row + k];
+  std::vector<std::size_t> order;  // of the columns that the header has, in the file
+  for (const std::string_view name : headers[kind]) {
+    order.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
   }
+  const std::vector<double> written = read_rows(lines, all, {}).values;
   TimedPoints points;
-  if (timed == Timed::yes) points.time = take_times(values, wanted.size(), path);
+  std::vector<double> values;
+  for (std::size_t row = 0; row < written.size(); row += columns.size()) {
+    for (const std::size_t column : order) values.push_back(written[row + column]);
+    if (timed == Timed::no) continue;
+    const auto time = values.end() - std::ptrdiff_t(order.size());
+    points.time.push_back(*time);
+    values.erase(time);
+    check_order(points.time, path);
+  }
   if (kind > 0) points.table.chart = kind - 1;
   points.table.points = PoseSet(coordinates(model, points.table.chart).size(), std::move(values));
   return points;

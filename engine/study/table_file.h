@@ -1,14 +1,29 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/model/model.h"
-#include "engine/study/error_table.h"
-#include "engine/study/poses/trajectory.h"
+#include "engine/study/poses/pose_selection.h"
 
 namespace poesy {
+
+/// Names of rows that a user gave, so that he finds them again.
+struct RowLabels {
+  std::string column;              ///< what they name: "part"
+  std::vector<std::string> names;  ///< [S], all different
+};
+
+/// Errors that somebody else sampled: S rows of V factors.
+struct ErrorTable {
+  std::vector<FactorIndex> factors;  ///< [V]
+  std::vector<double> values;        ///< [S x V], row-major, SI
+  std::size_t rows = 0;              ///< S
+  RowLabels labels{};                ///< of the rows; empty where they have no names
+};
 
 /// Reads poses from CSV: the first line names all of the model's pose coordinates, or all coordinates of one of its
 /// charts, in any order; then one pose a line. A name may have the unit of its numbers in brackets ("z [mm]"), else

@@ -8,24 +8,19 @@
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
 #include "engine/study/study_kind.h"
-#include "engine/study/study_text.h"
 
 namespace poesy {
 namespace {
 
-std::string title(const StudyKind& kind) {
-  std::string text(kind.name);
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text;
-}
-
 std::string head(const TemplateLines& lines, const Study& shown) {
   const ModelDescription& model = shown.model();
+  std::string title = fmt::format("{} of {}", shown.analysis.kind->name, model.name);
+  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   return comment(model.name + ": " + model.title) + "# Run this study with: poesy run STUDY.toml\n" +
          comment("Quantities are texts with a unit: " + unit_names() + ".") +
          "# A key behind a '#' shows a default or an alternative. All keys: poesy template --reference\n" +
          lines.usual("", "format") + lines.usual("", "version") +
-         lines.explained("", "title", "title = " + in_quotes(title(*shown.analysis.kind) + " of " + model.name));
+         lines.explained("", "title", "title = " + in_quotes(title));
 }
 
 std::string fidelity_keys(const TemplateLines& lines, const Study& shown) {
@@ -65,10 +60,6 @@ std::string charts_comment(const ModelDescription& model) {
   return text;
 }
 
-std::string errors_introduction(const TemplateLines& lines) {
-  return "\n" + comment(lines.meaning("errors")) + lines.keys_lines("errors.linear");
-}
-
 std::string analysis_section(const TemplateLines& lines, const Study& shown) {
   const StudyKind& kind = *shown.analysis.kind;
   const StudyRows rows = analysis_keys(kind);
@@ -79,11 +70,11 @@ std::string analysis_section(const TemplateLines& lines, const Study& shown) {
 
 /// "`m`, `cm`".
 std::string units_of(Dimension dimension) {
-  std::string text;
+  std::vector<std::string_view> list;
   for (const Unit& unit : units()) {
-    if (unit.dimension == dimension) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", unit.name);
+    if (unit.dimension == dimension) list.push_back(unit.name);
   }
-  return text;
+  return fmt::format("`{}`", fmt::join(list, "`, `"));
 }
 
 std::string introduction() {
@@ -132,9 +123,10 @@ std::string template_text(const CatalogEntry& entry, const StudyKind& kind, cons
   shown.analysis.kind = &kind;
   POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));
   return head(lines, shown) + mechanism_section(lines, shown) + "\n[poses]\n" + charts_comment(shown.model()) +
-         template_lines(lines, poses_keys(), shown) + errors_introduction(lines) + "[errors]\n" +
-         template_lines(lines, errors_keys(), shown) + analysis_section(lines, shown) + "\n[solver]\n" +
-         template_lines(lines, solver_keys(), shown) + "\n[run]\n" + template_lines(lines, run_keys(), shown);
+         template_lines(lines, poses_keys(), shown) + "\n" + comment(lines.meaning("errors")) +
+         lines.keys_lines("errors.linear") + "[errors]\n" + template_lines(lines, errors_keys(), shown) +
+         analysis_section(lines, shown) + "\n[solver]\n" + template_lines(lines, solver_keys(), shown) + "\n[run]\n" +
+         template_lines(lines, run_keys(), shown);
 }
 
 std::string study_reference(const StudyKinds& kinds) { return introduction() + tables_reference(kinds.tables); }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -9,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-#include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {
@@ -22,6 +23,8 @@ namespace {
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
+
+constexpr std::size_t kMostCsvBytes = std::size_t{1} << 31;
 
 }  // namespace
 
@@ -44,6 +47,35 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
   }
   if (std::ferror(file.get()) != 0) unreadable(path, errno);
   return text;
+}
+
+CsvLines::CsvLines(const std::string& path, std::string_view what)
+    : path_(path), text_(read_text(path, what, kMostCsvBytes)), rest_(text_) {
+  if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+  rest_.remove_suffix(rest_.size() - (rest_.find_last_not_of(" \t\r\n") + 1));
+  if (rest_.empty()) throw InputError({path_, 1, 1}, "the file is empty", "write the column names in the first line");
+}
+
+std::vector<CsvCell> CsvLines::next() {
+  const std::size_t line_end = std::min(rest_.find('\n'), rest_.size());
+  std::string_view line = rest_.substr(0, line_end);
+  rest_.remove_prefix(std::min(line_end + 1, rest_.size()));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  ++line_;
+  if (const std::size_t semicolon = line.find(';'); semicolon != std::string_view::npos) {
+    throw InputError({path_, line_, semicolon + 1},
+                     "columns are separated by semicolons, but poesy reads commas and decimal points",
+                     "save the table with commas between columns and points in numbers");
+  }
+  std::vector<CsvCell> cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    const std::string_view text = trimmed(line.substr(begin, end - begin));
+    const auto column = text.empty() ? begin : static_cast<std::size_t>(text.data() - line.data());
+    cells.push_back({text, {path_, line_, column + 1}});
+    begin = end + 1;
+  }
+  return cells;
 }
 
 void put_at_second_name(const std::string& path, const std::string& second, LinkFile link_file) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 
 namespace poesy::file {
 

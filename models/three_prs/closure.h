@@ -1,12 +1,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "engine/model/model.h"
 #include "models/three_prs/error_mapping.h"
+#include "models/three_prs/kernels.h"
+#include "models/three_prs/tiles.h"
 
 namespace poesy::three_prs {
 
@@ -86,5 +90,36 @@ Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::
 
 /// Swing of a limb's rod from th = 0 in the revolute's frame at this motion, th_i + dphi_i (rad).
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
+
+/// Closes the limbs of blocks of samples with the fastest kernel this machine has; what a kernel gives up, close_limbs
+/// solves. Owns the scratch of one thread.
+class ClosureSolver {
+ public:
+  /// For one thread.
+  ClosureSolver(const Geometry& geometry, const SolverOptions& options);
+
+  /// Responses, status and iterations of a block at its nominal configuration; no details.
+  void solve(const Configuration& nominal, const SampleBlock& samples, const OutcomeBlock& outcomes);
+
+ private:
+  void prepare(const Configuration& nominal, const SampleBlock& samples, const ClosureStart& start);
+
+  Geometry geometry_;
+  SolverOptions options_;
+  Kernels kernels_;
+  Tiles tiles_;
+  ClosurePose pose_{};
+  ClosureOptions kernel_options_{};
+  std::vector<double> scratch_;
+};
+
+/// Solves one sample of a block by close_limbs; no details.
+void close_sample(const Geometry& geometry, const Configuration& nominal, const SampleBlock& samples,
+                  std::size_t sample, const ClosureStart& start, const SolverOptions& options,
+                  const OutcomeBlock& outcomes, const ClosureObserver& observe = {});
+
+/// Limbs of one sample of a block.
+std::array<LimbWithErrors, kLimbs> limbs_of_sample(const Geometry& geometry, const Configuration& nominal,
+                                                   const SampleBlock& samples, std::size_t sample);
 
 }  // namespace poesy::three_prs

@@ -5,10 +5,9 @@
 #include <string>
 
 #include "engine/base/contract.h"
-#include "models/three_prs/closure_solver.h"
+#include "models/three_prs/closure.h"
 #include "models/three_prs/error_mapping.h"
 #include "models/three_prs/kernels.h"
-#include "models/three_prs/tiles.h"
 
 namespace poesy::three_prs {
 namespace {
@@ -86,6 +85,33 @@ class ExactEvaluator final : public Evaluator {
   ClosureSolver solver_;
 };
 
+class GivenOutcome final : public Evaluator {
+ public:
+  /// Refers to the trace.
+  explicit GivenOutcome(const SolveTrace& given) : given_(&given) {}
+
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+    for (std::size_t r = 0; r < given_->responses.size(); ++r) {
+      std::ranges::fill(outcomes.responses.subspan(r * samples.count, samples.count), given_->responses[r]);
+    }
+    std::ranges::fill(outcomes.status, given_->status);
+    std::ranges::fill(outcomes.iterations, given_->iterations);
+  }
+
+ private:
+  const SolveTrace* given_;
+};
+
+/// A sample without varied errors, and where its outcome goes.
+SampleBlock one_sample(std::span<const double> pose, std::span<const double> errors) {
+  return {pose, errors, {}, {}, 1};
+}
+
+OutcomeBlock outcome_of(SolveTrace& trace) {
+  trace.responses.resize(kResponses);
+  return {trace.responses, {&trace.status, 1}, {&trace.iterations, 1}, {}};
+}
+
 }  // namespace
 
 std::vector<Response> responses() {
@@ -108,12 +134,37 @@ std::vector<Detail> details() {
   return {{"swing", {"limb_1", "limb_2", "limb_3"}, "rad", "additional swing of each rod about its revolute joint"}};
 }
 
-std::unique_ptr<Evaluator> first_order_evaluator(const Geometry& geometry) {
-  return std::make_unique<FirstOrderEvaluator>(geometry);
+std::unique_ptr<Evaluator> head_evaluator(const Geometry& geometry, Fidelity fidelity, const SolverOptions& options) {
+  if (fidelity == Fidelity::first_order) return std::make_unique<FirstOrderEvaluator>(geometry);
+  return std::make_unique<ExactEvaluator>(geometry, options);
 }
 
-std::unique_ptr<Evaluator> exact_evaluator(const Geometry& geometry, const SolverOptions& options) {
-  return std::make_unique<ExactEvaluator>(geometry, options);
+SolveTrace head_trace(const Geometry& geometry, Fidelity fidelity, std::span<const double> pose,
+                      std::span<const double> errors, const SolverOptions& options) {
+  SolveTrace trace;
+  if (fidelity == Fidelity::first_order) {
+    trace.solver = "one product with the matrix of first order, which iterates nothing";
+    solve_once(*head_evaluator(geometry, fidelity, options), pose, errors, trace);
+    return trace;
+  }
+  trace.solver = "Newton on the closure of all limbs, in plain double precision, from the first order";
+  trace.columns = {{"step_angle", "rad"}, {"step_length", "m"}, {"residual_rods", "m^2"}, {"residual_joints", "m"}};
+  const auto observe = [&](const ClosureIteration& iteration) {
+    for (const lie::Screw<double>& each : {iteration.step, iteration.residual}) {
+      trace.rows.push_back(each.head<3>().cwiseAbs().maxCoeff());
+      trace.rows.push_back(each.tail<3>().cwiseAbs().maxCoeff());
+    }
+  };
+  const Configuration nominal = configuration_at(geometry, pose);
+  close_sample(geometry, nominal, one_sample(pose, errors), 0, ClosureStart(geometry, nominal), options,
+               outcome_of(trace), observe);
+  return trace;
+}
+
+std::unique_ptr<Evaluator> evaluator_of(const SolveTrace& head) { return std::make_unique<GivenOutcome>(head); }
+
+void solve_once(Evaluator& evaluator, std::span<const double> pose, std::span<const double> errors, SolveTrace& trace) {
+  evaluator.evaluate(one_sample(pose, errors), outcome_of(trace));
 }
 
 }  // namespace poesy::three_prs

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "models/simd/rotation.h"
-#include "models/three_prs/kernel_data.h"
+#include "models/three_prs/kernels.h"
 
 namespace poesy::three_prs {
 

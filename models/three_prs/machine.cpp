@@ -1,4 +1,4 @@
-#include "models/three_prs/machine.h"
+#include "models/three_prs/model.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "engine/base/contract.h"
-#include "models/three_prs/closure_trace.h"
+#include "models/three_prs/evaluators.h"
 #include "models/three_prs/kinematics.h"
-#include "models/three_prs/machine_evaluator.h"
-#include "models/three_prs/model.h"
 #include "models/three_prs/slides.h"
 
 namespace poesy::three_prs {
@@ -83,12 +81,9 @@ ModelDescription describe() {
   return description;
 }
 
-/// Fidelities stand in the order of the head's description.
-constexpr std::size_t kFirstOrder = 1;
-
 class Machine final : public Model {
  public:
-  Machine(const Geometry& geometry, const Travel& travel, std::unique_ptr<Model> head, std::size_t fidelity)
+  Machine(const Geometry& geometry, const Travel& travel, std::unique_ptr<Model> head, Fidelity fidelity)
       : geometry_(geometry), travel_(travel), head_(std::move(head)), fidelity_(fidelity) {}
 
   const ModelDescription& description() const override { return description_; }
@@ -109,14 +104,14 @@ class Machine final : public Model {
   double condition(std::span<const double> pose) const override { return head_->condition(head_pose(pose)); }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    return with_head(head_->evaluator(options));
+    return machine_evaluator(geometry_, fidelity_, head_->evaluator(options));
   }
 
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
     std::optional<SolveTrace> trace = head_->trace(head_pose(pose), errors.first(kFactors), options);
     const SolveTrace head = *trace;
-    solve_once(*with_head(evaluator_of(head)), pose, errors, *trace);
+    solve_once(*machine_evaluator(geometry_, fidelity_, evaluator_of(head)), pose, errors, *trace);
     trace->solver += "; the slides carry its outcome";
     return trace;
   }
@@ -146,11 +141,6 @@ class Machine final : public Model {
   std::vector<std::string> unusual_geometry() const override { return head_->unusual_geometry(); }
 
  private:
-  std::unique_ptr<Evaluator> with_head(std::unique_ptr<Evaluator> head) const {
-    if (fidelity_ == kFirstOrder) return first_order_machine_evaluator(geometry_, std::move(head));
-    return exact_machine_evaluator(geometry_, std::move(head));
-  }
-
   static std::span<const double> head_pose(std::span<const double> pose) {
     POESY_EXPECTS(pose.size() == kHeadCoordinates + 2);
     return pose.first(kHeadCoordinates);
@@ -159,7 +149,7 @@ class Machine final : public Model {
   Geometry geometry_;
   Travel travel_;
   std::unique_ptr<Model> head_;
-  std::size_t fidelity_;
+  Fidelity fidelity_;
   ModelDescription description_ = describe();
 };
 
@@ -169,7 +159,7 @@ std::unique_ptr<Model> build(std::span<const double> values, std::size_t fidelit
   if (!(values[5] > 0.0)) throw std::invalid_argument("travel_x must be positive");
   if (!(values[6] > 0.0)) throw std::invalid_argument("travel_y must be positive");
   return std::make_unique<Machine>(Geometry{values[0], values[1], values[2], values[3], values[4]},
-                                   Travel{values[5], values[6]}, std::move(head), fidelity);
+                                   Travel{values[5], values[6]}, std::move(head), static_cast<Fidelity>(fidelity));
 }
 
 }  // namespace

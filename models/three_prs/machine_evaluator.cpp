@@ -1,4 +1,4 @@
-#include "models/three_prs/machine_evaluator.h"
+#include "models/three_prs/evaluators.h"
 
 #include <algorithm>
 #include <array>
@@ -8,31 +8,18 @@
 #include <vector>
 
 #include "engine/base/contract.h"
-#include "models/three_prs/evaluators.h"
 #include "models/three_prs/slides.h"
 
 namespace poesy::three_prs {
 namespace {
 
 using Vector3 = lie::Vector3<double>;
-using Matrix3 = lie::Matrix3<double>;
 
 /// A varied error of the slides: its place among theirs, and its row of SampleBlock::values.
 struct VariedSlide {
   std::size_t factor;
   std::size_t row;
 };
-
-/// Points of the platform in the head's frame at the nominal pose.
-struct Points {
-  Vector3 P;
-  Vector3 tip;
-};
-
-Points nominal_points(const Geometry& geometry, std::span<const double> pose) {
-  const lie::Transform<double> platform = base_T_platform(geometry, {pose[0], pose[1], pose[2]});
-  return {platform.p, platform.p + tool(geometry, platform.R)};
-}
 
 /// The norm of the vector whose three rows begin at `first`, [B].
 void norms(std::span<double> responses, std::size_t first, std::size_t norm, std::size_t count) {
@@ -57,13 +44,12 @@ bool is_finite(std::span<const double> responses, std::size_t sample, std::size_
          std::isfinite(responses[(kComponents + 2) * count + sample]);
 }
 
-/// What both fidelities share: the head's part of each sample.
-class MachineEvaluator : public Evaluator {
+class MachineEvaluator final : public Evaluator {
  public:
-  MachineEvaluator(const Geometry& geometry, std::unique_ptr<Evaluator> head)
-      : geometry_(geometry), head_(std::move(head)) {}
+  MachineEvaluator(const Geometry& geometry, Fidelity fidelity, std::unique_ptr<Evaluator> head)
+      : geometry_(geometry), fidelity_(fidelity), head_(std::move(head)) {}
 
-  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) final {
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     POESY_EXPECTS(samples.pose.size() == 5 && samples.errors.size() == kFactors + kSlideFactors);
     POESY_EXPECTS(outcomes.responses.size() == kResponses * samples.count);
     part(samples);
@@ -72,7 +58,11 @@ class MachineEvaluator : public Evaluator {
     } else {
       evaluate_head(samples, outcomes);
     }
-    add_slides(samples, outcomes.responses);
+    if (fidelity_ == Fidelity::exact) {
+      carry_by_slides(samples, outcomes.responses);
+    } else {
+      add_slides(samples, outcomes.responses);
+    }
     all_norms(outcomes.responses, samples.count);
     for (std::size_t b = 0; b < samples.count; ++b) {
       if (usable(outcomes.status[b]) && !is_finite(outcomes.responses, b, samples.count)) {
@@ -80,13 +70,6 @@ class MachineEvaluator : public Evaluator {
       }
     }
   }
-
- protected:
-  /// Turns the nine components of the head's responses, [9 x B], into the machine's.
-  virtual void add_slides(const SampleBlock& samples, std::span<double> responses) = 0;
-
-  Points points(const SampleBlock& samples) const { return nominal_points(geometry_, samples.pose); }
-  const std::vector<VariedSlide>& varied() const { return slides_varied_; }
 
  private:
   void part(const SampleBlock& samples) {
@@ -140,56 +123,53 @@ class MachineEvaluator : public Evaluator {
     std::ranges::fill(outcomes.iterations, iterations);
   }
 
-  Geometry geometry_;
-  std::unique_ptr<Evaluator> head_;
-  std::vector<FactorIndex> head_varied_;
-  std::vector<VariedSlide> slides_varied_;
-  std::vector<double> head_values_;
-};
+  /// Points of the platform in the head's frame at the nominal pose.
+  struct Points {
+    Vector3 P;
+    Vector3 tip;
+  };
 
-/// Errors of the slides; those that vary are still to be set.
-std::array<double, kSlideFactors> slide_errors(const SampleBlock& samples) {
-  std::array<double, kSlideFactors> errors;
-  std::ranges::copy(samples.errors.last(kSlideFactors), errors.begin());
-  return errors;
-}
+  Points points(const SampleBlock& samples) const {
+    const auto platform = base_T_platform(geometry_, {samples.pose[0], samples.pose[1], samples.pose[2]});
+    return {platform.p, platform.p + tool(geometry_, platform.R)};
+  }
 
-class FirstOrderMachineEvaluator final : public MachineEvaluator {
- public:
-  using MachineEvaluator::MachineEvaluator;
+  /// Errors of the slides; those that vary are still to be set.
+  static std::array<double, kSlideFactors> slide_errors(const SampleBlock& samples) {
+    std::array<double, kSlideFactors> errors;
+    std::ranges::copy(samples.errors.last(kSlideFactors), errors.begin());
+    return errors;
+  }
 
- private:
-  void add_slides(const SampleBlock& samples, std::span<double> responses) override {
+  /// Adds the effects of the slides to the nine components of the head's responses, [9 x B].
+  void add_slides(const SampleBlock& samples, std::span<double> responses) const {
     const Points at = points(samples);
     const SlideEffects effects = slide_effects(samples.pose[4], at.P, at.tip);
     std::array<double, kSlideFactors> constant = slide_errors(samples);
-    for (const VariedSlide& slide : varied()) constant[slide.factor] = 0.0;
+    for (const VariedSlide& slide : slides_varied_) constant[slide.factor] = 0.0;
     const Eigen::Matrix<double, kSwing, 1> shift =
         effects * Eigen::Map<const Eigen::Matrix<double, kSlideFactors, 1>>(constant.data());
     for (int r = 0; r < kSwing; ++r) {
       double* out = responses.data() + static_cast<std::size_t>(r) * samples.count;
       for (std::size_t b = 0; b < samples.count; ++b) out[b] += shift[r];
-      for (const VariedSlide& slide : varied()) {
+      for (const VariedSlide& slide : slides_varied_) {
         const double effect = effects(r, static_cast<Eigen::Index>(slide.factor));
         const double* values = samples.values.data() + slide.row * samples.count;
         for (std::size_t b = 0; b < samples.count; ++b) out[b] += effect * values[b];
       }
     }
   }
-};
 
-class ExactMachineEvaluator final : public MachineEvaluator {
- public:
-  using MachineEvaluator::MachineEvaluator;
-
- private:
-  void add_slides(const SampleBlock& samples, std::span<double> responses) override {
+  /// Turns the nine components of the head's responses, [9 x B], into those of the head carried by the slides.
+  void carry_by_slides(const SampleBlock& samples, std::span<double> responses) const {
     const Points at = points(samples);
     std::array<double, kSlideFactors> errors = slide_errors(samples);
     lie::Transform<double> slides = nominal_T_head(samples.pose[4], errors);
     for (std::size_t b = 0; b < samples.count; ++b) {
-      if (!varied().empty()) {
-        for (const VariedSlide& slide : varied()) errors[slide.factor] = samples.values[slide.row * samples.count + b];
+      if (!slides_varied_.empty()) {
+        for (const VariedSlide& slide : slides_varied_) {
+          errors[slide.factor] = samples.values[slide.row * samples.count + b];
+        }
         slides = nominal_T_head(samples.pose[4], errors);
       }
       carry(slides, at, responses, b, samples.count);
@@ -210,16 +190,20 @@ class ExactMachineEvaluator final : public MachineEvaluator {
     rows(kDr) = displacement(at.P, rows(kDr));
     rows(kTip) = displacement(at.tip, rows(kTip));
   }
+
+  Geometry geometry_;
+  Fidelity fidelity_;
+  std::unique_ptr<Evaluator> head_;
+  std::vector<FactorIndex> head_varied_;
+  std::vector<VariedSlide> slides_varied_;
+  std::vector<double> head_values_;
 };
 
 }  // namespace
 
-std::unique_ptr<Evaluator> first_order_machine_evaluator(const Geometry& geometry, std::unique_ptr<Evaluator> head) {
-  return std::make_unique<FirstOrderMachineEvaluator>(geometry, std::move(head));
-}
-
-std::unique_ptr<Evaluator> exact_machine_evaluator(const Geometry& geometry, std::unique_ptr<Evaluator> head) {
-  return std::make_unique<ExactMachineEvaluator>(geometry, std::move(head));
+std::unique_ptr<Evaluator> machine_evaluator(const Geometry& geometry, Fidelity fidelity,
+                                             std::unique_ptr<Evaluator> head) {
+  return std::make_unique<MachineEvaluator>(geometry, fidelity, std::move(head));
 }
 
 }  // namespace poesy::three_prs

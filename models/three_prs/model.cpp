@@ -6,18 +6,13 @@
 
 #include "engine/base/contract.h"
 #include "models/three_prs/closure.h"
-#include "models/three_prs/closure_trace.h"
 #include "models/three_prs/error_mapping.h"
 #include "models/three_prs/errors.h"
 #include "models/three_prs/evaluators.h"
 #include "models/three_prs/kinematics.h"
-#include "models/three_prs/separation.h"
 
 namespace poesy::three_prs {
 namespace {
-
-/// In the order of ModelDescription::fidelities.
-enum class Fidelity : std::size_t { exact, first_order };
 
 enum Chart : std::size_t { tip, carriages };
 
@@ -139,14 +134,12 @@ class ThreePrs final : public Model {
   }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
-    if (fidelity_ == Fidelity::first_order) return first_order_evaluator(geometry_);
-    return exact_evaluator(geometry_, options);
+    return head_evaluator(geometry_, fidelity_, options);
   }
 
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
-    if (fidelity_ == Fidelity::first_order) return first_order_trace(geometry_, pose, errors);
-    return closure_trace(geometry_, pose, errors, options);
+    return head_trace(geometry_, fidelity_, pose, errors, options);
   }
 
   /// As a standard deviation, exact solves leave up to a tenth of the level at which they stop. First order only

@@ -4,12 +4,11 @@
 
 #include "engine/base/error.h"
 #include "engine/files/checkpoint.h"
-#include "engine/files/sha256.h"
+#include "engine/files/content_hash.h"
 #include "engine/kinds/monte_carlo/collector.h"
 #include "engine/kinds/sensitivity/collector.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/run/evaluation.h"
-#include "engine/run/evaluation_state.h"
 #include "tests/fuzz/small_plans.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/kinds.h"

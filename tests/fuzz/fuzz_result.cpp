@@ -1,5 +1,5 @@
 // A result file, or a shard of one. What reads is printed, reported and exported. A crash or a hang of HDF5 in the
-// child that reads first (engine/files/trial_read.h) is no finding; one in this process is.
+// child that reads first (engine/files/poesy_file.h) is no finding; one in this process is.
 #include <sys/resource.h>
 
 #include <filesystem>
@@ -10,10 +10,9 @@
 #include "engine/files/shard_file.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/result_file.h"
-#include "engine/report/html/report.h"
-#include "engine/report/json_tables.h"
+#include "engine/report/report_kind.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "tests/fuzz/h5_checksums.h"
 #include "tests/fuzz/shared_coverage.h"
 #include "tests/fuzz/target.h"

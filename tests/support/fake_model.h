@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/catalog.h"
+#include "engine/model/model.h"
 
 namespace poesy::test {
 

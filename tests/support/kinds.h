@@ -1,11 +1,11 @@
 #pragma once
 
-#include "engine/kinds/coupling/options.h"
-#include "engine/kinds/evaluate/options.h"
-#include "engine/kinds/identification/options.h"
-#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/identification/identification.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/registry.h"
-#include "engine/kinds/sensitivity/options.h"
+#include "engine/kinds/sensitivity/result.h"
 
 namespace poesy::test {
 

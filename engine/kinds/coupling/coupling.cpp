@@ -2,15 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/run/counts.h"
+#include "engine/kinds/coupling/kind.h"
 #include "engine/run/evaluation.h"
-#include "engine/stats/rounding.h"
+#include "engine/run/result.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {
+
+using PatternChoice = ErrorPattern::Choice;
+
+bool takes(const ErrorPattern& pattern, const Factor& factor) {
+  if (pattern.limbs == PatternChoice::some && factor.limb != pattern.limb) return false;
+  if (pattern.components != PatternChoice::some || factor.axis.empty()) return true;
+  return std::ranges::find(pattern.axes, factor.axis) != pattern.axes.end();
+}
+
+/// What the factors of a block have in common: limb, then frame, dimension and axis.
+using BlockPlace = std::tuple<std::size_t, std::size_t, Dimension, std::string>;
+
+BlockPlace place_of(const Factor& factor, const ErrorPattern& pattern) {
+  BlockPlace place{};
+  if (pattern.limbs == PatternChoice::independent) std::get<0>(place) = factor.limb;
+  if (pattern.components != PatternChoice::independent) return place;
+  return {std::get<0>(place), factor.frame, factor.dimension, factor.axis};
+}
+
+void add_subsets(std::size_t sources, std::size_t wanted, std::vector<std::size_t>& chosen,
+                 std::vector<std::vector<std::size_t>>& subsets) {
+  if (chosen.size() == wanted) {
+    subsets.push_back(chosen);
+    return;
+  }
+  for (std::size_t next = chosen.empty() ? 0 : chosen.back() + 1; next < sources; ++next) {
+    chosen.push_back(next);
+    add_subsets(sources, wanted, chosen, subsets);
+    chosen.pop_back();
+  }
+}
+
+void add_errors(const ErrorBlock& more, ErrorBlock& errors) {
+  errors.insert(errors.end(), more.begin(), more.end());
+  std::ranges::sort(errors);
+}
 
 /// What a subset does at one pose. A NaN among the effects makes NaN of all that rests on it.
 struct Combination {
@@ -45,24 +85,15 @@ Combination combination(const CouplingRows& rows, std::size_t subset, std::span<
   return found;
 }
 
-/// The largest of the values that were added, and the first pose that has it.
-struct Largest {
-  double value = kNaN;
-  std::int64_t pose = -1;
-
-  void add(double candidate, std::size_t m) {
-    if (pose >= 0 && candidate <= value) return;
-    value = candidate;
-    pose = static_cast<std::int64_t>(m);
+/// The largest magnitude among the values at these poses, and the first pose that has it; without poses NaN and -1.
+std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::span<const std::size_t> poses) {
+  std::pair<double, std::int64_t> largest{kNaN, -1};
+  for (const std::size_t m : poses) {
+    const double value = std::abs(values[m]);
+    if (largest.second < 0 || value > largest.first) largest = {value, static_cast<std::int64_t>(m)};
   }
-};
-
-/// The numbers of one subset at all poses.
-struct Summary {
-  std::uint64_t count = 0;
-  std::uint64_t opposed = 0;
-  Largest effect, interaction, worst_case, root_sum_square, cancellation;
-};
+  return largest;
+}
 
 /// Fills a result: for each response, size and subset, in this order, its poses and then their summary.
 class Composer {
@@ -117,41 +148,35 @@ class Composer {
   }
 
   void add_subset(std::size_t k, std::span<const double> effects, double rounding) {
-    Summary summary;
+    std::vector<std::size_t> known;  // poses
+    std::size_t opposed = 0;
     for (std::size_t m = 0; m < found_.poses; ++m) {
       const Combination at = combination(rows_, k, effects.subspan(m * rows(), rows()));
-      const double interaction = at.effect - at.sum;
-      const double root_sum_square = std::sqrt(at.squares);
-      const double cancellation = at.cancellation(rounding);
       found_.effect.push_back(at.effect);
       found_.sum.push_back(at.sum);
-      found_.interaction.push_back(interaction);
+      found_.interaction.push_back(at.effect - at.sum);
       found_.worst_case.push_back(at.worst_case);
-      found_.root_sum_square.push_back(root_sum_square);
-      found_.cancellation.push_back(cancellation);
+      found_.root_sum_square.push_back(std::sqrt(at.squares));
+      found_.cancellation.push_back(at.cancellation(rounding));
       if (!at.is_known()) continue;
-      ++summary.count;
-      summary.opposed += at.is_opposed(rounding) ? 1 : 0;
-      summary.effect.add(std::abs(at.effect), m);
-      summary.interaction.add(std::abs(interaction), m);
-      summary.worst_case.add(at.worst_case, m);
-      summary.root_sum_square.add(root_sum_square, m);
-      summary.cancellation.add(cancellation, m);
+      known.push_back(m);
+      opposed += at.is_opposed(rounding) ? 1 : 0;
     }
-    add_summary(summary);
-  }
-
-  void add_summary(const Summary& summary) {
-    const double count = static_cast<double>(summary.count);
-    found_.count.push_back(summary.count);
-    found_.effect_max.push_back(summary.effect.value);
-    found_.effect_max_pose.push_back(summary.effect.pose);
-    found_.interaction_max.push_back(summary.interaction.value);
-    found_.worst_case_max.push_back(summary.worst_case.value);
-    found_.root_sum_square_max.push_back(summary.root_sum_square.value);
-    found_.opposed_share.push_back(summary.count == 0 ? kNaN : static_cast<double>(summary.opposed) / count);
-    found_.cancellation_max.push_back(summary.cancellation.value);
-    found_.cancellation_max_pose.push_back(summary.cancellation.pose);
+    const auto largest = [&](const std::vector<double>& curves) {
+      return largest_at(std::span(curves).last(found_.poses), known);
+    };
+    const auto [effect, effect_pose] = largest(found_.effect);
+    const auto [cancellation, cancellation_pose] = largest(found_.cancellation);
+    found_.count.push_back(known.size());
+    found_.effect_max.push_back(effect);
+    found_.effect_max_pose.push_back(effect_pose);
+    found_.interaction_max.push_back(largest(found_.interaction).first);
+    found_.worst_case_max.push_back(largest(found_.worst_case).first);
+    found_.root_sum_square_max.push_back(largest(found_.root_sum_square).first);
+    found_.opposed_share.push_back(known.empty() ? kNaN
+                                                 : static_cast<double>(opposed) / static_cast<double>(known.size()));
+    found_.cancellation_max.push_back(cancellation);
+    found_.cancellation_max_pose.push_back(cancellation_pose);
   }
 
   SolveCounts solves_at(std::size_t z, std::size_t m) const {
@@ -169,7 +194,105 @@ class Composer {
   CouplingResult found_;
 };
 
+std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(run.study.analysis);
+  const ModelDescription& model = run.model.description();
+  const auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
+                                         Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
+  if (!evaluation || !run.makes_result()) return std::nullopt;
+  return StudyResult{coupling_result(*evaluation, coupling, model, run.study.not_converged), std::nullopt, {}};
+}
+
+Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  const CouplingRows rows = coupling_rows(coupling, study.model());
+  const ErrorTable table = coupling_table(coupling, study.model());
+  const std::size_t solves = table.rows * poses.size();
+  const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
+  const std::size_t cells = coupling.sizes() * poses.size();
+  const std::size_t curves = 6 * sizeof(double) * cells * rows.subsets.size() * study.model().responses.size();
+  // The state is copied while it grows, and one of the six curves while it is hashed.
+  return {.solves = counted_things(coupling.sizes(), "sizes x ") +
+                    counted_things(rows.errors.size(), "sets of errors x ") + counted_things(poses.size(), "poses = ") +
+                    counted_things(solves, "solves"),
+          .memory = {.accumulators = 2 * outcomes + curves / 6,
+                     .state = outcomes,
+                     .result = curves + cells * sizeof(SolveCounts),
+                     .file = curves + cells * kSolverColumns},
+          .shared = {table_work(study, model, poses, table, Outcomes::responses)},
+          .by_one = {}};
+}
+
 }  // namespace
+
+std::vector<ErrorBlock> error_blocks(const ErrorSource& source, const ErrorPattern& pattern,
+                                     const ModelDescription& model) {
+  std::map<BlockPlace, ErrorBlock> by_place;
+  for (const FactorIndex index : source.factors) {
+    const Factor& factor = model.factors[index.value];
+    if (!takes(pattern, factor)) continue;
+    by_place[place_of(factor, pattern)].push_back(index);
+  }
+  std::vector<ErrorBlock> blocks;
+  for (auto& [place, block] : by_place) {
+    std::ranges::sort(block);
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources) {
+  std::vector<std::vector<std::size_t>> subsets;
+  std::vector<std::size_t> chosen;
+  for (std::size_t wanted = 1; wanted <= sources; ++wanted) add_subsets(sources, wanted, chosen, subsets);
+  return subsets;
+}
+
+CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& model) {
+  CouplingRows rows;
+  rows.subsets = source_subsets(study.sources.size());
+  rows.errors.resize(rows.subsets.size());
+  for (std::size_t s = 0; s < study.sources.size(); ++s) {
+    const std::vector<ErrorBlock> blocks = error_blocks(study.sources[s], study.pattern, model);
+    for (std::size_t k = 0; k < rows.subsets.size(); ++k) {
+      if (std::ranges::find(rows.subsets[k], s) == rows.subsets[k].end()) continue;
+      for (const ErrorBlock& block : blocks) add_errors(block, rows.errors[k]);
+    }
+    std::vector<std::size_t>& own = rows.block_rows.emplace_back();
+    if (blocks.size() == 1) own.push_back(s);  // subset s is this source alone
+    for (const ErrorBlock& block : blocks) {
+      if (blocks.size() == 1) break;
+      own.push_back(rows.errors.size());
+      rows.errors.push_back(block);
+    }
+  }
+  return rows;
+}
+
+std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const ModelDescription& model) {
+  std::vector<FactorIndex> factors;
+  for (const ErrorSource& source : study.sources) {
+    for (const ErrorBlock& block : error_blocks(source, study.pattern, model)) add_errors(block, factors);
+  }
+  return factors;
+}
+
+ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model) {
+  const CouplingRows rows = coupling_rows(study, model);
+  ErrorTable table{coupling_factors(study, model), {}, study.sizes() * rows.errors.size()};
+  table.values.reserve(table.rows * table.factors.size());
+  for (std::size_t z = 0; z < study.sizes(); ++z) {
+    for (const ErrorBlock& errors : rows.errors) {
+      for (const FactorIndex factor : table.factors) {
+        const std::vector<double>& sizes = study.sizes_of(model.factors[factor.value].dimension);
+        const bool is_set = std::ranges::binary_search(errors, factor);
+        POESY_EXPECTS(!is_set || z < sizes.size());
+        table.values.push_back(is_set ? sizes[z] : 0.0);
+      }
+    }
+  }
+  return table;
+}
 
 CouplingResult coupling_result(const EvaluationResult& evaluation, const CouplingStudy& study,
                                const ModelDescription& model, NotConverged policy) {
@@ -184,5 +307,10 @@ std::vector<std::string> subset_names(std::span<const ErrorSource> sources) {
   }
   return names;
 }
+
+constinit const Kind kCouplingKind{.study = kCouplingStudy,
+                                   .run = {run_study_of_kind, coupling_outlook, shards_by_pose},
+                                   .file = kCouplingFile,
+                                   .report = kCouplingReport};
 
 }  // namespace poesy

@@ -1,15 +1,89 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "engine/kinds/coupling/rows.h"
+#include "engine/files/result_file.h"
+#include "engine/model/model.h"
+#include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/study/study.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
+
+/// A group of errors that is judged as one.
+struct ErrorSource {
+  std::string name;                  ///< stands in tables, joined to others by '+'
+  std::vector<FactorIndex> factors;  ///< as the study names them, whatever the pattern leaves of them
+};
+
+/// Which errors of a source have its size, and which of these move together.
+struct ErrorPattern {
+  /// How far a choice of limbs or components goes.
+  enum class Choice {
+    all,         ///< every one, together
+    some,        ///< those that are named, together
+    independent  ///< every one, each on its own
+  };
+
+  Choice limbs = Choice::all;       ///< which limbs' errors have the size
+  std::size_t limb = 0;             ///< for some: it alone; counts from 1
+  Choice components = Choice::all;  ///< which components of an error have it
+  std::vector<std::string> axes;    ///< for some: "x", "y", "z"; scalars are kept besides
+};
+
+/// What a coupling study asks for.
+struct CouplingStudy {
+  std::vector<double> linear;        ///< [Z] m, sizes of the runs; empty where no error is a length
+  std::vector<double> angular;       ///< [Z] rad; empty where no error is an angle
+  ErrorPattern pattern;              ///< of every source
+  std::vector<ErrorSource> sources;  ///< no factor in two of them
+
+  /// Of errors of this dimension, a length or an angle.
+  const std::vector<double>& sizes_of(Dimension dimension) const {
+    return dimension == Dimension::length ? linear : angular;
+  }
+  /// Z.
+  std::size_t sizes() const { return linear.empty() ? angular.size() : linear.size(); }
+};
+
+/// The kind of study of error sources of fixed size, one by one and together.
+extern const StudyKind kCouplingStudy;
+
+/// Errors that have one size at once, and the others zero; in the order of the model.
+using ErrorBlock = std::vector<FactorIndex>;
+
+/// What a pattern makes of a source: the blocks of its errors that move together, by limb, then by frame, dimension
+/// and axis. One block, unless limbs or components are independent; then one for each limb, for each component of each
+/// of its vectors and scalars, or, where both are, for each error. Empty where the pattern leaves none of its errors.
+std::vector<ErrorBlock> error_blocks(const ErrorSource& source, const ErrorPattern& pattern,
+                                     const ModelDescription& model);
+
+/// All subsets of n sources but the empty one, by the number of sources, then in the order of the sources: 0, 1, 2, 01,
+/// 02, 12, 012.
+std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources);
+
+/// The sets of errors that are solved at each size, none of them twice: the subsets, then the blocks of the sources
+/// that have more than one.
+struct CouplingRows {
+  std::vector<std::vector<std::size_t>> subsets;     ///< [K] the sources in each; row k is subset k
+  std::vector<std::vector<std::size_t>> block_rows;  ///< [sources] the rows of each source's blocks
+  std::vector<ErrorBlock> errors;                    ///< [N] the errors of each row
+};
+
+/// Precondition: no factor in two sources.
+CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& model);
+
+/// The errors that the pattern leaves of all sources, in the order of the model.
+std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const ModelDescription& model);
+
+/// The table to be solved at every pose: row z * N + n has the errors of row n at size z, all positive; its columns are
+/// coupling_factors.
+ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model);
 
 /// What error sources do one by one and together: R responses, Z sizes, K subsets of the sources, M poses; SI. NaN
 /// where a solve that a number rests on does not count. What each number means: coupling_result.
@@ -61,7 +135,7 @@ struct CouplingResult {
 ///
 /// Summaries are over the poses where all of this is known. Sources oppose each other (opposed_share) where |sum| is
 /// below the largest |effect of a source in S| by more than rounding: together they do less than one of them.
-/// Rounding is size_rounding (stats/rounding.h) of the size of the errors.
+/// Rounding is size_rounding (stats/indices.h) of the size of the errors.
 ///
 /// evaluation: what run_evaluation found for the study's coupling_table. A solve that does not count (see counts())
 /// makes NaN of everything that rests on it, and is counted in `solves`.
@@ -70,5 +144,25 @@ CouplingResult coupling_result(const EvaluationResult& evaluation, const Couplin
 
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
+
+/// What a coupling study found, with the names of its axes.
+struct StoredCoupling {
+  CouplingResult found;                 ///< the numbers
+  std::vector<std::string> size_names;  ///< [Z] "0.1 mm"
+  std::vector<double> linear;           ///< [Z] m; NaN where no error is a length
+  std::vector<double> angular;          ///< [Z] rad; NaN where no error is an angle
+  std::vector<std::string> sources;     ///< [S] names
+  std::vector<std::string> subsets;     ///< [K] "FS+T"
+};
+
+/// Precondition: a coupling result.
+inline const StoredCoupling& coupling_of(const StoredResult& result) { return found_of<StoredCoupling>(result); }
+
+/// For each size and each response that a summary shows: a table with a row for each subset of
+/// the sources. Columns: the largest |effect| over the poses and the pose where it is, by number and coordinates, the
+/// largest root sum square, worst case and |interaction|, and where sources oppose each other: at which share of the
+/// poses, and the pose where they cancel most, with the cancellation there. What the words mean is below the last
+/// one.
+std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

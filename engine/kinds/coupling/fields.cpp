@@ -1,14 +1,12 @@
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <utility>
 
+#include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/coupling/coupling.h"
-#include "engine/kinds/coupling/options.h"
-#include "engine/kinds/coupling/stored.h"
-#include "engine/kinds/registry.h"
+#include "engine/kinds/coupling/kind.h"
 
 namespace poesy {
 namespace {
@@ -72,11 +70,6 @@ std::vector<std::string> size_names(const CouplingStudy& study) {
   return names;
 }
 
-std::vector<double> or_nan(std::vector<double> sizes, std::size_t count) {
-  if (sizes.empty()) sizes.assign(count, std::numeric_limits<double>::quiet_NaN());
-  return sizes;
-}
-
 /// 1 where a subset has a source, [K x sources].
 std::vector<std::uint8_t> members(std::size_t sources) {
   std::vector<std::uint8_t> list;
@@ -86,12 +79,8 @@ std::vector<std::uint8_t> members(std::size_t sources) {
   return list;
 }
 
-/// The source of each factor of the result, and the factor's block in it, by their positions.
-struct Membership {
-  std::vector<std::uint64_t> source, block;
-};
-
-Membership membership(const Study& study) {
+/// The source of each factor of the result, and its block in it, by their positions.
+void add_membership(ResultBuilder& result, const Study& study) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
   for (std::size_t s = 0; s < coupling.sources.size(); ++s) {
@@ -100,12 +89,14 @@ Membership membership(const Study& study) {
       for (const FactorIndex factor : blocks[b]) places[factor] = {s, b};
     }
   }
-  Membership found;
+  std::vector<std::uint64_t> source, block;
   for (const FactorIndex factor : study.analysis.factors) {
-    found.source.push_back(places.at(factor).first);
-    found.block.push_back(places.at(factor).second);
+    source.push_back(places.at(factor).first);
+    block.push_back(places.at(factor).second);
   }
-  return found;
+  result.add("/coupling/factor_source", {"factor"}, source, {"1", "Source of the error, by its position from 0"});
+  result.add("/coupling/factor_block", {"factor"}, block,
+             {"1", "Block of its source that the error belongs to, from 0; errors of a block move together"});
 }
 
 void add_axes(ResultBuilder& result, const CouplingStudy& coupling) {
@@ -118,16 +109,13 @@ void add_axes(ResultBuilder& result, const CouplingStudy& coupling) {
 void add_choices(ResultBuilder& result, const Study& study) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   StoredCoupling sizes;
-  sizes.linear = or_nan(coupling.linear, coupling.sizes());
-  sizes.angular = or_nan(coupling.angular, coupling.sizes());
+  const std::vector<double> none(coupling.sizes(), kNaN);
+  sizes.linear = coupling.linear.empty() ? none : coupling.linear;
+  sizes.angular = coupling.angular.empty() ? none : coupling.angular;
   write_fields(result, "/coupling", kSizes, sizes);
   result.add("/coupling/subset_sources", {"subset", "source"}, members(coupling.sources.size()),
              {"1", "1: the source is in the subset"});
-  const Membership of_factors = membership(study);
-  result.add("/coupling/factor_source", {"factor"}, of_factors.source,
-             {"1", "Source of the error, by its position from 0"});
-  result.add("/coupling/factor_block", {"factor"}, of_factors.block,
-             {"1", "Block of its source that the error belongs to, from 0; errors of a block move together"});
+  add_membership(result, study);
   result.show_axes("/coupling", {"source", "factor"});
 }
 

@@ -5,10 +5,9 @@
 #include <set>
 
 #include "engine/base/text.h"
-#include "engine/kinds/coupling/rows.h"
-#include "engine/study/error_words.h"
+#include "engine/kinds/coupling/coupling.h"
+#include "engine/study/study.h"
 #include "engine/study/study_kind.h"
-#include "engine/study/study_text.h"
 
 namespace poesy {
 namespace {
@@ -151,9 +150,8 @@ KeyValue<Study> sizes_at(Dimension dimension, Sizes CouplingStudy::*member) {
 
 template <Dimension kDimension>
 std::string sizes_line(const Study& study) {
-  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::vector<std::string> sizes;
-  for (const double size : kDimension == Dimension::length ? coupling.linear : coupling.angular) {
+  for (const double size : asked_of<CouplingStudy>(study.analysis).sizes_of(kDimension)) {
     sizes.push_back(exact_value(size, kDimension));
   }
   return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
@@ -206,29 +204,23 @@ std::string components_text(const Study& study) {
   return choice_text(pattern.components, list_text(axes));
 }
 
-/// The first factor of this dimension that the study gives a size; null when there is none.
-const Factor* first_of(Dimension dimension, const CouplingStudy& study, const ModelDescription& model) {
-  for (const FactorIndex factor : coupling_factors(study, model)) {
-    if (model.factors[factor.value].dimension == dimension) return &model.factors[factor.value];
-  }
-  return nullptr;
-}
-
-void require_sizes(const StudySection& analysis, std::string_view key, Dimension dimension, const CouplingStudy& study,
+void require_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
                    const ModelDescription& model) {
-  const Factor* factor = first_of(dimension, study, model);
-  if (analysis.find(key) || factor == nullptr) return;
-  const std::string unit(display_unit(dimension).name);
+  const std::string key(error_kind(dimension));
+  const std::vector<FactorIndex> factors = coupling_factors(study, model);
+  const auto dimension_at = [&](FactorIndex factor) { return model.factors[factor.value].dimension; };
+  const auto factor = std::ranges::find(factors, dimension, dimension_at);
+  if (analysis.find(key) || factor == factors.end()) return;
   throw InputError(analysis.place(),
-                   "key '" + std::string(key) + "' is missing in [analysis], for the sources have errors such as '" +
-                       factor->name + "'",
-                   "write sizes, e.g. " + std::string(key) + " = [\"0.1 " + unit + "\"]");
+                   "key '" + key + "' is missing in [analysis], for the sources have errors such as '" +
+                       model.factors[factor->value].name + "'",
+                   "write sizes, e.g. " + key + " = [\"0.1 " + std::string(display_unit(dimension).name) + "\"]");
 }
 
 /// Sizes of a dimension that no error of the sources has, whatever the pattern leaves of them, are a mistake.
-void refuse_idle_sizes(const StudySection& analysis, std::string_view key, Dimension dimension,
-                       const CouplingStudy& study, const ModelDescription& model) {
-  const auto value = analysis.find(key);
+void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
+                       const ModelDescription& model) {
+  const auto value = analysis.find(error_kind(dimension));
   if (!value) return;
   for (const ErrorSource& source : study.sources) {
     for (const FactorIndex factor : source.factors) {
@@ -263,10 +255,12 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
 /// Fills in the literature's sources, and asks for a size of each of their errors.
 void complete_sources(const StudySection& analysis, const ModelDescription& model, CouplingStudy& study) {
   if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
-  require_sizes(analysis, "linear", Dimension::length, study, model);
-  require_sizes(analysis, "angular", Dimension::angle, study, model);
-  refuse_idle_sizes(analysis, "linear", Dimension::length, study, model);
-  refuse_idle_sizes(analysis, "angular", Dimension::angle, study, model);
+  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+    require_sizes(analysis, dimension, study, model);
+  }
+  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+    refuse_idle_sizes(analysis, dimension, study, model);
+  }
 }
 
 void complete_coupling(Study& whole, const Reading& reading) {
@@ -335,7 +329,7 @@ void check_sizes(const StudySection& analysis, const Study& study, const Model& 
   const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   for (const FactorIndex factor : study.analysis.factors) {
     const Dimension dimension = model.description().factors[factor.value].dimension;
-    const Sizes& sizes = dimension == Dimension::length ? coupling.linear : coupling.angular;
+    const Sizes& sizes = coupling.sizes_of(dimension);
     for (std::size_t z = 0; z < sizes.size(); ++z) {
       const auto problem = beyond_bound(model, factor, sizes[z], "an error");
       if (problem) analysis.require(error_kind(dimension)).list()[z].fail(*problem, kTooLargeRemedy);

@@ -4,10 +4,7 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/evaluate/cases.h"
-#include "engine/kinds/evaluate/options.h"
-#include "engine/kinds/evaluate/row_outcomes.h"
-#include "engine/kinds/evaluate/stored.h"
-#include "engine/kinds/registry.h"
+#include "engine/kinds/evaluate/kind.h"
 #include "engine/run/evaluation.h"
 #include "engine/study/table_file.h"
 

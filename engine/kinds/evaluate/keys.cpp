@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "engine/base/text.h"
-#include "engine/kinds/evaluate/options.h"
-#include "engine/study/error_words.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {

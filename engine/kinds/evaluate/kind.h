@@ -4,7 +4,13 @@
 
 namespace poesy {
 
-/// Named cases of fixed errors.
+/// Named cases: what fixed errors do.
 extern const Kind kEvaluateKind;
+
+/// How result files and reports know them.
+/// @{
+extern const FileKind kEvaluationFile;
+extern const ReportKind kEvaluationReport;
+/// @}
 
 }  // namespace poesy

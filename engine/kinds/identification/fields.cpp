@@ -2,9 +2,7 @@
 
 #include "engine/files/result_parts.h"
 #include "engine/kinds/identification/identification.h"
-#include "engine/kinds/identification/options.h"
-#include "engine/kinds/identification/stored.h"
-#include "engine/kinds/registry.h"
+#include "engine/kinds/identification/kind.h"
 
 namespace poesy {
 namespace {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "engine/base/contract.h"
-#include "engine/kinds/identification/options.h"
-#include "engine/run/evaluation.h"
+#include "engine/base/nan.h"
+#include "engine/kinds/identification/kind.h"
 
 namespace poesy {
 namespace {
@@ -77,7 +76,7 @@ class Identification {
     for (std::size_t m = 0; m < found_.poses; ++m) {
       for (std::size_t t = 0; t < trials.size(); ++t) {
         const std::size_t at = m * trials.size() + t;
-        deformations[t][m] = solved(solved_table->status[at]) ? response[at] : std::numeric_limits<double>::quiet_NaN();
+        deformations[t][m] = solved(solved_table->status[at]) ? response[at] : kNaN;
       }
     }
     return deformations;
@@ -98,7 +97,7 @@ class Identification {
     const auto deformations = solve(trials);
     if (!deformations) return false;
     for (const Deformations& values : *deformations) {
-      double largest = std::numeric_limits<double>::quiet_NaN();
+      double largest = kNaN;
       std::uint64_t missing = 0;
       for (const double value : values) {
         largest = std::fmax(largest, value);  // passes over NaN
@@ -208,11 +207,45 @@ class Identification {
   IdentificationResult found_;
 };
 
+/// Identifies which of the study's errors deform the mechanism. Empty when stopped.
+std::optional<IdentificationResult> run_identification(const Study& study, const Model& model, const PoseSet& poses,
+                                                       const RunOptions& options) {
+  return identify(study.analysis, model.description(), [&](const ErrorTable& errors) {
+    return run_evaluation(model, study.solver, poses, errors, Pairing::every_pose_with_every_row, options,
+                          Outcomes::responses);
+  });
+}
+
+std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
+  auto result = run_identification(run.study, run.model, run.poses, run.options);
+  if (!result || !run.makes_result()) return std::nullopt;
+  return StudyResult{*std::move(result), std::nullopt, {}};
+}
+
+Outlook identification_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const std::size_t errors = study.analysis.factors.size();
+  const std::size_t groups = asked_of<IdentificationOptions>(study.analysis).groups.size();
+  const std::size_t solves = errors * groups * poses.size();
+  const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
+  return {.solves = counted_things(errors, "errors x ") + counted_things(groups, "groups x ") +
+                    counted_things(poses.size(), "poses = ") + counted_things(solves, "solves, and more for couplings"),
+          .memory = {.accumulators = outcomes, .state = outcomes},
+          .shared = {table_work(
+              poses,
+              [&](const PoseSet& some) { static_cast<void>(run_identification(study, model, some, {.threads = 1})); })},
+          .by_one = {}};
+}
+
 }  // namespace
 
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
                                              const SolveTable& solve) {
   return Identification(analysis, model, solve)();
 }
+
+constinit const Kind kIdentificationKind{.study = kIdentificationStudy,
+                                         .run = {run_study_of_kind, identification_outlook, nullptr},
+                                         .file = kIdentificationFile,
+                                         .report = kIdentificationReport};
 
 }  // namespace poesy

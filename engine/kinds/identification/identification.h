@@ -2,12 +2,31 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "engine/files/result_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
 #include "engine/study/study.h"
 
 namespace poesy {
+
+/// The sizes at which identification sets errors.
+struct ErrorSize {
+  std::string name;  ///< stands in tables
+  double linear;     ///< m
+  double angular;    ///< rad
+};
+
+/// What an identification study alone asks.
+struct IdentificationOptions {
+  std::vector<ErrorSize> groups;  ///< each gives verdicts of its own
+  double pose_share = 0.95;       ///< of the poses that a verdict asks for
+};
+
+/// The kind of study that tells which errors deform the mechanism at all.
+extern const StudyKind kIdentificationStudy;
 
 /// Two errors of one frame that deform together and not alone.
 struct Coupling {
@@ -19,9 +38,8 @@ struct Coupling {
 
 /// Which of P errors deform the mechanism, tried at G groups of sizes and M poses.
 struct IdentificationResult {
-  std::size_t factors = 0;  ///< P
-  std::size_t groups = 0;   ///< G
-  /// M.
+  std::size_t factors = 0;           ///< P
+  std::size_t groups = 0;            ///< G
   std::size_t poses = 0;             ///< M
   double rounding = 0.0;             ///< deformations up to this cannot be told from zero
   std::uint64_t required_poses = 0;  ///< that a verdict asks for
@@ -56,5 +74,15 @@ using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTabl
 /// Precondition: the model has a measure of deformation.
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
                                              const SolveTable& solve);
+
+/// What an identification says, read back.
+struct StoredIdentification : IdentificationResult {
+  std::vector<ErrorSize> sizes;  ///< [G] of the errors, by group
+};
+
+/// Precondition: the result of an identification.
+inline const StoredIdentification& identification_of(const StoredResult& result) {
+  return found_of<StoredIdentification>(result);
+}
 
 }  // namespace poesy

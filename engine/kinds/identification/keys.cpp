@@ -3,7 +3,7 @@
 #include <array>
 
 #include "engine/base/text.h"
-#include "engine/kinds/identification/options.h"
+#include "engine/kinds/identification/identification.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {

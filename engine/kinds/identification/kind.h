@@ -7,4 +7,10 @@ namespace poesy {
 /// Identification: which errors deform the mechanism at all.
 extern const Kind kIdentificationKind;
 
+/// How result files and reports know them.
+/// @{
+extern const FileKind kIdentificationFile;
+extern const ReportKind kIdentificationReport;
+/// @}
+
 }  // namespace poesy

@@ -1,15 +1,16 @@
 #include "engine/kinds/monte_carlo/collector.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
-#include "engine/kinds/monte_carlo/verdict.h"
-#include "engine/run/verdict.h"
-#include "engine/stats/histogram.h"
-#include "engine/stats/mean_interval.h"
+#include "engine/run/evaluation.h"
+#include "engine/stats/buckets.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
@@ -42,19 +43,25 @@ void check_whole(const SolveCounts& solves, std::size_t most_samples) {
   }
 }
 
+/// Samples whose magnitude is within a limit; a bucket that the limit divides counts as its middle lies.
+std::uint64_t count_within(const QuantileSketch& samples, double limit) {
+  std::uint64_t within = 0;
+  for (const Bucket& bucket : samples.buckets()) {
+    const double middle = 0.5 * bucket.lower + 0.5 * bucket.upper;
+    if (std::abs(middle) <= limit) within += bucket.count;
+  }
+  return within;
+}
+
+/// What the share of the draws stays within at the worst pose, into `value` and `pose`.
+void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
+  const std::span at_poses = std::span(found.share_magnitude).subspan(verdict.response * found.poses, found.poses);
+  const auto worst = std::ranges::max_element(at_poses);
+  verdict.value = *worst;
+  verdict.pose = static_cast<std::size_t>(worst - at_poses.begin());
+}
+
 }  // namespace
-
-void ResponseSamples::write(ByteWriter& to) const {
-  moments.write(to);
-  sketch.write(to);
-}
-
-ResponseSamples ResponseSamples::read(ByteReader& from) {
-  ResponseSamples samples;
-  samples.moments = Moments::read(from);
-  samples.sketch = QuantileSketch::read(from);
-  return samples;
-}
 
 void PoseSamples::add(const PoseUnit& unit) {
   responses.resize(unit.responses.size());
@@ -67,14 +74,21 @@ void PoseSamples::add(const PoseUnit& unit) {
 }
 
 void PoseSamples::write(ByteWriter& to) const {
-  for (const ResponseSamples& response : responses) response.write(to);
+  for (const auto& [moments, sketch] : responses) {
+    moments.write(to);
+    sketch.write(to);
+  }
   solves.write(to);
   failed.write(to);
 }
 
 PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
   PoseSamples samples;
-  for (std::size_t r = 0; r < responses; ++r) samples.responses.push_back(ResponseSamples::read(from));
+  for (std::size_t r = 0; r < responses; ++r) {
+    ResponseSamples& response = samples.responses.emplace_back();
+    response.moments = Moments::read(from);
+    response.sketch = QuantileSketch::read(from);
+  }
   samples.solves = SolveCounts::read(from);
   samples.failed = FailedSamples::read(from, samples.solves.not_converged(), 0, samples.solves.total());
   return samples;
@@ -336,6 +350,24 @@ void MonteCarloCollector::read_kept(ByteReader& from, std::size_t pose, std::siz
   unit.expect_end();
   check_whole(solves, most_samples);
   set_kept(pose, {solves, Bytes(bytes.begin(), bytes.end())});
+}
+
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
+                          const MonteCarloResult& found, std::span<const QuantileSketch> overall) {
+  LimitVerdicts verdicts{.judge = judge, .share = share, .limits = {}};
+  const std::uint64_t tried = found.total().total();
+  for (const ResponseLimit& limit : limits) {
+    LimitVerdict verdict{.response = limit.response, .limit = limit.most, .tried = tried};
+    verdict.within = count_within(overall[limit.response], limit.most);
+    if (judge == Judge::rms) {
+      verdict.value = found.overall_rms[limit.response];
+    } else {
+      take_worst_pose(found, verdict);
+    }
+    verdict.passed = verdict.value <= limit.most;
+    verdicts.limits.push_back(verdict);
+  }
+  return verdicts;
 }
 
 }  // namespace poesy

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/kinds/monte_carlo/options.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/run/pose_unit.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
-#include "engine/stats/quantile_interval.h"
+#include "engine/stats/buckets.h"
+#include "engine/stats/quantile_sketch.h"
 #include "engine/study/plan.h"
+#include "engine/study/study.h"
 
 namespace poesy {
 
@@ -18,11 +19,6 @@ namespace poesy {
 struct ResponseSamples {
   Moments moments;        ///< exact
   QuantileSketch sketch;  ///< for quantiles
-
-  /// For a state.
-  void write(ByteWriter& to) const;
-  /// Throws BytesError for what no samples give.
-  static ResponseSamples read(ByteReader& from);
 };
 
 /// Some samples, all or not, at one pose.
@@ -112,5 +108,14 @@ class MonteCarloCollector {
   std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; others from a shorter study
   std::size_t kept_bytes_ = 0;
 };
+
+/// Judges the limits of a Monte Carlo study by what it found. A limit is kept
+/// - by Judge::rms, if the response's root mean square over the samples of all poses that count is within it;
+/// - by Judge::share, if at every pose at least that share of all draws is within it: if the largest of the poses'
+///   share_magnitude is. Draws that do not count are not within it.
+/// overall: [R], the samples of all poses that count. Numbers from a sketch are off by its kRelativeError at most.
+/// Precondition: found.overall_rms is there, and found.share_magnitude where it is needed.
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
+                          const MonteCarloResult& found, std::span<const QuantileSketch> overall);
 
 }  // namespace poesy

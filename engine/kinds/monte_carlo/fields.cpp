@@ -2,10 +2,8 @@
 
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
-#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/stored.h"
-#include "engine/kinds/registry.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {

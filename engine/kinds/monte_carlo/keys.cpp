@@ -1,6 +1,6 @@
 #include <array>
 
-#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {

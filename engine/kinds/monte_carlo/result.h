@@ -5,9 +5,22 @@
 #include <optional>
 #include <vector>
 
+#include "engine/files/result_file.h"
+#include "engine/report/tables.h"
 #include "engine/run/result.h"
+#include "engine/study/study.h"
 
 namespace poesy {
+
+/// What a Monte Carlo study alone asks.
+struct MonteCarloOptions {
+  std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< shares of samples below, ascending
+  Judge judge = Judge::rms;                        ///< of the limits
+  double share = 0.0;                              ///< for Judge::share: of the draws at each pose
+};
+
+/// The kind of study in which all errors vary together.
+extern const StudyKind kMonteCarloStudy;
 
 /// What a Monte Carlo study found, all errors varying together: R responses, M poses, Q quantiles; SI; NaN where
 /// undefined. The overall numbers are over the samples of all poses together.
@@ -44,7 +57,7 @@ struct MonteCarloResult {
   std::vector<double> overall_rms;                ///< [R]
   std::vector<double> overall_quantiles_ci_low;   ///< [R x Q] empty in files of older versions
   std::vector<double> overall_quantiles_ci_high;  ///< [R x Q] likewise
-  /// Histograms of the samples of all poses (stats/histogram.h), B bins each; empty in files of older versions.
+  /// Histograms of the samples of all poses (stats/buckets.h), B bins each; empty in files of older versions.
   std::vector<double> histogram_edges;          ///< [R x (B + 1)]
   std::vector<std::uint64_t> histogram_counts;  ///< [R x B]
   std::vector<SolveCounts> solves;              ///< [M]
@@ -57,5 +70,13 @@ struct MonteCarloResult {
   /// Over all poses.
   SolveCounts total() const { return total_of(solves); }
 };
+
+/// What a Monte Carlo study found, read back: its failures, convergence and verdicts are those of StoredResult.
+/// Precondition: a Monte Carlo result.
+inline const MonteCarloResult& monte_carlo_of(const StoredResult& result) { return found_of<MonteCarloResult>(result); }
+
+/// Per response mean, spread, extremes and quantiles over the samples of all poses
+/// together; then the mean of the poses' means, and the largest mean and highest quantile with the pose where it is.
+std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

@@ -1,14 +1,13 @@
-#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/monte_carlo/kind.h"
 
 #include <utility>
 
 #include "engine/kinds/monte_carlo/collector.h"
-#include "engine/kinds/monte_carlo/options.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
-#include "engine/run/pending_units.h"
-#include "engine/run/pose_unit.h"
 #include "engine/run/rounds.h"
-#include "engine/stats/mean_interval.h"
+#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
@@ -152,6 +151,9 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
   return std::move(work).result();
 }
 
-constinit const RunKind kMonteCarloRun{run_study_of_kind, monte_carlo_outlook, shards_by_pose};
+constinit const Kind kMonteCarloKind{.study = kMonteCarloStudy,
+                                     .run = {run_study_of_kind, monte_carlo_outlook, shards_by_pose},
+                                     .file = kMonteCarloFile,
+                                     .report = kMonteCarloReport};
 
 }  // namespace poesy

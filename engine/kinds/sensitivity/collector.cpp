@@ -1,11 +1,20 @@
 #include "engine/kinds/sensitivity/collector.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/run/evaluate_unit.h"
 
 namespace poesy {
 namespace {
+
+void append(const Estimate& estimate, EstimateCourse& history) {
+  history.value.push_back(estimate.value);
+  history.ci_low.push_back(estimate.interval.low);
+  history.ci_high.push_back(estimate.interval.high);
+}
 
 constexpr std::uint64_t kKind = 1;  ///< no other state begins with this number
 
@@ -17,6 +26,112 @@ constexpr std::uint64_t kPart = 2;
 std::size_t units_of(std::uint64_t samples) { return Plan::units_for(static_cast<std::size_t>(samples)); }
 
 }  // namespace
+
+HistoryCollector::HistoryCollector(const Plan& plan, std::size_t responses, double conf_level)
+    : plan_(&plan),
+      responses_(responses),
+      conf_level_(conf_level),
+      points_(history_points(plan)),
+      looks_(plan.slots() * points_.size()) {}
+
+void HistoryCollector::add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell) {
+  const std::size_t number = unit.slot * poses() + unit.pose.value;
+  for (std::size_t k = 0; k < within.size() / responses_; ++k) {
+    add(number, k, within.subspan(k * responses_, responses_));
+  }
+  const std::size_t end = unit.first.value + unit.count;
+  const auto point = std::ranges::lower_bound(points_, end);
+  if (point == points_.end() || *point != end) return;
+  POESY_EXPECTS(cell.solves.total() == end);
+  std::vector<LocalIndex> indices;
+  for (const Moments& response : cell.responses) {
+    indices.push_back(local_index_with_error(response, plan_->distributions()[unit.slot].standard_deviation()));
+  }
+  add(number, static_cast<std::size_t>(point - points_.begin()), indices);
+}
+
+void HistoryCollector::add(std::size_t cell, std::size_t point, std::span<const LocalIndex> indices) {
+  Look& at = look(cell / poses(), point);
+  if (at.local.empty()) at.local.resize(responses_ * poses());
+  for (std::size_t r = 0; r < responses_; ++r) at.local[r * poses() + cell % poses()] = indices[r];
+  if (++at.reached < poses()) return;
+  const std::vector<LocalIndex> local = std::exchange(at.local, std::vector<LocalIndex>());
+  for (std::size_t r = 0; r < responses_; ++r) {
+    at.global.push_back(global_index(std::span(local).subspan(r * poses(), poses()), conf_level_));
+  }
+}
+
+EstimateCourse HistoryCollector::history(const SensitivityResult& end) const {
+  EstimateCourse history;
+  history.conf_level = conf_level_;
+  history.samples.assign(points_.begin(), points_.end());
+  const bool ends_at_a_point = !points_.empty() && points_.back() == plan_->samples();
+  if (!ends_at_a_point) history.samples.push_back(plan_->samples());
+  for (std::size_t r = 0; r < responses_; ++r) {
+    for (std::size_t slot = 0; slot < plan_->slots(); ++slot) {
+      for (std::size_t k = 0; k + 1 < history.samples.size(); ++k) append(look(slot, k).global.at(r), history);
+      const std::size_t at = r * plan_->slots() + slot;
+      append({end.global[at], {end.global_ci_low[at], end.global_ci_high[at]}}, history);
+    }
+  }
+  return history;
+}
+
+std::vector<std::size_t> HistoryCollector::poses_at(std::size_t slot, std::size_t point,
+                                                    std::span<const std::size_t> units_done) const {
+  std::vector<std::size_t> list;
+  for (std::size_t m = 0; m < poses(); ++m) {
+    if (units_done[slot * poses() + m] >= Plan::units_for(points_[point])) list.push_back(m);
+  }
+  return list;
+}
+
+void HistoryCollector::write(ByteWriter& to, std::span<const std::size_t> units_done) const {
+  for (std::size_t slot = 0; slot < plan_->slots(); ++slot) {
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const Look& at = look(slot, k);
+      for (const Estimate& index : at.global) {
+        to.reals(std::array{index.value, index.interval.low, index.interval.high});
+      }
+      if (at.local.empty()) continue;
+      for (const std::size_t m : poses_at(slot, k, units_done)) {
+        for (std::size_t r = 0; r < responses_; ++r) {
+          const LocalIndex& index = at.local[r * poses() + m];
+          to.reals(std::array{index.value, index.standard_error});
+        }
+      }
+    }
+  }
+}
+
+void HistoryCollector::read(ByteReader& from, std::span<const std::size_t> units_done, std::size_t samples) {
+  const auto points = static_cast<std::size_t>(std::ranges::upper_bound(points_, samples) - points_.begin());
+  // A first unit that is smaller than others is not the beginning of a longer study's, and is solved again.
+  const bool begins_longer = samples == plan_->samples() || samples >= Plan::kUnitSamples;
+  std::vector<LocalIndex> indices(responses_);
+  for (std::size_t slot = 0; slot < plan_->slots(); ++slot) {
+    for (std::size_t k = 0; k < points; ++k) {
+      const std::vector<std::size_t> reached = poses_at(slot, k, units_done);
+      if (reached.size() == poses()) {
+        Look whole{.reached = poses()};
+        for (std::size_t r = 0; r < responses_; ++r) {
+          const double value = from.real();
+          const double low = from.real();
+          whole.global.push_back({value, {low, from.real()}});
+        }
+        if (begins_longer) look(slot, k) = std::move(whole);
+        continue;
+      }
+      for (const std::size_t m : reached) {
+        for (LocalIndex& index : indices) {
+          index.value = from.real();
+          index.standard_error = from.real();
+        }
+        if (begins_longer) add(slot * poses() + m, k, indices);
+      }
+    }
+  }
+}
 
 SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level)
     : plan_(&plan), responses_(responses), whole_(plan.cells()), history_(plan, responses, conf_level) {

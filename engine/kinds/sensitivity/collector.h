@@ -5,12 +5,59 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
-#include "engine/kinds/sensitivity/index_history.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/result.h"
+#include "engine/stats/indices.h"
+#include "engine/stats/moments.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
+
+/// What the global indices of a sensitivity study were at its history points
+/// (engine/run/history_points.h), put together as units are merged. As soon as all poses of a slot have
+/// reached a point, its indices are computed and what the poses had is dropped: as cells are solved slot by slot, that
+/// of one slot is in memory at a time, 16 bytes for each response, pose and point. A continued run, and a shard, also
+/// holds that of the slots that it cuts.
+class HistoryCollector {
+ public:
+  /// Refers to the plan.
+  HistoryCollector(const Plan& plan, std::size_t responses, double conf_level);
+
+  /// The unit after those added in its cell. cell: what the cell's samples came to with it; it is needed only where the
+  /// unit ends at a history point, which is never one of a smaller last unit but the cell's first.
+  void add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell);
+  /// Precondition: all units of all cells were added. end: what they came to.
+  EstimateCourse history(const SensitivityResult& end) const;
+
+  /// What was added, as the state of a collector whose cells hold so many units each.
+  void write(ByteWriter& to, std::span<const std::size_t> units_done) const;
+  /// Takes up what was written, of a plan with so many samples, at most this one's; of other cells than those that were
+  /// added. Throws BytesError.
+  void read(ByteReader& from, std::span<const std::size_t> units_done, std::size_t samples);
+
+ private:
+  /// One slot at one point.
+  struct Look {
+    std::size_t reached = 0;             ///< poses
+    std::vector<LocalIndex> local = {};  ///< [R x M] while some poses have reached it, others not
+    std::vector<Estimate> global = {};   ///< [R] once all have
+  };
+
+  std::size_t poses() const { return plan_->poses().size(); }
+  Look& look(std::size_t slot, std::size_t point) { return looks_[slot * points_.size() + point]; }
+  const Look& look(std::size_t slot, std::size_t point) const { return looks_[slot * points_.size() + point]; }
+  /// indices: [R]
+  void add(std::size_t cell, std::size_t point, std::span<const LocalIndex> indices);
+  /// The slot's poses with the units that this point is in; units_done: [cells].
+  std::vector<std::size_t> poses_at(std::size_t slot, std::size_t point, std::span<const std::size_t> units_done) const;
+
+  const Plan* plan_;
+  std::size_t responses_;
+  double conf_level_;
+  std::vector<std::size_t> points_;  ///< [K]
+  std::vector<Look> looks_;          ///< [slots x K]
+};
 
 /// Puts the units of a sensitivity study together, cell by cell. What a cell becomes depends on the order of its own
 /// units alone. A last unit with fewer than Plan::kUnitSamples samples is kept apart, for it is not the beginning of

@@ -3,8 +3,10 @@
 #include <span>
 
 #include "engine/base/units.h"
+#include "engine/files/result_parts.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/run/result.h"
+#include "engine/report/html/page.h"
 
 namespace poesy {
 
@@ -29,5 +31,19 @@ namespace poesy {
 FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
                                   std::span<const Dimension> dimensions, std::span<const double> sigma,
                                   double linearity);
+
+/// The second fidelity beside the first in result files: /fidelity, nothing where the study compares none.
+/// @{
+void write_fidelity(ResultBuilder& result, const Study& study, const std::optional<FidelityResult>& found);
+void read_fidelity(const h5::File& file, StoredSensitivity& found);
+/// @}
+/// fidelity.csv and fidelity_not_converged.csv.
+void append_fidelity_tables(CsvTables& tables, const StoredResult& result);
+
+/// The largest discrepancy of the two fidelities and the verdict, with the errors in this order. Precondition: the
+/// study compares two.
+Table fidelity_table(const StoredResult& result, const RankedErrors& ranked);
+/// The section of a report, where the study compares two.
+void add_fidelity_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
 }  // namespace poesy

@@ -1,11 +1,12 @@
 #include <algorithm>
 
 #include "engine/files/result_parts.h"
-#include "engine/kinds/registry.h"
-#include "engine/kinds/sensitivity/options.h"
+#include "engine/kinds/sensitivity/fidelity.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/points_radius.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/stored.h"
+#include "engine/kinds/sensitivity/separation.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 
 namespace poesy {
 namespace {
@@ -176,9 +177,9 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
   add_sigma(result, study);
   write_group(result, kIndices, found);
   if (found.history) add_course(result, kHistory, *found.history);
-  add_tolerances(result, study, found);
-  add_separation(result, study, found.separation);
-  add_fidelity(result, study, found.fidelity);
+  write_tolerance_group(result, study, found);
+  write_separation(result, study, found.separation);
+  write_fidelity(result, study, found.fidelity);
   add_convergence(result, kConvergence, found.convergence);
   if (!found.radius_tau.empty()) add_radius_tau(result, found.radius_tau);
   add_solver(result, kByFactorPose, found.solves);
@@ -196,7 +197,7 @@ void read(const h5::File& file, StoredResult& result) {
   result.varied = texts(result.factors, &NamedUnit::name);
   result.failures = read_failures(file, result);
   result.convergence = read_convergence(file, kConvergence);
-  read_tolerances(file, result.factors, found);
+  read_tolerance_group(file, result.factors, found);
   read_separation(file, found);
   read_fidelity(file, found);
   result.found = std::move(found);

@@ -6,12 +6,106 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/ranking.h"
-#include "engine/kinds/sensitivity/result.h"
 #include "engine/report/display.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/rank_correlation.h"
+#include "engine/stats/tolerance.h"
 
 namespace poesy {
+namespace {
+
+bool same_poses(const StoredResult& a, const StoredResult& b) {
+  if (a.poses.size() != b.poses.size() || a.poses.coordinates() != b.poses.coordinates()) return false;
+  for (std::size_t c = 0; c < a.poses.coordinates(); ++c) {
+    if (a.poses.column(c) != b.poses.column(c)) return false;
+  }
+  return true;
+}
+
+/// Local index x sigma of B less that of A, of the errors that both have, [rows x M].
+std::vector<double> local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
+                                      std::pair<std::size_t, std::size_t> response) {
+  const std::vector<double> in_a = local_effects(a, response.first);
+  const std::vector<double> in_b = local_effects(b, response.second);
+  const std::size_t poses = a.poses.size();
+  std::vector<double> list;
+  for (const auto& [pa, pb] : factors) {
+    const double sigma = std::max(a.factor_sigma[pa], b.factor_sigma[pb]);
+    for (std::size_t m = 0; m < poses; ++m) {
+      const double difference = in_b[pb * poses + m] - in_a[pa * poses + m];
+      list.push_back(std::abs(difference) < kIndexRounding * sigma ? 0.0 : difference);
+    }
+  }
+  return list;
+}
+
+/// The errors that both have, the one that is most important in A first.
+Common ranked_common(const StoredResult& a, const StoredResult& b) {
+  Common factors = common(names_of(a.factors), names_of(b.factors));
+  const std::vector<std::size_t> ranks = ranked_errors(a, default_ranking(a)).ranks;
+  std::ranges::sort(factors, {}, [&](const auto& both) { return ranks[both.first]; });
+  return factors;
+}
+
+/// Where indices differ, of results at the same poses.
+void add_where(const StoredResult& a, const StoredResult& b, Page& page) {
+  if (!same_poses(a, b)) {
+    page.add_section("where", "Where in the workspace they differ")
+        .paragraph("A and B were not solved at the same poses, so they cannot be compared pose by pose.");
+    return;
+  }
+  const PoseFigures figures(a, sensitivity_cells(a), page);
+  const Common factors = ranked_common(a, b);
+  std::vector<std::string> rows;
+  for (const auto& both : factors) rows.push_back(a.factors[both.first].name);
+  std::vector<HeatLayer> layers;
+  std::vector<Field> fields;
+  std::string order;
+  for (const auto& both : common(names_of(a.responses, figures.responses()), names_of(b.responses))) {
+    const std::size_t r = figures.responses()[both.first];
+    const NamedUnit& response = a.responses[r];
+    const std::vector<double> values = local_differences(a, b, factors, {r, both.second});
+    if (layers.empty()) order = first_order(a, values);
+    layers.push_back({"B - A, effect on " + response.name, unit_text(response),
+                      figures.add(fmt::format("difference/{}", r), values, response), true});
+    fields.push_back({layers.back().label, layers.back().unit, layers.back().value, rows, true});
+  }
+  if (layers.empty()) return;
+  Section& section = page.add_section("where", "Where in the workspace they differ");
+  section.paragraph("The effect of each error at each pose in B, less that in A.");
+  figures.add_note(section);
+  add_figure(page, section, "heat", figures.heat_map(std::move(layers), std::move(rows), std::move(order)),
+             "A row for each error that both have, the most important in A first, a column for each pose.");
+  figures.add_workspace(section, std::move(fields), "Each dot is a pose, coloured by what is chosen.");
+}
+
+/// Their rankings beside each other.
+void add_rankings(const ReportedResult& a, const ReportedResult& b, Page& page) {
+  const auto ranked = [](const ReportedResult& one) {
+    return RankedResult{one.stored, one.path, default_ranking(one.stored), sensitivity_tally(one.stored).total()};
+  };
+  const RankedResult ranked_a = ranked(a);
+  const RankedResult ranked_b = ranked(b);
+  const TwoRankings rankings = two_rankings(ranked_a, ranked_b, RowOrder::effect);
+  Section& section = page.add_section("rankings", "The two rankings");
+  section.paragraph(ranked_text('A', ranked_a) + ".");
+  section.paragraph(ranked_text('B', ranked_b) + ".");
+  for (const std::string& remark : rankings.remarks) section.paragraph(remark);
+  section.table(rankings.table);
+  if (differ_in_metric(a.stored, b.stored)) {
+    section.paragraph("Below, responses of the same name are compared. Two metrics do not mean the same by them.");
+  }
+}
+
+/// Predicted from the errors one by one (stats/tolerance.h), in the unit shown.
+double total_rms(const StoredResult& result, std::size_t response) {
+  const MeanSquare squares = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
+  return std::sqrt(squares.at(result.factor_sigma)) / display(result.responses[response]).si;
+}
+
+}  // namespace
 
 SolveTally sensitivity_tally(const StoredResult& result) {
   const SensitivityResult& found = sensitivity_of(result);
@@ -70,6 +164,15 @@ std::vector<double> local_effects(const StoredResult& result, std::size_t respon
   return effects;
 }
 
+Bars error_bars(const StoredResult& result, std::vector<BarQuantity> quantities) {
+  return {{}, std::move(quantities), names_of(result.factors)};
+}
+
+BarQuantity share_quantity(std::string label, const std::string& array, const std::vector<double>& values,
+                           ArrayPool& pool) {
+  return {std::move(label), {{"%"}}, pool.add(array, values, 0.01)};
+}
+
 std::string PoseOrder::name(const StoredResult& result) const {
   const std::string& coordinate_name = result.pose_coordinates[coordinate].name;
   return magnitude ? "|" + coordinate_name + "|" : coordinate_name;
@@ -104,6 +207,31 @@ std::string first_order(const StoredResult& result, std::span<const double> valu
   if (!result.time.empty()) return {};
   const auto order = explaining_order(result, root_sum_squares(values, result.poses.size()));
   return order ? order->name(result) : std::string();
+}
+
+Comparable comparable_sensitivity(const StoredResult& result, const StoredResult& other) {
+  const bool corrected = has_corrected_indices(result) && has_corrected_indices(other);
+  const GlobalIndices indices = corrected ? shown_indices(result) : published_indices(result);
+  Comparable all = comparable_by_response(result, "error", names_of(result.factors));
+  all.ranked = true;
+  const auto add = [&](std::string label, std::string array, bool as_effect) {
+    all.quantities.push_back({std::move(label), std::move(array), units_of_indices(result, as_effect),
+                              in_shown_units(result, indices.value, as_effect),
+                              in_shown_units(result, indices.low, as_effect),
+                              in_shown_units(result, indices.high, as_effect)});
+  };
+  add("effect at the size each study sets (index x sigma)", "effect", true);
+  add("global index", "index", false);
+  if (sensitivity_of(result).background.empty()) return all;
+  all.total_label = "All errors together, predicted from each alone: root mean square over samples and poses";
+  for (const std::size_t r : response_order(result)) all.totals.push_back(total_rms(result, r));
+  return all;
+}
+
+void compare_sensitivity(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page& page) {
+  add_rankings(a, b, page);
+  add_comparison(compared, page);
+  add_where(a.stored, b.stored, page);
 }
 
 }  // namespace poesy

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/kinds/sensitivity/stored.h"
+#include "engine/kinds/sensitivity/result.h"
 #include "engine/report/report_kind.h"
 
 /// What the page of a sensitivity result and that of two share.
@@ -26,6 +26,12 @@ std::vector<std::vector<std::string>> units_of_indices(const StoredResult& resul
 
 /// Local indices x sigma of one response, [P x M], SI.
 std::vector<double> local_effects(const StoredResult& result, std::size_t response);
+
+/// Bars with these quantities of each error.
+Bars error_bars(const StoredResult& result, std::vector<BarQuantity> quantities);
+/// Shares [P] as one of them, in percent.
+BarQuantity share_quantity(std::string label, const std::string& array, const std::vector<double>& values,
+                           ArrayPool& pool);
 
 /// A pose coordinate, or its magnitude, by which poses may be put in order.
 struct PoseOrder {

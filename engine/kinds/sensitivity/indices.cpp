@@ -6,9 +6,8 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/run/counts.h"
+#include "engine/run/result.h"
 #include "engine/stats/indices.h"
-#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {

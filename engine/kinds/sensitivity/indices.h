@@ -6,7 +6,7 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
-#include "engine/stats/interval.h"
+#include "engine/stats/moments.h"
 #include "engine/stats/tolerance.h"
 #include "engine/study/plan.h"
 
@@ -28,7 +28,7 @@ std::vector<Estimate> global_indices(std::span<const UnitStats> at_poses, double
 SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, std::vector<double> background,
                                      std::vector<double> rounding, double conf_level);
 
-/// Below which an index of an error of this standard deviation is rounding (stats/rounding.h).
+/// Below which an index of an error of this standard deviation is rounding (stats/indices.h).
 double index_rounding(const SensitivityResult& result, std::size_t response, double sigma);
 
 /// One response of a result, for tolerances, by the published index. sigma: [P] of the errors, as the study sets them.

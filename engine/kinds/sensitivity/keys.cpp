@@ -4,8 +4,8 @@
 #include <array>
 
 #include "engine/base/text.h"
-#include "engine/kinds/sensitivity/options.h"
-#include "engine/study/error_words.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {

@@ -7,17 +7,17 @@
 #include <optional>
 #include <span>
 
-#include "engine/kinds/registry.h"
+#include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/figures.h"
-#include "engine/kinds/sensitivity/index_change.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/kind.h"
+#include "engine/kinds/sensitivity/linearity.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/tolerance_files.h"
-#include "engine/kinds/sensitivity/tolerance_table.h"
-#include "engine/kinds/sensitivity/two_rankings.h"
+#include "engine/kinds/sensitivity/separation.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/report/display.h"
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/tolerance.h"
 
 namespace poesy {
@@ -25,13 +25,6 @@ namespace {
 
 /// An interval that reaches further than this share of its index is called wide.
 constexpr double kWideInterval = 0.10;
-
-/// Positions of values, the largest first.
-std::vector<std::size_t> largest_first(const std::vector<double>& values) {
-  std::vector<std::size_t> order = positions(values.size());
-  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t p) { return values[p]; });
-  return order;
-}
 
 /// The errors that make most of the mean square, and those that together make next to none; empty where not all of
 /// their effects are known, or none has one.
@@ -43,7 +36,8 @@ std::string few_matter_text(const StoredResult& result) {
   const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
   const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
   if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return {};
-  const std::vector<std::size_t> order = largest_first(shares);
+  std::vector<std::size_t> order = positions(shares.size());
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t p) { return shares[p]; });
   std::vector<std::string> names;
   double sum = 0.0;
   while (sum < kMost && names.size() < order.size()) {
@@ -245,106 +239,6 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
   section.table(tables, "convergence");
 }
 
-/// Tolerances in the unit shown of each error.
-std::vector<double> shown_tolerances(const StoredResult& result, const std::vector<double>& tolerances) {
-  std::vector<double> list(tolerances.size());
-  for (std::size_t p = 0; p < list.size(); ++p) list[p] = tolerances[p] / display(result.factors[p]).si;
-  return list;
-}
-
-Bars tolerance_bars(const StoredResult& result, const Tolerances& found, ArrayPool& pool) {
-  std::vector<std::string> units;
-  for (const NamedUnit& factor : result.factors) units.push_back(unit_text(factor));
-  BarQuantity shares{"share of the mean square that the study's sizes cause",
-                     {{"%"}},
-                     pool.add("mean_square_share", found.mean_square_share, 0.01)};
-  BarQuantity sizes{
-      "tolerance of equal effect", {units}, pool.add("equal_effect", shown_tolerances(result, found.equal_effect))};
-  return {{}, {std::move(shares), std::move(sizes)}, names_of(result.factors)};
-}
-
-void add_tolerances(const StoredResult& result, Page& page) {
-  if (!has_tolerances(result)) return;
-  Section& section = page.add_section("tolerances", "How tight must each be");
-  const std::size_t response = response_named(result, default_ranking(result));
-  const std::string& name = result.responses[response].name;
-  const std::optional<ReferenceError>& reference = sensitivity_of(result).tolerance_reference[response];
-  if (!reference) {
-    section.paragraph(fmt::format("No error has an effect on {}, so nothing can be said about tolerances.", name));
-    return;
-  }
-  ResponseTolerances found = stored_tolerances(result, response);
-  found.caveat = wrong_sizes_text(result, found);
-  section.paragraph(fmt::format(
-      "Tolerances, as standard deviations of normal errors, with which every error has the same effect on {}: the "
-      "tighter one, the more its error matters. They are counted from a reference, and all may be multiplied by one "
-      "number. 'poesy tolerances' with --limit gives those that keep {} below a limit, and studies that confirm them.",
-      name, name));
-  add_figure(page, section, "tolerances", tolerance_bars(result, found.all, page.figures.pool),
-             fmt::format(
-                 "What each error adds to the mean square of {} over samples and poses, and its tolerance of equal "
-                 "effect; {}.",
-                 name,
-                 mixed_units(result.factors) ? "the largest share first, for tolerances in mm and in deg do not compare"
-                                             : "the largest first"));
-  section.table(tolerance_table(result, found));
-}
-
-Bars bars_of_shares(const StoredResult& result, std::vector<BarQuantity> quantities) {
-  return {{}, std::move(quantities), names_of(result.factors)};
-}
-
-BarQuantity share(std::string label, const std::string& array, const std::vector<double>& values, ArrayPool& pool) {
-  return {std::move(label), {{"%"}}, pool.add(array, values, 0.01)};
-}
-
-/// The largest magnitude over the responses of a measure [R x P] of each error; NaN where none is known.
-std::vector<double> largest(const std::vector<double>& measure, std::size_t factors) {
-  std::vector<double> list(factors, std::nan(""));
-  for (std::size_t at = 0; at < measure.size(); ++at) {
-    list[at % factors] = std::fmax(list[at % factors], std::abs(measure[at]));
-  }
-  return list;
-}
-
-void add_separation(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (!sensitivity_of(result).separation) return;
-  const SeparationResult& found = *sensitivity_of(result).separation;
-  Section& section = page.add_section("calibration", "What calibration can remove");
-  section.paragraph(fmt::format(
-      "To first order, a part of each error's effect enters through the actuated directions, where a correction of the "
-      "actuators can take it away. The removable share is what the best correction at each pose removes; what is left "
-      "has to be prevented by tolerances. The effect is measured by {}. Of all errors together, {} is removable.",
-      sensitivity_of(result).separation_measure, percent_text(found.removable_together)));
-  ArrayPool& pool = page.figures.pool;
-  add_figure(
-      page, section, "separation",
-      bars_of_shares(result, {share("removable by calibration", "removable", found.removable, pool),
-                              share("enters through the actuated directions", "drive_share", found.drive_share, pool)}),
-      "How much of each error's effect calibration can remove.");
-  section.table(tables, "separation");
-}
-
-void add_fidelity(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (!sensitivity_of(result).fidelity) return;
-  const FidelityResult& found = *sensitivity_of(result).fidelity;
-  Section& section = page.add_section("linearity", "Is first order enough");
-  section.paragraph(
-      fmt::format("The study was solved at fidelity \"{}\" and, on the same draws, at \"{}\". An error is linear where "
-                  "they differ by no more than {:.3g} % of its largest effect, at the size the study sets.",
-                  sensitivity_of(result).fidelities[0], sensitivity_of(result).fidelities[1], 100.0 * found.linearity));
-  ArrayPool& pool = page.figures.pool;
-  const std::size_t factors = result.factors.size();
-  add_figure(
-      page, section, "fidelity",
-      bars_of_shares(result, {share("nonlinearity: change of mean and scatter", "nonlinearity",
-                                    largest(found.nonlinearity, factors), pool),
-                              share("discrepancy of the indices", "discrepancy",
-                                    largest(found.relative_discrepancy, factors), pool)}),
-      "How far the fidelities are apart, the largest of all responses, in percent of the error's largest effect.");
-  section.table(tables, "fidelity");
-}
-
 void warn_of_unknown_indices(const StoredResult& result, std::vector<std::string>& list) {
   const SensitivityResult& found = sensitivity_of(result);
   std::vector<std::string> unknown;
@@ -428,12 +322,10 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_which_errors_matter(result, tables, page);
   add_where(result, page);
   add_how_sure(result, tables, page);
-  add_tolerances(result, page);
-  add_separation(result, tables, page);
-  add_fidelity(result, tables, page);
+  add_tolerance_section(result, page);
+  add_separation_section(result, tables, page);
+  add_fidelity_section(result, tables, page);
 }
-
-StudyWords words(const StoredResult&) { return {.draws = true}; }
 
 }  // namespace
 
@@ -441,7 +333,7 @@ constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
                                               .tables = sensitivity_tables,
                                               .two_rankings = two_rankings,
                                               .settling = settling,
-                                              .words = words,
+                                              .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
                                               .warn = warn,
                                               .shown_cells = sensitivity_cells,
                                               .page = add_page,

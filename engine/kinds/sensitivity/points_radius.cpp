@@ -8,10 +8,9 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/nan.h"
-#include "engine/run/some_poses.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/rank_correlation.h"
-#include "engine/stats/rounding.h"
 
 namespace poesy {
 namespace {
@@ -48,52 +47,35 @@ std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<Platfor
   }
 }
 
-/// Effects of all errors on all responses, [R x P], by the published estimator.
-class Effects {
- public:
-  Effects(const Plan& plan, const Model& model)
-      : plan_(plan), model_(model), none_(model.description().factors.size(), 0.0) {
-    const std::size_t responses = model.description().responses.size();
-    local_.resize(responses * plan.slots());
-    const auto evaluator = model.evaluator(plan.solver());
-    const std::size_t poses = some_poses(plan.poses().size());
-    for (std::size_t n = 0; n < poses; ++n) add(plan.poses()[some_pose(n, plan.poses().size())], *evaluator);
-  }
-
-  std::vector<double> all() const {
-    std::vector<double> effects;
-    for (std::size_t n = 0; n < local_.size(); ++n) {
-      const double sigma = sigma_of(n % plan_.slots());
-      const double rounding = index_rounding(model_.rounding(n / plan_.slots()), sigma);
-      effects.push_back(sigma * told_from_rounding(published_index(local_[n]), rounding));
-    }
-    return effects;
-  }
-
- private:
-  double sigma_of(std::size_t slot) const { return plan_.distributions()[slot].standard_deviation(); }
-
-  /// A pose without a first order is left out.
-  void add(std::span<const double> pose, Evaluator& evaluator) {
-    std::vector<double> responses(local_.size() / plan_.slots());
-    for (std::size_t slot = 0; slot < plan_.slots(); ++slot) {
-      const std::array error{sigma_of(slot)};
+/// Effects of all errors on all responses, [R x P], by the published estimator. Poses without a first order are left
+/// out.
+std::vector<double> effects_of(const Plan& plan, const Model& model) {
+  const std::vector<double> no_background(model.description().factors.size(), 0.0);
+  std::vector<double> responses(model.description().responses.size());
+  std::vector<std::vector<LocalIndex>> local(responses.size() * plan.slots());  // [R x P] at the poses
+  const auto evaluator = model.evaluator(plan.solver());
+  for (std::size_t n = 0; n < some_poses(plan.poses().size()); ++n) {
+    const std::span<const double> pose = plan.poses()[some_pose(n, plan.poses().size())];
+    for (std::size_t slot = 0; slot < plan.slots(); ++slot) {
+      const std::array error{plan.distributions()[slot].standard_deviation()};
       std::array status{SolveStatus::converged};
       std::array iterations{std::uint32_t{0}};
-      evaluator.evaluate({pose, none_, plan_.factors().subspan(slot, 1), error, 1},
-                         {responses, status, iterations, {}});
+      evaluator->evaluate({pose, no_background, plan.factors().subspan(slot, 1), error, 1},
+                          {responses, status, iterations, {}});
       if (status[0] != SolveStatus::converged) continue;
       for (std::size_t r = 0; r < responses.size(); ++r) {
-        local_[r * plan_.slots() + slot].push_back({responses[r] / error[0], 0.0});
+        local[r * plan.slots() + slot].push_back({responses[r] / error[0], 0.0});
       }
     }
   }
-
-  const Plan& plan_;
-  const Model& model_;
-  std::vector<double> none_;                    ///< [F] no other errors
-  std::vector<std::vector<LocalIndex>> local_;  ///< [R x P] at the poses
-};
+  std::vector<double> effects;
+  for (std::size_t n = 0; n < local.size(); ++n) {
+    const double sigma = plan.distributions()[n % plan.slots()].standard_deviation();
+    const double rounding = index_rounding(model.rounding(n / plan.slots()), sigma);
+    effects.push_back(sigma * told_from_rounding(published_index(local[n]), rounding));
+  }
+  return effects;
+}
 
 }  // namespace
 
@@ -102,11 +84,11 @@ std::vector<double> radius_rank_correlations(const Study& study, const Plan& pla
   const std::optional<MechanismChoice> mechanism = to_first_order(study.mechanism);
   if (!mechanism || !mechanism->entry->build_with_points) return {};
   const std::unique_ptr<Model> own = build_model(*mechanism);
-  const std::vector<double> effects = Effects(plan, *own).all();
+  const std::vector<double> effects = effects_of(plan, *own);
   std::vector<double> correlations;
   for (const double multiple : kPointsRadii) {
     const std::unique_ptr<Model> other = model_with(*mechanism, at_radius(own->metric_points(), multiple));
-    const std::vector<double> others = other ? Effects(plan, *other).all() : std::vector(effects.size(), kNaN);
+    const std::vector<double> others = other ? effects_of(plan, *other) : std::vector(effects.size(), kNaN);
     for (std::size_t r = 0; r < own->description().responses.size(); ++r) {
       const std::size_t from = r * plan.slots();
       correlations.push_back(

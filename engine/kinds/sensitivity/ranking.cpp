@@ -5,41 +5,245 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
 
+#include "engine/base/error.h"
+#include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/indices.h"
-#include "engine/stats/rounding.h"
+#include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/separation.h"
+#include "engine/stats/indices.h"
+#include "engine/stats/rank_correlation.h"
 
 namespace poesy {
 namespace {
 
-/// What the errors are put in order by, the largest first.
-double key(const StoredResult& result, std::size_t response, std::size_t p, RowOrder order) {
-  const SensitivityResult& found = sensitivity_of(result);
-  switch (order) {
-    case RowOrder::effect:
-      return effect(result, response, p);
-    case RowOrder::index:
-      return shown_indices(result).value[response * found.factors + p] * display(result.factors[p]).si;
-    case RowOrder::not_converged:
-      return share_not_converged(found, p);
-    case RowOrder::name:
-    case RowOrder::study:
-      break;
-  }
-  return 0.0;
-}
-
+/// Positions of the errors in this order.
 std::vector<std::size_t> ordered(const StoredResult& result, std::size_t response, RowOrder order) {
-  std::vector<std::size_t> rows = positions(sensitivity_of(result).factors);
+  const SensitivityResult& found = sensitivity_of(result);
+  const auto key = [&](std::size_t p) {
+    double value = 0.0;
+    if (order == RowOrder::effect) value = effect(result, response, p);
+    if (order == RowOrder::index)
+      value = shown_indices(result).value[response * found.factors + p] * display(result.factors[p]).si;
+    if (order == RowOrder::not_converged) value = share_not_converged(found, p);
+    return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
+  };
+  std::vector<std::size_t> rows = positions(found.factors);
   if (order == RowOrder::name) {
     std::ranges::stable_sort(rows, {}, [&](std::size_t p) { return result.factors[p].name; });
-    return rows;
+  } else {
+    std::ranges::stable_sort(rows, std::ranges::greater(), key);
   }
-  std::ranges::stable_sort(rows, std::ranges::greater(), [&](std::size_t p) {
-    const double value = key(result, response, p, order);
-    return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
-  });
   return rows;
+}
+
+/// The effects of one result's errors on its response, in SI, for the errors that both results have.
+struct Ranking {
+  std::vector<double> effects;  ///< 0: none; NaN: not known
+  std::string metric;           ///< its name
+  NamedUnit response;           ///< that ranks
+};
+
+Ranking ranking_of(const RankedResult& ranked, const std::vector<std::size_t>& factors) {
+  const StoredResult& result = ranked.result;
+  const std::size_t r = response_named(result, ranked.response);
+  const GlobalIndices shown = shown_indices(result);
+  Ranking ranking{{}, result.metric, result.responses[r]};
+  for (const std::size_t p : factors) {
+    const double index = without_rounding(result, shown.value[r * result.factors.size() + p], r, p);
+    ranking.effects.push_back(index * result.factor_sigma[p]);
+  }
+  return ranking;
+}
+
+/// One more than the number of errors with a larger effect.
+Cell rank_cell(const Ranking& ranking, std::size_t at) {
+  if (std::isnan(ranking.effects[at])) return text_cell("");
+  const auto larger = [&](double effect) { return effect > ranking.effects[at]; };
+  return count_cell(1 + static_cast<std::uint64_t>(std::ranges::count_if(ranking.effects, larger)));
+}
+
+/// Rank and effect of each error. Refers to the ranking.
+void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking& ranking, bool by_metric) {
+  const std::string suffix = letter == 'A' ? "_a" : "_b";
+  const NamedUnit& response = ranking.response;
+  const std::string in = fmt::format(" in {}", letter);
+  columns.push_back({number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in)),
+                     [&ranking](std::size_t n) { return rank_cell(ranking, n); }});
+  columns.push_back(
+      {number_column("effect" + suffix, response.name + (by_metric ? ", " + ranking.metric + " metric" : in),
+                     unit_text(response)),
+       [&ranking](std::size_t n) { return value_cell(ranking.effects[n], ranking.response); }});
+}
+
+/// How many errors have a known effect in both.
+std::size_t known_in_both(const Ranking& a, const Ranking& b) {
+  std::size_t known = 0;
+  for (std::size_t n = 0; n < a.effects.size(); ++n) known += !std::isnan(a.effects[n]) && !std::isnan(b.effects[n]);
+  return known;
+}
+
+std::string tau_text(double tau, std::size_t errors) {
+  if (std::isnan(tau))
+    return "Kendall's tau of the two rankings is not known: too few errors have a known effect in both.";
+  return fmt::format(
+      "Kendall's tau of the two rankings is {}, over {}: 1 where they have the same order, 0 where one says nothing of "
+      "the other, -1 where one is the other reversed.",
+      number_text(tau, 2), counted(errors, "error", "errors"));
+}
+
+constexpr std::string_view kWhyMetricsDiffer =
+    "The published metric weighs radians against metres, so its ranking depends on the unit of length and on where the "
+    "base frame is; the platform's metric measures how far its points move, which depends on neither.";
+
+std::vector<std::string> remarks(const RankedResult& a, const RankedResult& b, double tau, std::size_t errors) {
+  std::vector<std::string> list{tau_text(tau, errors)};
+  if (differ_in_metric(a.result, b.result)) {
+    list.emplace_back(kWhyMetricsDiffer);
+  } else if (a.result.metric == b.result.metric && a.result.metric_points != b.result.metric_points) {
+    list.emplace_back("The two metrics have different points of the platform, and so different effects.");
+  }
+  const auto names_a = names_of(a.result.factors);
+  const auto names_b = names_of(b.result.factors);
+  for (const auto& [letter, only] : {std::pair('A', only_in(names_a, names_b)), {'B', only_in(names_b, names_a)}}) {
+    if (!only.empty()) list.push_back(fmt::format("Only in {}: {}.", letter, fmt::join(only, ", ")));
+  }
+  return list;
+}
+
+/// The errors that both have, in this order of A.
+Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder order) {
+  Common both = common(names_of(a.result.factors), names_of(b.result.factors));
+  if (both.empty()) {
+    throw InputError({.file = b.path}, fmt::format("has no error in common with {}", a.path),
+                     "compare two results that share some");
+  }
+  const std::vector<std::size_t> rows = ranked_errors(a.result, a.response, order).rows;
+  std::ranges::sort(both, {}, [&](const auto& one) { return std::ranges::find(rows, one.first) - rows.begin(); });
+  return both;
+}
+
+/// Which columns go first where the room does not suffice: other responses, from the last, then the rank.
+enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
+
+/// The responses of the headline beside the one that ranks, those that have a dimension.
+std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
+  std::vector<std::size_t> others;
+  for (const std::size_t r : result.headline) {
+    if (r != ranking && dimension_of(result.responses[r].unit) != Dimension::number) others.push_back(r);
+  }
+  return others;
+}
+
+using Columns = std::vector<FilledColumn>;
+
+/// An index and the ends of its interval.
+void add_index(Columns& columns, const StoredResult& result, std::size_t r, const std::string& name,
+               const std::string& heading, int dispensable) {
+  const GlobalIndices shown = shown_indices(result);
+  columns.push_back(index_column(result, shown.value, r, name, heading, dispensable));
+  columns.push_back(index_column(result, shown.low, r, name + "_low", "low", dispensable));
+  columns.push_back(index_column(result, shown.high, r, name + "_high", "high", dispensable));
+}
+
+/// Refers to both.
+Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
+  const std::size_t response = ranked.response;
+  const Unit& unit = display(result.responses[response]);
+  Columns list{rank_column(ranked, kRank), name_column(result.factors, "error")};
+  list.push_back({number_column("effect", "effect", unit.name), [&result, &unit, response](std::size_t p) {
+                    return index_cell(shown_indices(result).value[response * result.factors.size() + p],
+                                      result.factor_sigma[p] / unit.si, index_rounding(result, response, p));
+                  }});
+  add_index(list, result, response, "index", "index", 0);
+  list.push_back({number_column("sigma", "sigma"),
+                  [&](std::size_t p) { return value_cell(result.factor_sigma[p], result.factors[p]); }});
+  list.push_back(unit_column(result.factors));
+  int dispensable = kFirstOther;
+  for (const std::size_t r : other_responses(result, response)) {
+    const std::string& name = result.responses[r].name;
+    add_index(list, result, r, "index_" + name, name, dispensable++);
+  }
+  if (has_index_changes(result)) {
+    list.push_back({percent_column("index_change", "at a tenth", kIndexChange), [&result, response](std::size_t p) {
+                      return change_cell(sensitivity_of(result).index_change[response * result.factors.size() + p]);
+                    }});
+  }
+  list.push_back({percent_column("not_converged", "not converged", kNotConverged),
+                  [&](std::size_t p) { return percent_cell(share_not_converged(sensitivity_of(result), p)); }});
+  if (has_corrected_indices(result)) {
+    list.push_back(
+        index_column(result, sensitivity_of(result).global, response, "index_published", "published", dispensable));
+  }
+  return list;
+}
+
+std::vector<std::string> ranked_notes(const StoredResult& result, const RankedErrors& ranked) {
+  std::vector<std::string> list{fmt::format(
+      "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
+      "between them; low, high: its {:.3g} % interval",
+      result.responses[ranked.response].name, 100.0 * sensitivity_of(result).conf_level)};
+  if (has_corrected_indices(result)) {
+    list.emplace_back(
+        "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
+        "poses; index is without that noise");
+  } else {
+    list.push_back(
+        fmt::format("index is the published estimator, which counts the noise of sampling as spread between "
+                    "poses, because an older poesy ({}) wrote this result",
+                    result.poesy_version));
+  }
+  list.emplace_back(
+      "effect: index x sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
+      "indices per mm and per deg do not compare");
+  if (has_index_changes(result)) {
+    list.emplace_back(
+        "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
+        "changes, the index says something about the size studied and no other");
+    list.push_back(index_change_text(result, ranked.response));
+  }
+  list.emplace_back("not converged: share of the samples whose solve did not settle");
+  return list;
+}
+
+/// How the ranking changes with the points of the platform's metric; empty where the result does not say it.
+std::string radius_note(const StoredResult& result, std::size_t response) {
+  const std::vector<double>& tau = sensitivity_of(result).radius_tau;
+  const std::size_t responses = result.responses.size();
+  if (tau.empty() || std::isnan(tau[response]) || std::isnan(tau[responses + response])) return {};
+  return fmt::format(
+      "ranked by {} to first order, with the metric's points as they are and at half and twice their distance from "
+      "their middle: Kendall's tau of both rankings with the first is {:.2f} and {:.2f} (1: the same order)",
+      result.responses[response].name, tau[response], tau[responses + response]);
+}
+
+/// Why some cells hold no number; empty where none is so.
+std::string rounding_note(const Table& table) {
+  const auto is_rounding = [](const Cell& cell) { return cell.text == kTooSmall; };
+  const bool any = std::ranges::any_of(
+      table.rows, [&](const std::vector<Cell>& row) { return std::ranges::any_of(row, is_rounding); });
+  if (!any) return {};
+  return fmt::format(
+      "{}: the error is so small that its effect cannot be told from the rounding of the solves; study "
+      "larger errors",
+      kTooSmall);
+}
+
+Table ranked_table(const StoredResult& result, const RankedErrors& ranked) {
+  const std::string& response = result.responses[ranked.response].name;
+  Table table{.name = "ranked",
+              .caption = fmt::format("Effect of each error on {} at the size the study gives it", response),
+              .columns = {},
+              .notes = ranked_notes(result, ranked),
+              .ranked = true};
+  fill(table, ranked.rows, ranked_columns(result, ranked));
+  for (std::string note : {radius_note(result, ranked.response), rounding_note(table)}) {
+    if (!note.empty()) table.notes.push_back(std::move(note));
+  }
+  return table;
 }
 
 }  // namespace
@@ -96,6 +300,43 @@ RankedErrors ranked_errors(const StoredResult& result, std::string_view response
   for (std::size_t n = 0; n < by_effect.size(); ++n) found.ranks[by_effect[n]] = n + 1;
   found.rows = order == RowOrder::effect ? by_effect : ordered(result, found.response, order);
   return found;
+}
+
+TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order) {
+  check_comparable(a.result, a.path, b.result, b.path);
+  std::vector<std::size_t> of_a;
+  std::vector<std::size_t> of_b;
+  for (const auto& [pa, pb] : errors_in_order(a, b, order)) {
+    of_a.push_back(pa);
+    of_b.push_back(pb);
+  }
+  const Ranking first = ranking_of(a, of_a);
+  const Ranking second = ranking_of(b, of_b);
+  const bool by_metric = differ_in_metric(a.result, b.result);
+  Table table{.name = "rankings",
+              .caption = "Two rankings: the effect of each error at the size that its study gives it",
+              .columns = {},
+              .ranked = true};
+  std::vector<FilledColumn> columns{
+      {text_column("error", "error"), [&](std::size_t n) { return text_cell(a.result.factors[of_a[n]].name); }}};
+  add_columns(columns, 'A', first, by_metric);
+  add_columns(columns, 'B', second, by_metric);
+  fill(table, positions(of_a.size()), columns);
+  const double tau = kendall_tau(first.effects, second.effects);
+  return {std::move(table), tau, remarks(a, b, tau, known_in_both(first, second))};
+}
+
+FilledColumn rank_column(const RankedErrors& ranked, int dispensable) {
+  return {number_column("rank", "rank", "", dispensable),
+          [&ranked](std::size_t p) { return count_cell(ranked.ranks[p]); }};
+}
+
+std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options) {
+  const RankedErrors ranked = ranked_errors(result, options.ranked_by, options.order);
+  std::vector<Table> tables{ranked_table(result, ranked)};
+  if (sensitivity_of(result).separation) tables.push_back(separation_table(result, ranked));
+  if (sensitivity_of(result).fidelity) tables.push_back(fidelity_table(result, ranked));
+  return tables;
 }
 
 }  // namespace poesy

@@ -7,8 +7,8 @@
 
 #include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/stored.h"
 #include "engine/report/display.h"
+#include "engine/report/tables.h"
 
 namespace poesy {
 
@@ -57,7 +57,22 @@ double effect(const StoredResult& result, std::size_t response, std::size_t fact
 FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 
+/// The rank of each error. Refers to the ranking.
+FilledColumn rank_column(const RankedErrors& ranked, int dispensable);
+
+/// With the errors in the order asked for:
+/// - ranked: the errors with the effect on the response that ranks (global index x sigma), its index and interval,
+///   those of the headline's other responses, the share of samples not converged, and the published index where that
+///   is not the one shown, in mm and deg;
+/// - separation and fidelity, where the result says them.
+std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options);
+
 /// Share of an error's samples that were not solved.
 double share_not_converged(const SensitivityResult& result, std::size_t factor);
+
+/// A beside B, of the errors that both have. Errors without effect share the last rank; those whose effect cannot be
+/// told from rounding have none and do not count for the tau. Throws InputError where the results are of two kinds or
+/// mechanisms, or have no error in common. Precondition: sensitivity results.
+TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order = RowOrder::effect);
 
 }  // namespace poesy

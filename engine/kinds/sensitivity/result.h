@@ -3,11 +3,30 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "engine/files/result_file.h"
 #include "engine/run/result.h"
+#include "engine/stats/tolerance.h"
+#include "engine/study/study.h"
 
 namespace poesy {
+
+/// The error from which equal-effect tolerances are counted, and its own tolerance.
+struct ToleranceReference {
+  FactorIndex factor;  ///< one of those that vary
+  double tolerance;    ///< SI
+};
+
+/// What a sensitivity study alone asks.
+struct SensitivityOptions {
+  std::optional<ToleranceReference> reference;  ///< empty: the error of smallest effect
+  double linearity = 0.01;                      ///< at two fidelities: up to this an error is linear
+};
+
+/// The kind of study that tells what each error does on its own.
+extern const StudyKind kSensitivityStudy;
 
 /// Which part of each error's effect the actuators can take away, to first order: P errors, M poses. Effects are those
 /// of model/model.h, in m per SI unit of the error. NaN where an error has no effect.
@@ -37,7 +56,7 @@ struct FidelityResult {
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined. global is the
 /// published estimator; global_corrected is what tables and figures call the index, free of what sampling adds to
 /// global (stats/indices.h), and NaN where the error is too small for its effect to be told from rounding
-/// (stats/rounding.h). Files of older versions have neither this nor rounding: they are empty.
+/// (stats/indices.h). Files of older versions have neither this nor rounding: they are empty.
 struct SensitivityResult {
   std::size_t responses = 0;  ///< R
   std::size_t factors = 0;    ///< P
@@ -71,12 +90,28 @@ struct SensitivityResult {
   /// Where the study has adaptive samples.
   std::optional<ConvergenceResult> convergence;
   /// The global indices after fewer samples, where it has a fixed number of them, with intervals: each is what a study
-  /// with exactly so many samples at each pose (engine/run/history_points.h) would find, bit by bit. The
+  /// with exactly so many samples at each pose (engine/run/evaluate_unit.h) would find, bit by bit. The
   /// last is the result's. Not in files of older versions.
   std::optional<EstimateCourse> history;
 
   /// Over all cells.
   SolveCounts total() const { return total_of(solves); }
 };
+
+/// What a sensitivity result says, read back. Its failures and its convergence are those of StoredResult; its
+/// `background` is empty in files of older versions.
+struct StoredSensitivity : SensitivityResult {
+  std::vector<std::uint64_t> factor_limb;                          ///< [P] empty in files of older versions
+  std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
+  std::vector<double> mean_square_bound;                           ///< [R] Response::mean_square_bound; likewise
+  std::string separation_measure;                                  ///< what length `separation` speaks of
+  std::vector<std::string> published_class;  ///< [P] the literature's class of each error, where that is separated
+  std::vector<std::string> fidelities;       ///< the two that `fidelity` compares
+};
+
+/// Precondition: a sensitivity result.
+inline const StoredSensitivity& sensitivity_of(const StoredResult& result) {
+  return found_of<StoredSensitivity>(result);
+}
 
 }  // namespace poesy

@@ -1,4 +1,4 @@
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/sensitivity/kind.h"
 
 #include <memory>
 #include <numeric>
@@ -8,13 +8,11 @@
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/linearity.h"
-#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/points_radius.h"
 #include "engine/kinds/sensitivity/separation.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
-#include "engine/run/history_points.h"
-#include "engine/run/pending_units.h"
 #include "engine/run/rounds.h"
 
 namespace poesy {
@@ -213,6 +211,10 @@ std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& 
   return std::move(work).result();
 }
 
-constinit const RunKind kSensitivityRun{run_study_of_kind, sensitivity_outlook, cells};
+constinit const Kind kSensitivityKind{.study = kSensitivityStudy,
+                                      .run = {run_study_of_kind, sensitivity_outlook, cells},
+                                      .file = kSensitivityFile,
+                                      .report = kSensitivityReport,
+                                      .set_tolerances = set_sensitivity_tolerances};
 
 }  // namespace poesy

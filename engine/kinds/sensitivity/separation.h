@@ -2,10 +2,13 @@
 
 #include <span>
 
+#include "engine/files/result_parts.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/model/model.h"
-#include "engine/model/pose_set.h"
+#include "engine/report/html/page.h"
 #include "engine/run/result.h"
+#include "engine/study/poses/pose_selection.h"
 
 namespace poesy {
 
@@ -14,5 +17,18 @@ namespace poesy {
 /// Precondition: the model separates its errors and reaches the poses.
 SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
                                  std::span<const double> sigma);
+
+/// What calibration can remove in result files: /separation, nothing where the model does not separate its errors.
+/// @{
+void write_separation(ResultBuilder& result, const Study& study, const std::optional<SeparationResult>& found);
+void read_separation(const h5::File& file, StoredSensitivity& found);
+/// @}
+/// separation.csv and its tables by pose.
+void append_separation_tables(CsvTables& tables, const StoredResult& result);
+
+/// What calibration can remove of each error's effect, in this order. Precondition: the result says it.
+Table separation_table(const StoredResult& result, const RankedErrors& ranked);
+/// The section of a report, where the result says it.
+void add_separation_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
 }  // namespace poesy

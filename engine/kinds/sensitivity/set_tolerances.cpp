@@ -1,4 +1,4 @@
-#include "engine/kinds/sensitivity/set_tolerances.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,21 +6,97 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
+#include <set>
 
+#include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/base/units.h"
-#include "engine/kinds/sensitivity/index_change.h"
+#include "engine/files/csv_table.h"
+#include "engine/files/file_writer.h"
+#include "engine/kinds/registry.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/linearity.h"
 #include "engine/kinds/sensitivity/ranking.h"
-#include "engine/kinds/sensitivity/tolerance_files.h"
-#include "engine/kinds/sensitivity/tolerance_table.h"
-#include "engine/kinds/stored_study.h"
-#include "engine/report/text_table.h"
+#include "engine/kinds/study_file.h"
+#include "engine/report/table.h"
+#include "engine/study/study.h"
 
 namespace poesy {
 namespace {
+
+constexpr const char* kPoses = "confirm_poses";
+constexpr const char* kMechanism = "confirm_mechanism.toml";
+constexpr const char* kEqualEffect = "confirm_equal_effect";
+constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
+/// Four standard deviations of a normal error reach as far as its part is large.
+constexpr double kShareOfPart = 0.25;
+
+void write_poses(const std::string& folder, const StoredResult& result) {
+  const auto coordinate = [&](std::size_t m, std::size_t c) { return result.poses[PoseIndex(m)][c]; };
+  CsvTable table{kPoses,
+                 {result.pose_coordinates.front().name, [&](std::size_t m) { return shortest(coordinate(m, 0)); }},
+                 result.poses.size()};
+  for (std::size_t c = 1; c < result.pose_coordinates.size(); ++c) {
+    table.columns.push_back(
+        {result.pose_coordinates[c].name, [&coordinate, c](std::size_t m) { return coordinate(m, c); }});
+  }
+  write_csv(folder, table);
+}
+
+/// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
+Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
+  // The file of poses, if there is one, is known by a path relative to a study that may be gone; the result has them.
+  Study study =
+      study_of_text(result.study_text, "the study in the result", catalog, StudyUse::evaluate, &result.mechanism_text);
+  if (study.analysis.factors.size() != result.factors.size()) {
+    throw FileError("the study in the result", "does not fit the result's factors", "run the study again");
+  }
+  study.analysis.kind = &find_kind("monte-carlo")->study;
+  study.analysis.asked.reset();
+  if (study.mechanism.file) study.mechanism.file->name = kMechanism;
+  const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
+  if (along_file) study.poses.select = PoseSelection::Select::file;
+  study.mechanism.compared.reset();
+  if (study.poses.select == PoseSelection::Select::file) study.poses.file = std::string(kPoses) + ".csv";
+  return study;
+}
+
+/// A quarter of the part that each of the study's errors is an error of, [P].
+std::vector<double> quarters_of_parts(const Study& study) {
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  std::vector<double> largest;
+  for (const FactorIndex factor : study.analysis.factors) {
+    largest.push_back(kShareOfPart * model->error_bound(factor).size);
+  }
+  return largest;
+}
+
+/// Errors whose tolerance is as large as it may be go to `at_largest`.
+void set_tolerances(Study& study, std::span<const double> largest, std::span<const double> tolerances,
+                    std::vector<std::string>& at_largest) {
+  for (std::size_t p = 0; p < tolerances.size(); ++p) {
+    const FactorIndex factor = study.analysis.factors[p];
+    study.errors.by_factor[factor.value] = Distribution::normal(std::min(tolerances[p], largest[p]));
+    if (tolerances[p] < largest[p]) continue;
+    const Factor& named = study.model().factors[factor.value];
+    const std::string text = named.name + " is " + readable_text({largest[p], named.dimension});
+    if (std::ranges::find(at_largest, text) == at_largest.end()) at_largest.push_back(text);
+  }
+}
+
+std::string write_study(const std::string& folder, const std::string& name, const Study& study,
+                        const std::string& caveat) {
+  const std::string path = (std::filesystem::path(folder) / (name + ".toml")).string();
+  FileWriter writer(path);
+  if (const std::string held = held_errors_text(study); !held.empty()) writer.write("# " + held + "\n");
+  if (!caveat.empty()) writer.write("# " + caveat + "\n");
+  writer.write(resolved_text(study));
+  writer.commit();
+  if (study.mechanism.file)
+    write_text((std::filesystem::path(folder) / kMechanism).string(), study.mechanism.file->text);
+  return path;
+}
 
 /// Position of the thing that an option names.
 std::size_t position(const std::vector<NamedUnit>& things, const std::string& name, std::string_view option,
@@ -52,12 +128,6 @@ double positive(const std::string& text, std::string_view option, const NamedUni
     throw InputError({}, fmt::format("{}: '{}' is not above zero", option, printable(text)), "write a positive one");
   }
   return quantity.si;
-}
-
-void check_tolerances(const TolerancesOptions& options, const StoredResult& result) {
-  if (has_tolerances(result)) return;
-  throw InputError({options.result}, "has no tolerances, for an older poesy (" + result.poesy_version + ") wrote it",
-                   "run the study again");
 }
 
 /// Position of the response that the tolerances are for.
@@ -148,15 +218,11 @@ LimitTolerances tolerances_within_limit(const TolerancesOptions& options, const 
                           largest_tolerances(result, catalog));
 }
 
-/// result.h5 gives result_tolerances in the current folder.
-std::string default_folder(const std::string& result) {
-  return std::filesystem::path(result).stem().string() + "_tolerances";
-}
-
 /// Writes the table and the studies that test it; says what that was.
 std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found,
                         const Catalog& catalog) {
-  const std::string folder = options.folder.empty() ? default_folder(options.result) : options.folder;
+  const std::string beside = std::filesystem::path(options.result).stem().string() + "_tolerances";
+  const std::string folder = options.folder.empty() ? beside : options.folder;
   OutputFolder output(folder);
   claim_tolerance_files(output, result, found, catalog);
   output.open();
@@ -176,28 +242,16 @@ std::string write_files(const TolerancesOptions& options, const StoredResult& re
   return table + "\n" + commands;
 }
 
-/// How a Monte Carlo study settles whether the limit holds.
-std::string explanation(const StoredResult& result, const ResponseTolerances& found, std::size_t width) {
-  const NamedUnit& response = result.responses[found.response];
-  return prose_of(
-      fmt::format("each run says PASS if the root mean square of {} over all poses is at most {}, else FAIL "
-                  "with exit code 6",
-                  response.name, response_text(response, found.limit->limit)),
-      width);
-}
-
 /// Errors of the mechanism that the study neither varies nor has in its background; none where this program has no such
 /// mechanism, or cannot read the stored study any more.
 std::optional<std::string> perfect_errors_note(const StoredResult& result, const Catalog& catalog) {
   const std::optional<Study> study = study_in(result, catalog);
   if (!study) return std::nullopt;
-  std::vector<FactorIndex> present = study->analysis.factors;
+  const std::vector<FactorIndex>& varied = study->analysis.factors;
+  std::set<FactorIndex> present(varied.begin(), varied.end());
   if (const auto& background = study->analysis.background) {
-    present.insert(present.end(), background->factors.begin(), background->factors.end());
+    present.insert(background->factors.begin(), background->factors.end());
   }
-  std::ranges::sort(present, {}, &FactorIndex::value);
-  const auto repeated = std::ranges::unique(present, {}, &FactorIndex::value);
-  present.erase(repeated.begin(), repeated.end());
   const std::size_t all = study->model().factors.size();
   if (present.size() == all) return std::nullopt;
   const std::size_t absent = all - present.size();
@@ -216,9 +270,55 @@ std::string caveat_of(const TolerancesOptions& options, const StoredResult& resu
 
 }  // namespace
 
+std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances) {
+  if (!tolerances.limit) return {tolerances.all.equal_effect};
+  return {tolerances.limit->equal_effect, tolerances.limit->equal_tolerance};
+}
+
+std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog) {
+  return quarters_of_parts(monte_carlo_study(result, catalog));
+}
+
+void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
+                           const Catalog& catalog) {
+  folder.claim("tolerances.csv");
+  if (!tolerances.limit) return;
+  for (const char* study : {kEqualEffect, kEqualTolerance}) folder.claim(std::string(study) + ".toml");
+  const bool with_poses = monte_carlo_study(result, catalog).poses.select == PoseSelection::Select::file;
+  if (with_poses) folder.claim(std::string(kPoses) + ".csv");
+}
+
+Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
+                                const ResponseTolerances& tolerances, const Catalog& catalog) {
+  POESY_EXPECTS(tolerances.limit.has_value());
+  Study study = monte_carlo_study(result, catalog);
+  make_folder(folder);
+  if (study.poses.select == PoseSelection::Select::file) write_poses(folder, result);
+  study.analysis.limits = {{tolerances.response, tolerances.limit->limit}};
+  const ErrorModel as_studied = study.errors;
+  const NamedUnit& response = result.responses[tolerances.response];
+  const std::string limit = response.unit == "1"
+                                ? shortest(tolerances.limit->limit)
+                                : readable_text({tolerances.limit->limit, display(response).dimension});
+  const std::vector<double> largest = quarters_of_parts(study);
+  Confirmation written;
+  const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
+    study.title = "Tests " + words + " against a limit of " + limit + " on the root mean square of " + response.name;
+    study.errors = as_studied;
+    set_tolerances(study, largest, values, written.at_largest);
+    written.paths.push_back(write_study(folder, name, study, tolerances.caveat));
+  };
+  add(kEqualEffect, "tolerances of equal effect", tolerances.limit->equal_effect);
+  add(kEqualTolerance, "equal tolerances", tolerances.limit->equal_tolerance);
+  return written;
+}
+
 std::string set_sensitivity_tolerances(const StoredResult& result, const TolerancesOptions& options,
                                        const Catalog& catalog, std::size_t width) {
-  check_tolerances(options, result);
+  if (!has_tolerances(result)) {
+    throw InputError({options.result}, "has no tolerances, for an older poesy (" + result.poesy_version + ") wrote it",
+                     "run the study again");
+  }
   const std::size_t response = chosen_response(options, result);
   const NamedUnit& named = result.responses[response];
   check_sizes(options, result, response);
@@ -231,9 +331,12 @@ std::string set_sensitivity_tolerances(const StoredResult& result, const Toleran
   found.caveat = caveat_of(options, result, found);
   Table table = tolerance_table(result, found);
   if (const auto note = perfect_errors_note(result, catalog)) table.notes.push_back(*note);
-  std::string text = text_of(table, width) + "\n" + write_files(options, result, found, catalog);
-  if (found.limit) text += explanation(result, found, width);
-  return text;
+  const std::string text = text_of(table, width) + "\n" + write_files(options, result, found, catalog);
+  if (!found.limit) return text;
+  return text + prose_of(fmt::format("each run says PASS if the root mean square of {} over all poses is at most {}, "
+                                     "else FAIL with exit code 6",
+                                     named.name, response_text(named, found.limit->limit)),
+                         width);
 }
 
 }  // namespace poesy

@@ -1,5 +1,3 @@
-#include "engine/report/html/comparison.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,6 @@
 
 #include "engine/base/error.h"
 #include "engine/report/display.h"
-#include "engine/report/html/parts.h"
 #include "engine/report/report_kind.h"
 
 namespace poesy {

@@ -22,8 +22,7 @@ class ArrayPool {
   /// name stands for one array. Returns the name.
   ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0);
 
-  /// By their names.
-  const std::map<std::string, std::vector<float>>& arrays() const { return arrays_; }
+  const std::map<std::string, std::vector<float>>& arrays() const { return arrays_; }  ///< By their names.
 
  private:
   std::map<std::string, std::vector<float>> arrays_;
@@ -147,7 +146,6 @@ struct FigureSet {
 /// floats in base64.
 std::string figures_json(const FigureSet& set);
 
-/// RFC 4648, with padding.
-std::string base64(std::span<const std::byte> bytes);
+std::string base64(std::span<const std::byte> bytes);  ///< RFC 4648, with padding.
 
 }  // namespace poesy

@@ -4,11 +4,64 @@
 
 #include <algorithm>
 
+#include "engine/base/text.h"
 #include "engine/files/version.h"
-#include "engine/report/html/markup.h"
 
 namespace poesy {
 namespace {
+
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+
+/// One character of one byte.
+std::string_view escaped_ascii(std::string_view character) {
+  constexpr std::pair<char, std::string_view> kEscapes[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+  const char byte = character.front();
+  for (const auto& [special, escape] : kEscapes) {
+    if (byte == special) return escape;
+  }
+  const bool control = static_cast<unsigned char>(byte) < 0x20 || byte == 0x7F;
+  return control && byte != '\n' && byte != '\t' ? kReplacement : character;
+}
+
+std::string column_heading(const Column& column) {
+  const std::string text =
+      column.unit.empty() || column.unit == "1" ? column.heading : fmt::format("{} [{}]", column.heading, column.unit);
+  return element("th", text, column.kind == Column::Kind::number ? "scope=\"col\" class=\"n\"" : "scope=\"col\"");
+}
+
+/// A number with as much room behind it as brings its decimal point below the others; a point is half as wide as a
+/// digit.
+std::string number_element(const Cell& cell, std::size_t longest_tail) {
+  const std::size_t tail = tail_of(cell);
+  const double point = tail == 0 ? 0.5 : 0.0;
+  const double room = static_cast<double>(longest_tail - tail) - point;
+  if (!cell.value || !(room > 0.0)) return element("td", cell.text, "class=\"n\"");
+  return element("td", cell.text, fmt::format("class=\"n\" style=\"--room:{}\"", room));
+}
+
+/// The rows of a table; the first column of texts names them.
+std::string body_html(const Table& table) {
+  const std::size_t columns = table.columns.size();
+  const auto texts = std::ranges::find(table.columns, Column::Kind::text, &Column::kind);
+  const auto naming = texts == table.columns.end() ? 0 : static_cast<std::size_t>(texts - table.columns.begin());
+  std::vector<std::size_t> longest_tails(columns, 0);
+  for (const std::vector<Cell>& cells : table.rows) {
+    for (std::size_t c = 0; c < columns; ++c) longest_tails[c] = std::max(longest_tails[c], tail_of(cells[c]));
+  }
+  std::string html;
+  for (const std::vector<Cell>& cells : table.rows) {
+    html += "<tr>";
+    for (std::size_t c = 0; c < columns; ++c) {
+      const bool number = table.columns[c].kind == Column::Kind::number;
+      html += c == naming ? element("th", cells[c].text, "scope=\"row\"")
+              : number    ? number_element(cells[c], longest_tails[c])
+                          : element("td", cells[c].text);
+    }
+    html += "</tr>\n";
+  }
+  return html;
+}
 
 /// Scripts and styles of this document alone, and nothing from elsewhere.
 constexpr std::string_view kPolicy =
@@ -22,41 +75,26 @@ std::string head(const Page& page) {
       kReportMark, kPolicy, element("title", page.title), asset("report.css"));
 }
 
-/// The warnings as a section of their own.
-Section warnings_section(const Page& page) {
-  return {"warnings", page.warnings.size() == 1 ? "One warning" : fmt::format("{} warnings", page.warnings.size())};
-}
-
-std::string warnings_html(const Page& page) {
-  std::string html = "<ul>\n";
-  for (const std::string& warning : page.warnings) html += element("li", warning) + "\n";
-  return html + "</ul>\n";
-}
-
-std::string nav_entry(const Section& section) {
-  return fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id(), escaped(section.heading()));
-}
-
-std::string header(const Page& page) {
-  std::string html = "<header>\n" + element("h1", page.title) + "\n" +
-                     element("p", page.subtitle, "class=\"subtitle\"") + "\n<nav aria-label=\"Sections\"><ul>\n";
-  if (!page.warnings.empty()) html += nav_entry(warnings_section(page));
-  for (const Section& section : page.sections) html += nav_entry(section);
-  return html + "</ul></nav>\n</header>\n";
-}
-
-std::string section_html(const Section& section, std::string_view body, std::string_view attributes = {}) {
-  return fmt::format("<section id=\"{0}\"{1} aria-labelledby=\"{0}-h\">\n<h2 id=\"{0}-h\">{2}</h2>\n{3}</section>\n",
-                     section.id(), attributes, escaped(section.heading()), body);
-}
-
-std::string main_part(const Page& page) {
-  std::string html = "<main id=\"main\">\n";
-  if (!page.warnings.empty()) {
-    html += section_html(warnings_section(page), warnings_html(page), " class=\"warnings\"");
+/// The page's header with links to its sections, and the sections.
+std::string sections(const Page& page) {
+  std::string links;
+  std::string html;
+  const auto add = [&](const Section& section, std::string_view body, std::string_view attributes) {
+    const std::string heading = escaped(section.heading());
+    links += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id(), heading);
+    html += fmt::format("<section id=\"{0}\"{1} aria-labelledby=\"{0}-h\">\n<h2 id=\"{0}-h\">{2}</h2>\n{3}</section>\n",
+                        section.id(), attributes, heading, body);
+  };
+  if (const std::size_t count = page.warnings.size(); count > 0) {
+    std::string list;
+    for (const std::string& warning : page.warnings) list += element("li", warning) + "\n";
+    add({"warnings", count == 1 ? "One warning" : fmt::format("{} warnings", count)}, "<ul>\n" + list + "</ul>\n",
+        " class=\"warnings\"");
   }
-  for (const Section& section : page.sections) html += section_html(section, section.body());
-  return html + "</main>\n";
+  for (const Section& section : page.sections) add(section, section.body(), "");
+  return "<header>\n" + element("h1", page.title) + "\n" + element("p", page.subtitle, "class=\"subtitle\"") +
+         "\n<nav aria-label=\"Sections\"><ul>\n" + links + "</ul></nav>\n</header>\n<main id=\"main\">\n" + html +
+         "</main>\n";
 }
 
 std::string scripts(const Page& page) {
@@ -69,6 +107,33 @@ std::string scripts(const Page& page) {
 }
 
 }  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(length, 1));
+    safe += length == 0 ? kReplacement : length == 1 ? escaped_ascii(character) : character;
+    text.remove_prefix(character.size());
+  }
+  return safe;
+}
+
+std::string element(std::string_view tag, std::string_view text, std::string_view attributes) {
+  return fmt::format("<{0}{1}{2}>{3}</{0}>", tag, attributes.empty() ? "" : " ", attributes, escaped(text));
+}
+
+std::string html_table(const Table& table) {
+  std::string html = fmt::format(
+      "<div class=\"table-wrap\" tabindex=\"0\" role=\"group\" aria-label=\"{1}\" data-table=\"{0}\"><table>"
+      "<caption>{1}</caption>\n<thead><tr>",
+      escaped(table.name), escaped(table.caption));
+  for (const Column& column : table.columns) html += column_heading(column);
+  html += "</tr></thead>\n<tbody>\n" + body_html(table) + "</tbody></table></div>\n";
+  for (const std::string& note : table.notes) html += element("p", note, "class=\"note\"") + "\n";
+  return html;
+}
 
 Section& Section::paragraph(std::string_view text) {
   body_ += element("p", text) + "\n";
@@ -116,9 +181,9 @@ Section& Page::add_section(std::string id, std::string heading) {
 }
 
 std::string html_document(const Page& page) {
-  return head(page) + "<body>\n<a class=\"skip\" href=\"#main\">Skip to the results</a>\n" + header(page) +
-         main_part(page) + element("footer", fmt::format("Report by poesy {} ({})", poesy_version(), git_commit())) +
-         "\n" + scripts(page) + "</body>\n</html>\n";
+  return head(page) + "<body>\n<a class=\"skip\" href=\"#main\">Skip to the results</a>\n" + sections(page) +
+         element("footer", fmt::format("Report by poesy {} ({})", poesy_version(), git_commit())) + "\n" +
+         scripts(page) + "</body>\n</html>\n";
 }
 
 }  // namespace poesy

@@ -20,20 +20,28 @@ inline constexpr std::string_view kReportMark = "<meta name=\"generator\" conten
 /// Another name is a broken contract, and empty where contracts are not checked.
 std::string_view asset(std::string_view name);
 
+/// Text as it may stand in HTML, between tags and inside double quotes. What is not UTF-8, and control characters but
+/// line feeds and tabs, become U+FFFD.
+std::string escaped(std::string_view text);
+
+/// `<TAG ATTRIBUTES>text</TAG>`, the text escaped. attributes: HTML as it stands.
+std::string element(std::string_view tag, std::string_view text, std::string_view attributes = {});
+
+/// A table as HTML, in a box that scrolls: caption, headings with units, the cells as they are shown, notes below. Its
+/// box has the attribute data-table with the table's name.
+std::string html_table(const Table& table);
+
 /// A section of the report under a heading. All texts are plain ones, escaped here.
 class Section {
  public:
   /// Id: as an anchor; heading: for people.
   Section(std::string id, std::string heading) : id_(std::move(id)), heading_(std::move(heading)) {}
 
-  /// Adds one.
-  Section& paragraph(std::string_view text);
-  /// Names, each with what it is.
-  Section& definitions(const std::vector<std::pair<std::string, std::string>>& list);
+  Section& paragraph(std::string_view text);                                           ///< Adds one.
+  Section& definitions(const std::vector<std::pair<std::string, std::string>>& list);  ///< Names, each with what it is.
   /// The place of a figure of the page, which is drawn by its script.
   Section& figure(std::string_view key, std::string_view caption);
-  /// Adds it, open.
-  Section& table(const Table& table);
+  Section& table(const Table& table);  ///< Adds it, open.
   /// Adds the one of this name, where there is one.
   Section& table(std::span<const Table> tables, std::string_view name);
   /// Tables that are open only when the reader asks for them.
@@ -43,11 +51,9 @@ class Section {
   /// A long text as it stands, open only when the reader asks for it.
   Section& folded_text(std::string_view summary, std::string_view text);
 
-  /// As an anchor.
-  const std::string& id() const { return id_; }
-  /// For people.
-  const std::string& heading() const { return heading_; }
-  const std::string& body() const { return body_; }  ///< HTML
+  const std::string& id() const { return id_; }            ///< As an anchor.
+  const std::string& heading() const { return heading_; }  ///< For people.
+  const std::string& body() const { return body_; }        ///< HTML
 
  private:
   std::string id_;
@@ -67,7 +73,6 @@ struct Page {
   Section& add_section(std::string id, std::string heading);
 };
 
-/// The page as one HTML document that needs no other file.
-std::string html_document(const Page& page);
+std::string html_document(const Page& page);  ///< The page as one HTML document that needs no other file.
 
 }  // namespace poesy

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,8 @@
 /// What the sections of all kinds of results share.
 namespace poesy {
 
+struct ReportKind;
+
 /// A result and the file where it was found, as the reader may name it.
 struct ReportedResult {
   StoredResult stored;  ///< what it says
@@ -24,16 +27,14 @@ struct ReportedResult {
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
 /// The headline's responses, the one that ranks errors first (default_ranking).
 std::vector<std::size_t> headline_order(const StoredResult& result);
-/// The same, then all others.
-std::vector<std::size_t> response_order(const StoredResult& result);
+std::vector<std::size_t> response_order(const StoredResult& result);  ///< The same, then all others.
 
 /// "mm", for each of these responses.
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
 /// What a caption of bars says of the order of errors, whose units may be mixed.
 std::string order_by_effect(bool mixed);
-/// Whether not all have the same unit.
-bool mixed_units(const std::vector<NamedUnit>& things);
+bool mixed_units(const std::vector<NamedUnit>& things);  ///< Whether not all have the same unit.
 
 /// Which part of a result's cells goes into its figures, so that a report stays small.
 struct ShownCells {
@@ -49,10 +50,8 @@ struct ShownCells {
 
   /// Of numbers at all poses, [rows x M], those at the poses that are shown.
   std::vector<double> at_poses(std::span<const double> values) const;
-  /// Whether not every pose is shown.
-  bool thinned() const { return poses.size() < all_poses; }
-  /// What is left out, in a sentence; empty where nothing is.
-  std::string note() const;
+  bool thinned() const { return poses.size() < all_poses; }  ///< Whether not every pose is shown.
+  std::string note() const;  ///< What is left out, in a sentence; empty where nothing is.
 };
 
 /// The numbers that figures by pose show of each response at each pose where they show summaries: mean or median,
@@ -67,13 +66,10 @@ ShownCells shown_cells(const StoredResult& result, std::size_t rows,
 /// Makes the figures by pose of a result, of the cells shown. Refers to the result and the page.
 class PoseFigures {
  public:
-  /// For one page.
-  PoseFigures(const StoredResult& result, ShownCells shown, Page& page);
+  PoseFigures(const StoredResult& result, ShownCells shown, Page& page);  ///< For one page.
 
-  /// Positions of the responses shown.
-  const std::vector<std::size_t>& responses() const { return shown_.responses; }
-  /// Says in a section what is left out, if anything is.
-  void add_note(Section& section) const;
+  const std::vector<std::size_t>& responses() const { return shown_.responses; }  ///< Positions of the responses shown.
+  void add_note(Section& section) const;  ///< Says in a section what is left out, if anything is.
   /// Adds values [rows x M] in units of `unit`, those at the poses shown.
   ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0) const;
   /// Adds values of a response, SI, in the unit shown.
@@ -85,8 +81,7 @@ class PoseFigures {
   HeatMap heat_map(std::vector<HeatLayer> layers, std::vector<std::string> rows, std::string order) const;
   /// Adds the condition number of each pose, where the result has it.
   void add_condition(std::vector<Field>& fields) const;
-  /// The share of solves that did not converge, [M].
-  Field not_converged(std::span<const double> shares) const;
+  Field not_converged(std::span<const double> shares) const;  ///< The share of solves that did not converge, [M].
   /// Adds poses as dots, coloured by these fields.
   void add_workspace(Section& section, std::vector<Field> fields,
                      std::string_view caption = "Each dot is a pose of the study, coloured by what is chosen.",
@@ -103,8 +98,7 @@ class PoseFigures {
   ShownCells shown_;
 };
 
-/// With the ends of its intervals also where it states half-widths.
-EstimateCourse with_ends(EstimateCourse course);
+EstimateCourse with_ends(EstimateCourse course);  ///< With the ends of its intervals also where it states half-widths.
 
 /// The curve of one quantity, at this position of [R x P], with its band, in units of `unit`.
 Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
@@ -119,7 +113,69 @@ Section& add_how_sure(Page& page, std::string heading, double conf_level);
 /// Adds the section on the study's limits, where it states any. tables: of the result.
 void add_limits(std::span<const Table> tables, Page& page);
 
+/// The section that comes first: what the responses are, in words. Files of older versions do not say it; then nothing
+/// is added.
+void add_responses(const StoredResult& result, Page& page);
+
+/// The section that has every error and every pose coordinate with its unit and what it is, where the file says it;
+/// figures say it as well, where a reader points at a name.
+void add_glossary(const StoredResult& result, Page& page);
+
+/// The section that tells what was not solved: how solves ended, which rows and poses have how many that did not
+/// converge, and the listed failures with the commands that replay them.
+void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page);
+
+/// The section that tells what was run, of one result, or of two side by side: what differs, and folded what does not.
+void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page);
+
+inline constexpr std::string_view kLetters[] = {"A", "B"};  ///< "A" and "B" of two results.
+
 /// Adds a figure to a page and its place to a section.
 void add_figure(Page& page, Section& section, const std::string& key, Figure figure, std::string_view caption);
+
+/// A quantity by which results are compared, for R options and P items, in the units shown.
+struct ComparableQuantity {
+  std::string label;                            ///< for people
+  std::string array;                            ///< how its arrays are named
+  std::vector<std::vector<std::string>> units;  ///< [R] of one for all items, or of P
+  std::vector<double> value;                    ///< [R x P]
+  std::vector<double> low = {};                 ///< [R x P] lower ends of intervals; empty where there are none
+  std::vector<double> high = {};                ///< [R x P] upper ends, likewise
+};
+
+/// What a result offers to be compared with another one of its kind.
+struct Comparable {
+  std::string option_word;           ///< "response"
+  std::vector<std::string> options;  ///< [R]
+  std::string item_word;             ///< "error"
+  std::vector<std::string> items;    ///< [P]
+  /// Bars show all of them; the first gives ranks and the points against each other, the last the table.
+  std::vector<ComparableQuantity> quantities = {};
+  bool ranked = false;              ///< whether items have an order by size
+  std::string total_label = {};     ///< what the totals are; empty: there are none
+  std::vector<double> totals = {};  ///< [R] one number for all items together, in the units shown
+};
+
+/// A Comparable whose options are the responses, in the order of response_order, without quantities yet.
+Comparable comparable_by_response(const StoredResult& result, std::string item_word, std::vector<std::string> items);
+
+/// Adds a quantity in the unit shown of each response. value: SI, of (response, item).
+void add_quantity(Comparable& to, const StoredResult& result, std::string label, std::string array,
+                  const std::function<double(std::size_t, std::size_t)>& value);
+
+/// What two results say of the same options and items, in the order of A.
+struct Comparison {
+  Comparable a;                     ///< of the first result
+  Comparable b;                     ///< of the second
+  std::vector<std::string> only_a;  ///< items of the first alone
+  std::vector<std::string> only_b;  ///< items of the second alone
+};
+
+/// What there is to compare of two results of this kind and one mechanism. Throws InputError where they have nothing in
+/// common.
+Comparison comparison(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b);
+
+/// Adds figures and tables of a comparison to a page, as sections.
+void add_comparison(const Comparison& compared, Page& page);
 
 }  // namespace poesy

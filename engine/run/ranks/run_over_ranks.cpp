@@ -1,10 +1,18 @@
-#include "engine/run/ranks/run_over_ranks.h"
-
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 
-#include "engine/run/ranks/rank_pool.h"
+#include "engine/run/run_in_slots.h"
 
 namespace poesy {
 namespace {
@@ -23,10 +31,111 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
 constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
 constexpr std::chrono::microseconds kSendEvery{500};
 
+/// A pool of threads (run_in_slots) that works beside the calling thread, on numbers that it is given bit by bit.
+class RankPool {
+  /// The function, closing the pool when it throws, because oneTBB lets no thread go that waits for a number.
+  template <class Function>
+  auto closing(Function function) {
+    return [this, function = std::move(function)](auto... arguments) {
+      try {
+        return function(arguments...);
+      } catch (...) {
+        close();
+        throw;
+      }
+    };
+  }
+
+ public:
+  /// The slot of the next number n. Called from one thread at a time.
+  using SlotOf = std::function<std::size_t(std::size_t n)>;
+
+  /// Calls deliver(n, slot) after each work, one after another, on threads of the pool.
+  RankPool(const RunOptions& options, std::function<SlotJob()> make_work, SlotOf slot_of, SlotJob deliver)
+      : slot_of_(std::move(slot_of)), low_(resolved_threads(options.threads)) {
+    const auto make_closing = closing([this, make = std::move(make_work)] { return SlotJob(closing(make())); });
+    thread_ = std::thread([this, options, make_closing, give_out = SlotJob(closing(std::move(deliver)))] {
+      try {
+        run_in_slots([this] { return take(); }, options, make_closing, give_out);
+      } catch (...) {
+        problem_ = std::current_exception();
+        failed_ = true;
+      }
+    });
+  }
+  RankPool(const RankPool&) = delete;
+  RankPool& operator=(const RankPool&) = delete;
+  ~RankPool() { join(); }
+
+  /// Work with the numbers first, first + 1, ...
+  void give(std::size_t first, std::size_t count) {
+    const std::lock_guard lock(mutex_);
+    ranges_.push_back({first, first + count});
+    left_ += count;
+    given_.notify_one();
+  }
+
+  /// Returns at the end of that time, or when numbers have become few since the last call.
+  void wait(std::chrono::microseconds at_most) {
+    std::unique_lock lock(mutex_);
+    hungry_.wait_for(lock, at_most, [&] { return hungry_now_; });
+    hungry_now_ = false;
+  }
+
+  /// Whether something was thrown.
+  bool failed() const { return failed_; }
+
+  /// Ends the pool: what is being worked on is delivered, no more is begun. Throws what was thrown in it.
+  void finish() {
+    join();
+    if (problem_) std::rethrow_exception(std::exchange(problem_, nullptr));
+  }
+
+ private:
+  std::optional<Ticket> take() {
+    std::unique_lock lock(mutex_);
+    given_.wait(lock, [this] { return closed_ || left_ > 0; });
+    if (closed_) return std::nullopt;
+    NumberRange& range = ranges_.front();
+    const std::size_t n = range.first++;
+    if (range.first == range.end) ranges_.pop_front();
+    --left_;
+    if (left_ == low_ || left_ == 0) {
+      hungry_now_ = true;
+      hungry_.notify_one();
+    }
+    return Ticket{n, slot_of_(n)};
+  }
+
+  void close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    given_.notify_all();
+  }
+
+  void join() {
+    close();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  SlotOf slot_of_;
+  std::size_t low_;  ///< so many numbers are few
+  std::mutex mutex_;
+  std::condition_variable given_;
+  std::condition_variable hungry_;
+  std::deque<NumberRange> ranges_;
+  std::size_t left_ = 0;  ///< numbers in them
+  bool hungry_now_ = false;
+  bool closed_ = false;
+  std::atomic<bool> failed_{false};
+  std::exception_ptr problem_;
+  std::thread thread_;  ///< last, because it uses all others
+};
+
 /// Rank 0.
 class Leader {
  public:
-  Leader(std::size_t count, const RunOptions& options, const RankWork& work)
+  Leader(std::size_t count, const RunOptions& options, const SlotWork& work)
       : team_(options.team),
         options_(&options),
         work_(&work),
@@ -161,7 +270,7 @@ class Leader {
 
   Team* team_;
   const RunOptions* options_;
-  const RankWork* work_;
+  const SlotWork* work_;
   std::size_t count_;
   std::size_t window_;
   std::vector<Rank> ranks_;
@@ -173,13 +282,13 @@ class Leader {
   std::size_t waiting_bytes_ = 0;
   std::mutex mutex_;
   std::vector<std::size_t> delivered_;  ///< by the pool
-  RankPool pool_;                       ///< last, for it uses the others
+  RankPool pool_;                       ///< last, because it uses the others
 };
 
 /// Every other rank.
 class Follower {
  public:
-  Follower(const RunOptions& options, const RankWork& work)
+  Follower(const RunOptions& options, const SlotWork& work)
       : team_(options.team),
         options_(&options),
         work_(&work),
@@ -259,7 +368,7 @@ class Follower {
 
   Team* team_;
   const RunOptions* options_;
-  const RankWork* work_;
+  const SlotWork* work_;
   std::size_t taken_ = 0;         ///< numbers that the pool took
   std::optional<bool> complete_;  ///< what the end said
   std::size_t given_ = 0;         ///< numbers from rank 0
@@ -269,7 +378,7 @@ class Follower {
   std::size_t waiting_bytes_ = 0;
   std::size_t delivered_ = 0;
   std::chrono::steady_clock::time_point last_sent_;
-  RankPool pool_;  ///< last, for it uses the others
+  RankPool pool_;  ///< last, because it uses the others
 };
 
 }  // namespace
@@ -279,7 +388,7 @@ std::size_t rank_slots(const RunOptions& options) {
   return std::min(kMostSlots, 2 * kMostAhead * resolved_threads(options.threads) * options.team->ranks().size());
 }
 
-bool run_over_ranks(std::size_t count, const RunOptions& options, const RankWork& work) {
+bool run_over_ranks(std::size_t count, const RunOptions& options, const SlotWork& work) {
   return options.team->leads() ? Leader(count, options, work).run() : Follower(options, work).run();
 }
 

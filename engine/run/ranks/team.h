@@ -3,16 +3,56 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "engine/base/bytes.h"
-#include "engine/run/ranks/rank_message.h"
-#include "engine/run/ranks/ranks.h"
 
 namespace poesy {
+
+/// The processes that work on one run, its ranks, as one of them sees them. None of its functions waits.
+class Ranks {
+ public:
+  /// What one rank sent to another.
+  struct Message {
+    std::size_t from;  ///< the rank that sent it
+    Bytes bytes;       ///< its content
+  };
+
+  Ranks() = default;
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+  virtual ~Ranks() = default;
+
+  /// This process's number. Precondition of all members: called from one thread at a time.
+  virtual std::size_t rank() const = 0;
+  /// How many there are.
+  virtual std::size_t size() const = 0;
+  /// This process as a user would look for it: "rank 3 on node7".
+  virtual std::string name() const = 0;
+  /// Sends bytes to another rank and keeps them until they are on their way.
+  virtual void send(std::size_t to, std::shared_ptr<const Bytes> bytes) = 0;
+  /// The next message, if one has come. Those of one sender come in the order in which they were sent.
+  virtual std::optional<Message> try_receive() = 0;
+};
+
+/// What a message between ranks is about: its first number. What follows, in the notation of engine/base/bytes.h:
+enum class RankMessage : std::uint64_t {
+  study,      ///< rank 0 to all: text, what the study and the program are
+  agreed,     ///< to rank 0: number of threads; this rank has the same study
+  begin,      ///< rank 0 to all: number of the stage, its state as a block
+  ready,      ///< to rank 0: number of the stage, number of threads
+  range,      ///< rank 0 to one: first number, how many of them; to be solved
+  outputs,    ///< to rank 0: until the end, a number and its output as a block
+  end,        ///< rank 0 to all: 1 if the stage is complete, else 0; its state as a block
+  leaving,    ///< to rank 0: reason, text; this rank cannot go on
+  dismissed,  ///< rank 0 to all: exit code; the run is over
+  gone        ///< to rank 0: the last message of this rank
+};
 
 /// Why a rank cannot go on.
 enum class LeaveReason : std::uint64_t { stopped, bad_input, file_trouble, internal };
@@ -34,8 +74,8 @@ struct Dismissed : std::exception {
 
 /// This process's part in a run on several ranks. Rank 0 leads: it alone knows the checkpoints, hands out the work,
 /// merges all outputs and writes the result. The others follow: they go through the same stages, solve what they are
-/// given, and take each stage's final state from rank 0, so that every rank has the whole of it. run_over_ranks.h has
-/// what happens within a stage, rank_message.h the messages.
+/// given, and take each stage's final state from rank 0, so that every rank has the whole of it. run_over_ranks has
+/// what happens within a stage, RankMessage the messages.
 class Team {
  public:
   /// Refers to the ranks.

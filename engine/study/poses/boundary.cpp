@@ -1,5 +1,3 @@
-#include "engine/study/poses/boundary.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,15 +5,20 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "engine/random/distribution.h"
 #include "engine/random/low_discrepancy.h"
+#include "engine/study/poses/workspace.h"
 
 namespace poesy {
 namespace {
 
 /// Scaled coordinates that differ by less are equal to rounding.
 constexpr double kRounding = 1e-12;
+
+/// Steps along a line in which a change of feasibility is looked for.
+constexpr std::size_t kScanIntervals = 32;
 
 constexpr double kGoldenRatio = 0.6180339887498949;
 
@@ -60,172 +63,113 @@ void reflect_last_axis_to(std::span<const double> unit, std::span<double> vector
   vector.back() -= (last < 0.0 ? -factor : factor);
 }
 
-/// The part of a line inside the unit cube.
-class Chord {
- public:
-  /// The line through `point` along the unit vector `direction`; nothing when it misses the cube.
-  static std::optional<Chord> through(const Vector& point, const Vector& direction) {
-    Chord chord(point, direction);
-    for (std::size_t c = 0; c < point.size(); ++c) {
-      if (!chord.clip(c)) return std::nullopt;
-    }
-    if (!(chord.enter_ < chord.leave_)) return std::nullopt;
-    return chord;
+/// A point of a line, and a unit vector along it.
+struct Line {
+  Vector point;
+  Vector direction;
+};
+
+/// A line by the kinematic measure, from a point of the sequence: its direction is uniform, and its point nearest to
+/// the cube's centre is uniform in a ball across the direction that covers the cube.
+Line line_of(Vector uniforms, std::size_t coordinates) {
+  // A fixed irrational step in each dimension, modulo 1: the first points of the sequence lie symmetric to the middle,
+  // and such lines meet edges and corners.
+  const auto fraction = [](double value) { return value - std::floor(value); };
+  double step = 0.0;
+  for (double& u : uniforms) {
+    step = fraction(step + kGoldenRatio);
+    u = fraction(u + step);
   }
+  uniforms[0] *= 0.5;  // half of the sphere: a line has no sign
+  Line line{Vector(coordinates, 0.0), Vector(coordinates, 0.0)};
+  unit_vector(uniforms, line.direction);
+  const std::span<double> offset = std::span(line.point).first(coordinates - 1);
+  const double radius = 0.5 * std::sqrt(static_cast<double>(coordinates));
+  const double u = uniforms.back();
+  if (offset.size() == 1) offset[0] = radius * (2.0 * u - 1.0);
+  if (offset.size() > 1) {
+    unit_vector(std::span(uniforms).subspan(uniforms_for(coordinates)), offset);
+    for (double& value : offset) value *= radius * std::pow(u, 1.0 / static_cast<double>(offset.size()));
+  }
+  if (!offset.empty()) reflect_last_axis_to(line.direction, line.point);
+  for (double& value : line.point) value += 0.5;
+  return line;
+}
 
-  double enter() const { return enter_; }
-  double leave() const { return leave_; }
+/// The part of a line inside the unit cube.
+struct Chord {
+  Line line;
+  double enter = -std::numeric_limits<double>::infinity();
+  double leave = std::numeric_limits<double>::infinity();
+  std::size_t enter_face = 0;  ///< the coordinate in which the line comes in
+  std::size_t leave_face = 0;  ///< likewise
 
-  /// The point at this position; at enter() and leave() exactly on the face.
+  /// The point at this position; at enter and leave exactly on the face.
   void at(double position, Vector& point) const {
     for (std::size_t c = 0; c < point.size(); ++c) {
-      point[c] = std::clamp((*point_)[c] + position * (*direction_)[c], 0.0, 1.0);
+      point[c] = std::clamp(line.point[c] + position * line.direction[c], 0.0, 1.0);
     }
-    if (position == enter_) point[enter_face_] = (*direction_)[enter_face_] > 0.0 ? 0.0 : 1.0;
-    if (position == leave_) point[leave_face_] = (*direction_)[leave_face_] > 0.0 ? 1.0 : 0.0;
+    if (position == enter) point[enter_face] = line.direction[enter_face] > 0.0 ? 0.0 : 1.0;
+    if (position == leave) point[leave_face] = line.direction[leave_face] > 0.0 ? 1.0 : 0.0;
   }
+};
 
- private:
-  Chord(const Vector& point, const Vector& direction) : point_(&point), direction_(&direction) {}
-
-  bool clip(std::size_t c) {
-    const double slope = (*direction_)[c];
-    const double start = (*point_)[c];
-    if (slope == 0.0) return start >= 0.0 && start <= 1.0;
+/// Nothing when the line misses the cube.
+std::optional<Chord> chord_of(const Line& line) {
+  Chord chord{line};
+  for (std::size_t c = 0; c < line.point.size(); ++c) {
+    const double slope = line.direction[c];
+    const double start = line.point[c];
+    if (slope == 0.0 && start >= 0.0 && start <= 1.0) continue;
+    if (slope == 0.0) return std::nullopt;
     const auto [low, high] = std::minmax({-start / slope, (1.0 - start) / slope});
-    if (low > enter_) {
-      enter_ = low;
-      enter_face_ = c;
-    }
-    if (high < leave_) {
-      leave_ = high;
-      leave_face_ = c;
-    }
-    return true;
+    if (low > chord.enter) std::tie(chord.enter, chord.enter_face) = std::tuple(low, c);
+    if (high < chord.leave) std::tie(chord.leave, chord.leave_face) = std::tuple(high, c);
   }
+  return chord.enter < chord.leave ? std::optional(chord) : std::nullopt;
+}
 
-  const Vector* point_;
-  const Vector* direction_;
-  double enter_ = -std::numeric_limits<double>::infinity();
-  double leave_ = std::numeric_limits<double>::infinity();
-  std::size_t enter_face_ = 0;
-  std::size_t leave_face_ = 0;
-};
-
-/// Lines through the unit cube by the kinematic measure, from a Sobol' sequence.
-class Lines {
- public:
-  explicit Lines(std::size_t coordinates)
-      : uniform_(coordinates == 1 ? 1 : uniforms_for(coordinates) + uniforms_for(coordinates - 1) + 1),
-        sequence_(uniform_.size()),
-        direction_(coordinates),
-        point_(coordinates) {}
-
-  /// The next line's part in the cube; nothing when it misses. Valid until the next call.
-  std::optional<Chord> next() {
-    sequence_.next(uniform_);
-    shift();
-    const std::size_t coordinates = direction_.size();
-    uniform_[0] *= 0.5;  // half of the sphere: a line has no sign
-    unit_vector(uniform_, direction_);
-    point_.assign(coordinates, 0.0);
-    if (coordinates > 1) set_offset();
-    for (double& value : point_) value += 0.5;
-    return Chord::through(point_, direction_);
-  }
-
- private:
-  /// Moves the point by a fixed irrational step in each dimension, modulo 1. The first points of the sequence lie
-  /// symmetric to the middle, and such lines meet edges and corners.
-  void shift() {
-    double step = 0.0;
-    for (double& u : uniform_) {
-      step = fraction(step + kGoldenRatio);
-      u = fraction(u + step);
-    }
-  }
-
-  static double fraction(double value) { return value - std::floor(value); }
-
-  /// The point nearest to the centre: uniform in a ball across the direction that covers the cube.
-  void set_offset() {
-    const std::size_t across = direction_.size() - 1;
-    const std::span<double> offset = std::span(point_).first(across);
-    const double radius = 0.5 * std::sqrt(static_cast<double>(direction_.size()));
-    const double u = uniform_.back();
-    if (across == 1) {
-      offset[0] = radius * (2.0 * u - 1.0);
-    } else {
-      unit_vector(std::span(uniform_).subspan(uniforms_for(direction_.size())), offset);
-      for (double& value : offset) value *= radius * std::pow(u, 1.0 / static_cast<double>(across));
-    }
-    reflect_last_axis_to(direction_, point_);
-  }
-
-  Vector uniform_;
-  SobolSequence sequence_;
-  Vector direction_;
-  Vector point_;
-};
-
-/// Finds where chords cross the boundary of the feasible set.
-class Crossings {
- public:
-  Crossings(const Workspace& workspace, PoseCollector& collector)
-      : workspace_(&workspace),
-        collector_(&collector),
-        scaled_(workspace.coordinates()),
-        pose_(workspace.coordinates()) {}
-
-  /// Keeps every crossing along the chord.
-  void collect(const Chord& chord) {
-    double before = chord.enter();
-    bool inside = false;
-    for (std::size_t k = 0; k <= kScanIntervals; ++k) {
-      const double position =
-          std::lerp(chord.enter(), chord.leave(), static_cast<double>(k) / static_cast<double>(kScanIntervals));
-      move_to(chord, position);
-      const bool feasible = collector_->test(pose_);
-      if (feasible && !inside) entry_at_ = k == 0 ? position : refined(chord, position, before);
-      if (!feasible && inside) keep_piece(chord, refined(chord, before, position));
-      inside = feasible;
-      before = position;
-    }
-    if (inside) keep_piece(chord, chord.leave());
-  }
-
- private:
-  void move_to(const Chord& chord, double position) {
-    chord.at(position, scaled_);
-    workspace_->unscale(scaled_, pose_);
-  }
-
-  /// The last feasible position between a feasible and an infeasible one, to rounding.
-  double refined(const Chord& chord, double feasible, double infeasible) {
+/// Keeps every crossing of the feasible set's boundary along the chord: both ends of each feasible piece.
+void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollector& collector) {
+  Vector scaled(workspace.coordinates());
+  Vector pose(workspace.coordinates());
+  const auto move_to = [&](double position) {
+    chord.at(position, scaled);
+    workspace.unscale(scaled, pose);
+  };
+  // The last feasible position between a feasible and an infeasible one, to rounding.
+  const auto refined = [&](double feasible, double infeasible) {
     while (std::abs(infeasible - feasible) > std::numeric_limits<double>::epsilon()) {
       const double middle = std::midpoint(feasible, infeasible);
       if (middle == feasible || middle == infeasible) break;
-      move_to(chord, middle);
-      (workspace_->judge(pose_).feasible() ? feasible : infeasible) = middle;
+      move_to(middle);
+      (workspace.judge(pose).feasible() ? feasible : infeasible) = middle;
     }
     return feasible;
-  }
-
-  /// Keeps both ends of the feasible piece from entry_at_ to here.
-  void keep_piece(const Chord& chord, double end) {
-    if (std::abs(end - entry_at_) < kRounding) return;
-    for (const double position : {entry_at_, end}) {
-      move_to(chord, position);
-      collector_->keep(pose_);
+  };
+  const auto keep_piece = [&](double begin, double end) {
+    if (std::abs(end - begin) < kRounding) return;
+    for (const double position : {begin, end}) {
+      move_to(position);
+      collector.keep(pose, workspace.judge(pose).condition);
     }
+  };
+  double before = chord.enter;
+  std::optional<double> entry;  // where the feasible piece begins
+  for (std::size_t k = 0; k <= kScanIntervals; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(kScanIntervals);
+    const double position = std::lerp(chord.enter, chord.leave, share);
+    move_to(position);
+    const bool feasible = collector.test(pose).has_value();
+    if (feasible && !entry) entry = k == 0 ? position : refined(position, before);
+    if (!feasible && entry) {
+      keep_piece(*entry, refined(before, position));
+      entry.reset();
+    }
+    before = position;
   }
-
-  const Workspace* workspace_;
-  PoseCollector* collector_;
-  Vector scaled_;
-  Vector pose_;
-  double entry_at_ = 0.0;
-};
+  if (entry) keep_piece(*entry, chord.leave);
+}
 
 /// Whether two poses are equal to rounding in every scaled coordinate. Poses are sorted along a
 /// direction that is parallel to no face, so only near neighbours need to be compared.
@@ -263,12 +207,14 @@ bool some_coincide(const Workspace& workspace, const PoseCollector& collector) {
 SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model) {
   const Workspace workspace(selection, model);
   PoseCollector collector(workspace);
-  Crossings crossings(workspace, collector);
-  Lines lines(workspace.coordinates());
+  const std::size_t coordinates = workspace.coordinates();
+  Vector uniforms(coordinates == 1 ? 1 : uniforms_for(coordinates) + uniforms_for(coordinates - 1) + 1);
+  SobolSequence sequence(uniforms.size());
   const std::size_t most = std::max<std::size_t>(20'000, 100 * selection.count);
   for (std::size_t line = 0; collector.kept() < selection.count; ++line) {
     if (line == most) collector.fail(selection.count, selection.place);
-    if (const auto chord = lines.next()) crossings.collect(*chord);
+    sequence.next(uniforms);
+    if (const auto chord = chord_of(line_of(uniforms, coordinates))) keep_crossings(*chord, workspace, collector);
   }
   collector.keep_first(selection.count);
   if (some_coincide(workspace, collector)) {

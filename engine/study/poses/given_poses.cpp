@@ -1,156 +1,166 @@
-#include "engine/study/poses/given_poses.h"
+#include <algorithm>
+#include <boost/math/interpolators/makima.hpp>
+#include <cmath>
+#include <functional>
 
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "engine/base/contract.h"
-#include "engine/base/units.h"
+#include "engine/study/poses/workspace.h"
 
 namespace poesy {
 namespace {
 
 constexpr int kDigits = 6;
 constexpr const char* kSi = " (numbers in the file are SI: metres and radians, unless its first line names units)";
-constexpr const char* kNoPose = "does not exist: no pose has these coordinates";
 
-/// "z = 0.5 m, beta = 20 rad = 1145.92 deg", as a file has them.
-std::string as_written(std::span<const double> point, const std::vector<PoseCoordinate>& coordinates) {
+using Function = std::function<double(double time)>;
+
+/// A modified Akima spline, or straight lines through the two or three points that make none.
+Function interpolated(std::vector<double> time, std::vector<double> values) {
+  constexpr std::size_t kSplinePoints = 4;
+  if (time.size() >= kSplinePoints) {
+    return boost::math::interpolators::makima<std::vector<double>>(std::move(time), std::move(values));
+  }
+  return [time = std::move(time), values = std::move(values)](double t) {
+    const auto after = std::clamp(std::ranges::upper_bound(time, t), time.begin() + 1, time.end() - 1);
+    const auto k = static_cast<std::size_t>(after - time.begin());
+    return std::lerp(values[k - 1], values[k], (t - time[k - 1]) / (time[k] - time[k - 1]));
+  };
+}
+
+/// What a trajectory is over time: points, [coordinates], SI.
+std::function<std::vector<double>(double time)> path_of(const Trajectory& trajectory, const ModelDescription& model) {
+  if (trajectory.curve) {
+    return [&at = model.curves[*trajectory.curve].at, &origin = trajectory.origin](double time) {
+      std::vector<double> point = at(time);
+      POESY_EXPECTS(point.size() == origin.size());
+      for (std::size_t c = 0; c < point.size(); ++c) point[c] = origin[c] + point[c];
+      return point;
+    };
+  }
+  const TimedPoints& known = trajectory.from_file;
+  POESY_EXPECTS(known.time.size() >= 2 && known.time.size() == known.table.points.size());
+  std::vector<Function> coordinates;
+  for (std::size_t c = 0; c < known.table.points.coordinates(); ++c) {
+    coordinates.push_back(interpolated(known.time, known.table.points.column(c)));
+  }
+  return [coordinates](double time) {
+    std::vector<double> point;
+    for (const Function& coordinate : coordinates) point.push_back(coordinate(time));
+    return point;
+  };
+}
+
+/// "z = 0.5 m, beta = 20 rad = 1145.92 deg", as a file has them, or in the units in which people read them alone.
+std::string point_text(std::span<const double> point, const std::vector<PoseCoordinate>& coordinates, bool as_in_file) {
   std::string text;
   for (std::size_t c = 0; c < point.size(); ++c) {
     const Quantity value{point[c], coordinates[c].dimension};
-    text += (c > 0 ? ", " : "") + coordinates[c].name + " = " + to_text(value);
-    if (value.dimension == Dimension::angle) text += " = " + readable_text(value, kDigits);
+    text += (c > 0 ? ", " : "") + coordinates[c].name + " = ";
+    if (as_in_file) text += to_text(value);
+    if (as_in_file && value.dimension == Dimension::angle) text += " = ";
+    if (!as_in_file || value.dimension == Dimension::angle) text += readable_text(value, kDigits);
   }
   return text;
 }
 
-/// "z = 500 mm, beta = 1145.92 deg".
-std::string readable(std::span<const double> point, const std::vector<PoseCoordinate>& coordinates) {
-  std::string text;
-  for (std::size_t c = 0; c < point.size(); ++c) {
-    text += (c > 0 ? ", " : "") + coordinates[c].name + " = " +
-            readable_text({point[c], coordinates[c].dimension}, kDigits);
-  }
-  return text;
-}
-
-/// What to do where no pose has a point's coordinates. Only a chart has such points.
-std::string advice(const PoseTable& table, const Model& model) {
-  return table.chart ? model.description().charts[*table.chart].advice : std::string();
-}
-
-std::string near_singular(double condition, double largest) {
-  return "is singular or nearly so: its condition number " + readable_text({condition, Dimension::number}, kDigits) +
-         " is above max_condition, " + shortest(largest);
-}
-
-/// A file's poses: refused with their line.
-class FileJudge {
- public:
-  FileJudge(const PoseSelection& selection, const Model& model) : selection_(&selection), model_(&model) {}
-
-  const PoseTable& table() const { return selection_->from_file; }
-
-  [[noreturn]] void refuse(std::size_t m, const std::string& why, const std::string& remedy) const {
-    Place line = selection_->place;
-    line.line += m;
-    const auto& names = coordinates(model_->description(), table().chart);
-    throw InputError(
-        line, "pose " + std::to_string(m + 1) + " (" + as_written(table().points[PoseIndex(m)], names) + ") " + why,
-        remedy + kSi);
-  }
-
-  static std::string if_unreachable() { return "correct or remove this pose"; }
-  static std::string if_singular() { return "remove this pose"; }
-
- private:
-  const PoseSelection* selection_;
-  const Model* model_;
+/// How points that the mechanism cannot take are refused.
+struct PointRefusal {
+  std::function<Place(std::size_t m)> place;        ///< of point m
+  std::function<std::string(std::size_t m)> point;  ///< what messages call it, from "pose 1 (...) " on
+  std::string if_unreachable;                       ///< what to do
+  std::string if_singular;                          ///< what to do
+  std::string note;                                 ///< behind what to do
 };
 
-/// The points of a trajectory: refused with their time, singular ones too.
-class TrajectoryJudge {
- public:
-  TrajectoryJudge(const PoseSelection& selection, const TimedPoints& points, const Model& model)
-      : selection_(&selection),
-        trajectory_(&*selection.trajectory),
-        points_(&points),
-        model_(&model),
-        elsewhere_(trajectory_->curve ? "move its origin or shorten its time" : "move the curve") {}
-
-  const PoseTable& table() const { return points_->table; }
-
-  [[noreturn]] void refuse(std::size_t m, const std::string& why, const std::string& remedy) const {
-    const auto& names = coordinates(model_->description(), table().chart);
-    throw InputError(place_of(m),
-                     "point " + std::to_string(m + 1) + " of " + std::to_string(table().points.size()) +
-                         ", at t = " + readable_text({points_->time[m], Dimension::time}, kDigits) + " (" +
-                         readable(table().points[PoseIndex(m)], names) + "), " + why,
-                     remedy + (trajectory_->curve ? "" : kSi));
-  }
-
-  std::string if_unreachable() const { return elsewhere_ + ", or change the geometry"; }
-  std::string if_singular() const { return elsewhere_ + " away from singular poses, or raise max_condition"; }
-
- private:
-  Place place_of(std::size_t m) const {
-    if (trajectory_->points > 0) return selection_->place;
-    Place line = trajectory_->first_row;
-    line.line += m;
-    return line;
-  }
-
-  const PoseSelection* selection_;
-  const Trajectory* trajectory_;
-  const TimedPoints* points_;
-  const Model* model_;
-  std::string elsewhere_;
-};
-
-std::optional<std::vector<double>> pose_of(const PoseTable& table, std::size_t m, const Model& model) {
-  const auto point = table.points[PoseIndex(m)];
-  if (table.chart) return model.pose_from_chart(*table.chart, point);
-  return std::vector(point.begin(), point.end());
-}
-
-/// The condition number of point m's pose. The judge refuses it where the mechanism cannot take it.
-template <class Judge>
-double condition_of(const Judge& judge, std::size_t m, const std::optional<std::vector<double>>& pose,
-                    const Model& model, double max_condition) {
-  if (!pose) judge.refuse(m, kNoPose, advice(judge.table(), model));
-  if (const auto reason = model.unreachable(*pose))
-    judge.refuse(m, "is out of reach: " + *reason, judge.if_unreachable());
-  const double condition = model.condition(*pose);
-  if (condition <= max_condition) return condition;
-  judge.refuse(m, near_singular(condition, max_condition), judge.if_singular());
-}
-
-/// All poses of the judge's table. Throws what the judge throws.
-template <class Judge>
-SelectedPoses poses_of(const Judge& judge, const Model& model, double max_condition) {
+/// The poses of all points of a table. Throws InputError for the first that the mechanism cannot take.
+SelectedPoses poses_of(const PoseTable& table, const PointRefusal& refusal, const Model& model, double max_condition) {
   SelectedPoses selected;
   std::vector<double> values;
-  for (std::size_t m = 0; m < judge.table().points.size(); ++m) {
-    const auto pose = pose_of(judge.table(), m, model);
-    selected.condition.push_back(condition_of(judge, m, pose, model, max_condition));
+  for (std::size_t m = 0; m < table.points.size(); ++m) {
+    const auto refuse = [&](const std::string& why, const std::string& remedy) {
+      throw InputError(refusal.place(m), refusal.point(m) + why, remedy + refusal.note);
+    };
+    const auto point = table.points[PoseIndex(m)];
+    const auto pose = table.chart ? model.pose_from_chart(*table.chart, point)
+                                  : std::optional(std::vector(point.begin(), point.end()));
+    if (!pose) {
+      refuse("does not exist: no pose has these coordinates", model.description().charts[*table.chart].advice);
+    }
+    if (const auto reason = model.unreachable(*pose)) refuse("is out of reach: " + *reason, refusal.if_unreachable);
+    const double condition = model.condition(*pose);
+    if (!(condition <= max_condition)) {
+      refuse("is singular or nearly so: its condition number " +
+                 readable_text({condition, Dimension::number}, kDigits) + " is above max_condition, " +
+                 shortest(max_condition),
+             refusal.if_singular);
+    }
+    selected.condition.push_back(condition);
     values.insert(values.end(), pose->begin(), pose->end());
   }
   selected.poses = PoseSet(model.description().pose_coordinates.size(), std::move(values));
   return selected;
 }
 
+Place below(Place first, std::size_t lines) {
+  first.line += lines;
+  return first;
+}
+
 }  // namespace
 
+const std::vector<PoseCoordinate>& coordinates(const ModelDescription& model, std::optional<std::size_t> chart) {
+  return chart ? model.charts[*chart].coordinates : model.pose_coordinates;
+}
+
+TimedPoints sampled(const Trajectory& trajectory, const ModelDescription& model) {
+  if (!trajectory.curve && trajectory.points == 0) return trajectory.from_file;
+  TimedPoints found{{}, {trajectory.from_file.table.chart, {}}};
+  if (trajectory.curve) found.table.chart = model.curves[*trajectory.curve].chart;
+  const auto path = path_of(trajectory, model);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < trajectory.points; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(trajectory.points - 1);
+    found.time.push_back(std::lerp(trajectory.time->lower, trajectory.time->upper, share));
+    const std::vector<double> point = path(found.time.back());
+    values.insert(values.end(), point.begin(), point.end());
+  }
+  found.table.points = PoseSet(coordinates(model, found.table.chart).size(), std::move(values));
+  return found;
+}
+
 SelectedPoses file_poses(const PoseSelection& selection, const Model& model) {
-  return poses_of(FileJudge(selection, model), model, selection.max_condition);
+  const PoseTable& table = selection.from_file;
+  const auto& names = coordinates(model.description(), table.chart);
+  const auto point = [&](std::size_t m) {
+    return "pose " + std::to_string(m + 1) + " (" + point_text(table.points[PoseIndex(m)], names, true) + ") ";
+  };
+  return poses_of(table,
+                  {.place = [&](std::size_t m) { return below(selection.place, m); },
+                   .point = point,
+                   .if_unreachable = "correct or remove this pose",
+                   .if_singular = "remove this pose",
+                   .note = kSi},
+                  model, selection.max_condition);
 }
 
 SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& model) {
   POESY_EXPECTS(selection.trajectory.has_value());
-  TimedPoints points = sampled(*selection.trajectory, model.description());
-  SelectedPoses selected = poses_of(TrajectoryJudge(selection, points, model), model, selection.max_condition);
+  const Trajectory& trajectory = *selection.trajectory;
+  TimedPoints points = sampled(trajectory, model.description());
+  const auto& names = coordinates(model.description(), points.table.chart);
+  const auto point = [&](std::size_t m) {
+    return "point " + std::to_string(m + 1) + " of " + std::to_string(points.time.size()) +
+           ", at t = " + readable_text({points.time[m], Dimension::time}, kDigits) + " (" +
+           point_text(points.table.points[PoseIndex(m)], names, false) + "), ";
+  };
+  const std::string elsewhere = trajectory.curve ? "move its origin or shorten its time" : "move the curve";
+  SelectedPoses selected = poses_of(
+      points.table,
+      {.place = [&](std::size_t m) { return trajectory.points > 0 ? selection.place : below(trajectory.first_row, m); },
+       .point = point,
+       .if_unreachable = elsewhere + ", or change the geometry",
+       .if_singular = elsewhere + " away from singular poses, or raise max_condition",
+       .note = trajectory.curve ? "" : kSi},
+      model, selection.max_condition);
   selected.time = std::move(points.time);
   return selected;
 }

@@ -4,8 +4,7 @@
 #include <filesystem>
 
 #include "engine/base/text.h"
-#include "engine/study/keys.h"
-#include "engine/study/study_text.h"
+#include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 
 namespace poesy {
@@ -15,17 +14,17 @@ using Select = PoseSelection::Select;
 
 constexpr std::size_t kCurvePoints = 201;
 
+/// Two ends, the lower one first: of a range of values, or when a part of a curve starts and ends.
 Range read_range(const StudyValue& value, Dimension dimension) {
-  const std::vector<StudyValue> ends = value.list();
-  if (ends.size() != 2) {
-    value.fail("has " + std::to_string(ends.size()) + " values", "write the two ends of the range");
-  }
+  const bool is_time = dimension == Dimension::time;
+  const auto ends =
+      value.list(2, is_time ? "write when it starts and when it ends" : "write the two ends of the range");
   const Range range{ends[0].quantity(dimension), ends[1].quantity(dimension)};
-  if (!(range.lower < range.upper)) {
-    value.fail("runs from " + to_text({range.lower, dimension}) + " to " + to_text({range.upper, dimension}),
-               "write the lower end first, and two different ends");
-  }
-  return range;
+  if (range.lower < range.upper) return range;
+  const auto text = [&](double end) { return is_time ? readable_text({end, dimension}) : to_text({end, dimension}); };
+  value.fail(
+      "runs from " + text(range.lower) + " to " + text(range.upper),
+      is_time ? "write the start first, and an end after it" : "write the lower end first, and two different ends");
 }
 
 void read_workspace(const StudyValue& value, Study& study, const Reading&) {
@@ -40,12 +39,9 @@ void read_workspace(const StudyValue& value, Study& study, const Reading&) {
 
 void read_limits(const StudyValue& value, Study& study, const Reading&) {
   const std::vector<JointDisplacement>& joints = study.model().joints;
-  const StudySection section = value.section();
-  section.allow(names(joints), "joint");
-  for (std::size_t joint = 0; joint < joints.size(); ++joint) {
-    const auto own = section.find(joints[joint].name);
-    if (own) study.poses.limits.push_back({joint, read_range(*own, joints[joint].dimension), own->place()});
-  }
+  read_named(value.section(), joints, "joint", [&](std::size_t joint, const StudyValue& own) {
+    study.poses.limits.push_back({joint, read_range(own, joints[joint].dimension), own.place()});
+  });
 }
 
 /// A whole number, or for a grid a table with a number for every pose coordinate.
@@ -82,16 +78,7 @@ void read_pose_file(const StudyValue& value, Study& study, const Reading& readin
 std::string seconds(double time) { return readable_text({time, Dimension::time}); }
 
 void read_time(const StudyValue& value, Trajectory& trajectory) {
-  const std::vector<StudyValue> ends = value.list();
-  if (ends.size() != 2) {
-    value.fail("has " + std::to_string(ends.size()) + " values", "write when it starts and when it ends");
-  }
-  const TimeRange time{ends[0].quantity(Dimension::time), ends[1].quantity(Dimension::time)};
-  if (!(time.start < time.end)) {
-    value.fail("runs from " + seconds(time.start) + " to " + seconds(time.end),
-               "write the start first, and an end after it");
-  }
-  trajectory.time = time;
+  trajectory.time = read_range(value, Dimension::time);
 }
 
 const InnerRows<Trajectory>& trajectory_keys() {
@@ -127,23 +114,19 @@ const InnerRows<Trajectory>& trajectory_keys() {
 }
 
 /// The part of `what` that the study asks for; the whole where it names none.
-TimeRange part_of(const StudySection& section, const Trajectory& trajectory, const TimeRange& whole,
-                  const std::string& what) {
-  const TimeRange time = trajectory.time.value_or(whole);
-  if (time.start < whole.start || time.end > whole.end) {
-    section.require("time").fail("runs from " + seconds(time.start) + " to " + seconds(time.end) + ", but " + what +
-                                     " has " + seconds(whole.start) + " to " + seconds(whole.end),
+Range part_of(const StudySection& section, const Trajectory& trajectory, const Range& whole, const std::string& what) {
+  const Range time = trajectory.time.value_or(whole);
+  if (time.lower < whole.lower || time.upper > whole.upper) {
+    section.require("time").fail("runs from " + seconds(time.lower) + " to " + seconds(time.upper) + ", but " + what +
+                                     " has " + seconds(whole.lower) + " to " + seconds(whole.upper),
                                  "write times inside that range");
   }
   return time;
 }
 
 std::vector<double> read_origin(const StudyValue& value, const std::vector<PoseCoordinate>& coordinates) {
-  const std::vector<StudyValue> list = value.list();
-  if (list.size() != coordinates.size()) {
-    value.fail("has " + std::to_string(list.size()) + " values",
-               fmt::format("write one for each of {}", fmt::join(names(coordinates), ", ")));
-  }
+  const std::vector<StudyValue> list =
+      value.list(coordinates.size(), fmt::format("write one for each of {}", fmt::join(names(coordinates), ", ")));
   std::vector<double> origin;
   for (std::size_t c = 0; c < list.size(); ++c) origin.push_back(list[c].quantity(coordinates[c].dimension));
   return origin;
@@ -197,53 +180,63 @@ void read_trajectory_key(const StudyValue& value, Study& study, const Reading& r
   study.poses.trajectory = std::move(trajectory);
 }
 
-std::string count_line(const Study& study) {
-  const PoseSelection& poses = study.poses;
-  if (poses.grid_counts.empty()) return poses.count > 0 ? fmt::format("count = {}\n", poses.count) : "";
-  std::string text;
-  for (std::size_t c = 0; c < poses.grid_counts.size(); ++c) {
-    text += fmt::format("{}{} = {}", c == 0 ? "" : ", ", study.model().pose_coordinates[c].name, poses.grid_counts[c]);
-  }
-  return "count = { " + text + " }\n";
+/// A range as a TOML list.
+std::string range_text(const Range& range, Dimension dimension, ValueText value) {
+  return fmt::format("[{}, {}]", value(range.lower, dimension), value(range.upper, dimension));
 }
 
-std::string limits_line(const Study& study) {
-  std::string text;
-  for (const JointLimit& limit : study.poses.limits) {
-    const JointDisplacement& joint = study.model().joints[limit.joint];
-    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", joint.name,
-                        range_text(limit.range, joint.dimension, exact_value));
-  }
-  return text.empty() ? "" : "limits = { " + text + " }\n";
+std::string workspace_text(const std::vector<Range>& workspace, const ModelDescription& model, ValueText value) {
+  return "workspace = " +
+         inline_table(
+             model.pose_coordinates,
+             [&](std::size_t c) { return range_text(workspace[c], model.pose_coordinates[c].dimension, value); }) +
+         "\n";
 }
 
-std::string trajectory_line(const Study& study) {
-  if (!study.poses.trajectory) return {};
-  const Trajectory& trajectory = *study.poses.trajectory;
+/// One that is not a whole file.
+std::string trajectory_text(const Trajectory& trajectory, const ModelDescription& model, ValueText value) {
   std::string text = "file = " + in_quotes(trajectory.file);
   if (trajectory.curve) {
-    const NamedCurve& curve = study.model().curves[*trajectory.curve];
-    const std::vector<PoseCoordinate>& coordinates = study.model().charts[curve.chart].coordinates;
+    const NamedCurve& curve = model.curves[*trajectory.curve];
     std::vector<std::string> origin;
     for (std::size_t c = 0; c < trajectory.origin.size(); ++c) {
-      origin.push_back(exact_value(trajectory.origin[c], coordinates[c].dimension));
+      origin.push_back(value(trajectory.origin[c], model.charts[curve.chart].coordinates[c].dimension));
     }
     text = fmt::format("curve = {}, origin = {}", in_quotes(curve.name), list_text(origin));
   }
   if (trajectory.points > 0) text += fmt::format(", points = {}", trajectory.points);
-  if (trajectory.time) {
-    text += ", time = " + range_text({trajectory.time->start, trajectory.time->end}, Dimension::time, exact_value);
-  }
-  return "trajectory = { " + text + " }\n";
+  if (trajectory.time) text += ", time = " + range_text(*trajectory.time, Dimension::time, value);
+  return "trajectory = { " + text + " }";
 }
 
-/// With "# count = { z = 5, beta = 5 }".
-std::string shown_count(const TemplateLines& lines, const Study& study) {
-  std::string grid;
-  for (const PoseCoordinate& coordinate : study.model().pose_coordinates) {
-    grid += fmt::format("{}{} = 5", grid.empty() ? "" : ", ", coordinate.name);
+std::string count_line(const Study& study) {
+  const PoseSelection& poses = study.poses;
+  if (poses.grid_counts.empty()) return poses.count > 0 ? fmt::format("count = {}\n", poses.count) : "";
+  const auto number = [&](std::size_t c) { return std::to_string(poses.grid_counts[c]); };
+  return "count = " + inline_table(study.model().pose_coordinates, number) + "\n";
+}
+
+std::string workspace_line(const Study& study) {
+  return workspace_text(study.poses.workspace, study.model(), exact_value);
+}
+
+std::string limits_line(const Study& study) {
+  std::vector<std::string> ranges;
+  for (const JointLimit& limit : study.poses.limits) {
+    const JointDisplacement& joint = study.model().joints[limit.joint];
+    ranges.push_back(joint.name + " = " + range_text(limit.range, joint.dimension, exact_value));
   }
-  return lines.usual("poses", "count") + "# count = { " + grid + " }\n";
+  return ranges.empty() ? "" : fmt::format("limits = {{ {} }}\n", fmt::join(ranges, ", "));
+}
+
+std::string trajectory_line(const Study& study) {
+  const auto& trajectory = study.poses.trajectory;
+  return trajectory ? trajectory_text(*trajectory, study.model(), exact_value) + "\n" : "";
+}
+
+std::string shown_count(const TemplateLines& lines, const Study& study) {
+  const std::string grid = inline_table(study.model().pose_coordinates, [](std::size_t) { return "5"; });
+  return lines.usual("poses", "count") + "# count = " + grid + "\n";
 }
 
 /// The model's own.
@@ -262,7 +255,7 @@ std::string shown_workspace(const TemplateLines& lines, const Study& study) {
     text += comment("  " + coordinate.name + ": " + coordinate.description);
   }
   if (!model.workspace_note.empty()) text += comment(model.workspace_note);
-  return text + "workspace = " + workspace_text(usual_workspace(model), model, readable_value) + "\n";
+  return text + workspace_text(usual_workspace(model), model, readable_value);
 }
 
 /// The joints, and the range of one.
@@ -270,35 +263,33 @@ std::string shown_limits(const TemplateLines& lines, const Study& study) {
   const std::vector<JointDisplacement>& joints = study.model().joints;
   if (joints.empty()) return {};
   std::string list = "Joints:";
-  for (const JointDisplacement& joint : joints) {
-    list += fmt::format(" {} ({})", joint.name, name(joint.dimension));
-  }
+  for (const JointDisplacement& joint : joints) list += fmt::format(" {} ({})", joint.name, name(joint.dimension));
   const JointDisplacement& joint = joints.front();
   const std::string_view range =
       joint.dimension == Dimension::length ? "[\"-50 mm\", \"50 mm\"]" : "[\"-30 deg\", \"30 deg\"]";
   return comment(list) + lines.explained("poses", "limits", fmt::format("# limits = {{ {} = {} }}", joint.name, range));
 }
 
-std::string curve_example(const NamedCurve& curve, const ModelDescription& model) {
-  std::string origin;
-  for (std::size_t c = 0; c < curve.origin.size(); ++c) {
-    const Dimension dimension = model.charts[curve.chart].coordinates[c].dimension;
-    origin += (c > 0 ? ", " : "") + readable_value(curve.origin[c], dimension);
-  }
-  return fmt::format("# trajectory = {{ curve = {}, origin = [{}], points = {}, time = [{}, {}] }}  # {}\n",
-                     in_quotes(curve.name), origin, kCurvePoints, readable_value(curve.start, Dimension::time),
-                     readable_value(curve.end, Dimension::time), curve.description);
-}
-
 std::string shown_trajectory(const TemplateLines& lines, const Study& study) {
+  const ModelDescription& model = study.model();
   std::string text = lines.explanation_lines("poses", "trajectory") + lines.keys_lines("poses.trajectory");
-  for (const NamedCurve& curve : study.model().curves) text += curve_example(curve, study.model());
-  return text + fmt::format("# trajectory = {{ file = \"curve.csv\", points = {}, time = [\"0 s\", \"2 s\"] }}\n",
-                            kCurvePoints);
+  for (std::size_t k = 0; k < model.curves.size(); ++k) {
+    const NamedCurve& curve = model.curves[k];
+    const Trajectory whole{
+        .curve = k, .origin = curve.origin, .points = kCurvePoints, .time = Range{curve.start, curve.end}};
+    text += fmt::format("# {}  # {}\n", trajectory_text(whole, model, readable_value), curve.description);
+  }
+  const Trajectory file{.file = "curve.csv", .points = kCurvePoints, .time = Range{0.0, 2.0}};
+  return text + "# " + trajectory_text(file, model, readable_value) + "\n";
 }
 
-StudyRow select_row() {
-  return {.name = "select",
+std::vector<StudyRow> poses_rows() {
+  const std::vector<std::string_view> of_box{name(Select::interior), name(Select::boundary), name(Select::grid)};
+  std::vector<std::string_view> of_model = of_box;
+  of_model.push_back(name(Select::trajectory));
+  return {
+      StudyRow{
+          .name = "select",
           .value = word_at<Select>(
               {{Select::interior, "points of a Sobol' sequence in the workspace; more poses begin with the same ones"},
                {Select::file,
@@ -308,15 +299,7 @@ StudyRow select_row() {
                {Select::grid, "the feasible points of a regular grid"},
                {Select::trajectory, "poses along a curve, in the order of time"}},
               &Study::poses, &PoseSelection::select),
-          .meaning = "How poses are chosen."};
-}
-
-/// The keys of a search in the workspace.
-std::vector<StudyRow> box_rows() {
-  const std::vector<std::string_view> of_box{name(Select::interior), name(Select::boundary), name(Select::grid)};
-  std::vector<std::string_view> of_model = of_box;
-  of_model.push_back(name(Select::trajectory));
-  return {
+          .meaning = "How poses are chosen."},
       StudyRow{.name = "count",
                .value = {.type = "integer, for a grid also a table", .bounds = "at least 1"},
                .missing = "write how many poses, e.g. {}",
@@ -333,10 +316,7 @@ std::vector<StudyRow> box_rows() {
                .only_for = of_box,
                .meaning = "A range for every pose coordinate.",
                .reader = read_workspace,
-               .lines =
-                   [](const Study& study) {
-                     return "workspace = " + workspace_text(study.poses.workspace, study.model(), exact_value) + "\n";
-                   },
+               .lines = workspace_line,
                .shown = shown_workspace},
       StudyRow{.name = "limits",
                .value = {.type = "table"},
@@ -352,60 +332,23 @@ std::vector<StudyRow> box_rows() {
                .meaning = "A pose whose condition number is above it counts as singular: it is rejected, or on a "
                           "trajectory an error.",
                .late = 1,
-               .commented = true}};
-}
-
-StudyRow file_row() {
-  return {.name = "file",
-          .value = text_at(&Study::poses, &PoseSelection::file),
-          .missing = "write {}",
-          .example = "\"poses.csv\"",
-          .only_for = {name(Select::file)},
-          .meaning = "CSV file of poses, relative to the study's folder.",
-          .reader = read_pose_file,
-          .commented = true};
-}
-
-StudyRow trajectory_row() {
-  return {.name = "trajectory",
-          .value = {.type = "table"},
-          .missing = "write trajectory = { curve = \"NAME\" } or { file = \"curve.csv\" }",
-          .only_for = {name(Select::trajectory)},
-          .meaning = "The curve: one of the model's, or a file.",
-          .reader = read_trajectory_key,
-          .lines = trajectory_line,
-          .shown = shown_trajectory};
-}
-
-StudyTable grid_table() {
-  return {.paths = {"poses.count"},
-          .meaning = "For select = \"grid\": a regular grid, of which all feasible points are poses.",
-          .keys = {{.name = "COORDINATE",
-                    .type = "integer",
-                    .bounds = "at least 1",
-                    .required = true,
-                    .missing = "give a number for every pose coordinate of the model",
-                    .meaning = "Points along this pose coordinate, evenly spaced, both ends included; 1 is the "
-                               "middle."}}};
-}
-
-StudyTable workspace_table() {
-  return {.paths = {"poses.workspace"},
-          .meaning = "The box in which poses are sought.",
-          .keys = {{.name = "COORDINATE",
-                    .type = "list of two quantities",
-                    .required = true,
-                    .missing = "give a range for every pose coordinate of the model",
-                    .meaning = "Lower and upper end of the range of this pose coordinate."}}};
-}
-
-StudyTable limits_table() {
-  return {.paths = {"poses.limits"},
-          .meaning = "Limits of joints.",
-          .keys = {{.name = "JOINT",
-                    .type = "list of two quantities",
-                    .usual = "none",
-                    .meaning = "Lower and upper end of the range of this joint's displacement."}}};
+               .commented = true},
+      StudyRow{.name = "file",
+               .value = text_at(&Study::poses, &PoseSelection::file),
+               .missing = "write {}",
+               .example = "\"poses.csv\"",
+               .only_for = {name(Select::file)},
+               .meaning = "CSV file of poses, relative to the study's folder.",
+               .reader = read_pose_file,
+               .commented = true},
+      StudyRow{.name = "trajectory",
+               .value = {.type = "table"},
+               .missing = "write trajectory = { curve = \"NAME\" } or { file = \"curve.csv\" }",
+               .only_for = {name(Select::trajectory)},
+               .meaning = "The curve: one of the model's, or a file.",
+               .reader = read_trajectory_key,
+               .lines = trajectory_line,
+               .shown = shown_trajectory}};
 }
 
 }  // namespace
@@ -415,19 +358,36 @@ std::string beside_study(const StudySection& section, const std::string& file) {
 }
 
 const StudyRows& poses_keys() {
-  static const StudyRows keys = [] {
-    StudyRows table{
-        .paths = {"poses"}, .meaning = "The poses of the platform.", .chooser = "select", .rows = {select_row()}};
-    for (StudyRow& row : box_rows()) table.rows.push_back(std::move(row));
-    table.rows.push_back(file_row());
-    table.rows.push_back(trajectory_row());
-    return table;
-  }();
+  static const StudyRows keys{
+      .paths = {"poses"}, .meaning = "The poses of the platform.", .chooser = "select", .rows = poses_rows()};
   return keys;
 }
 
 StudyTables poses_tables() {
-  return {described(poses_keys()), grid_table(), workspace_table(), limits_table(), described(trajectory_keys())};
+  return {described(poses_keys()),
+          {.paths = {"poses.count"},
+           .meaning = "For select = \"grid\": a regular grid, of which all feasible points are poses.",
+           .keys = {{.name = "COORDINATE",
+                     .type = "integer",
+                     .bounds = "at least 1",
+                     .required = true,
+                     .missing = "give a number for every pose coordinate of the model",
+                     .meaning = "Points along this pose coordinate, evenly spaced, both ends included; 1 is the "
+                                "middle."}}},
+          {.paths = {"poses.workspace"},
+           .meaning = "The box in which poses are sought.",
+           .keys = {{.name = "COORDINATE",
+                     .type = "list of two quantities",
+                     .required = true,
+                     .missing = "give a range for every pose coordinate of the model",
+                     .meaning = "Lower and upper end of the range of this pose coordinate."}}},
+          {.paths = {"poses.limits"},
+           .meaning = "Limits of joints.",
+           .keys = {{.name = "JOINT",
+                     .type = "list of two quantities",
+                     .usual = "none",
+                     .meaning = "Lower and upper end of the range of this joint's displacement."}}},
+          described(trajectory_keys())};
 }
 
 void read_poses_section(Study& study, const Reading& reading) {

@@ -1,12 +1,10 @@
 #include "engine/study/poses/pose_selection.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <functional>
+#include <numeric>
 
 #include "engine/random/low_discrepancy.h"
-#include "engine/study/poses/boundary.h"
-#include "engine/study/poses/given_poses.h"
 #include "engine/study/poses/workspace.h"
 
 namespace poesy {
@@ -26,7 +24,7 @@ SelectedPoses interior_poses(const PoseSelection& selection, const Model& model)
     if (candidate == most) collector.fail(selection.count, selection.place);
     sequence.next(scaled);
     workspace.unscale(scaled, pose);
-    collector.offer(pose);
+    if (const auto condition = collector.test(pose)) collector.keep(pose, *condition);
   }
   return std::move(collector).result();
 }
@@ -34,20 +32,17 @@ SelectedPoses interior_poses(const PoseSelection& selection, const Model& model)
 /// All feasible points of a grid, the last coordinate fastest.
 PoseCollector grid_points(const Workspace& workspace, std::span<const std::size_t> counts) {
   PoseCollector collector(workspace);
-  std::vector<std::size_t> step(counts.size(), 0);
   std::vector<double> scaled(counts.size());
   std::vector<double> pose(counts.size());
-  for (bool more = true; more;) {
-    for (std::size_t c = 0; c < counts.size(); ++c) {
-      scaled[c] = counts[c] == 1 ? 0.5 : static_cast<double>(step[c]) / static_cast<double>(counts[c] - 1);
+  const std::size_t points = std::accumulate(counts.begin(), counts.end(), std::size_t{1}, std::multiplies());
+  for (std::size_t point = 0; point < points; ++point) {
+    std::size_t rest = point;
+    for (std::size_t c = counts.size(); c-- > 0; rest /= counts[c]) {
+      const std::size_t step = rest % counts[c];
+      scaled[c] = counts[c] == 1 ? 0.5 : static_cast<double>(step) / static_cast<double>(counts[c] - 1);
     }
     workspace.unscale(scaled, pose);
-    collector.offer(pose);
-    more = false;
-    for (std::size_t c = counts.size(); c-- > 0 && !more;) {
-      more = ++step[c] < counts[c];
-      if (!more) step[c] = 0;
-    }
+    if (const auto condition = collector.test(pose)) collector.keep(pose, *condition);
   }
   return collector;
 }

@@ -1,21 +1,84 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/base/contract.h"
 #include "engine/base/error.h"
+#include "engine/base/index.h"
 #include "engine/model/model.h"
-#include "engine/model/pose_set.h"
-#include "engine/study/poses/trajectory.h"
 
 namespace poesy {
+
+/// M poses of C coordinates each, SI, row-major [M x C].
+class PoseSet {
+ public:
+  PoseSet() = default;
+  /// Values: [M x coordinates], row-major, SI.
+  PoseSet(std::size_t coordinates, std::vector<double> values) : coordinates_(coordinates), values_(std::move(values)) {
+    POESY_EXPECTS(coordinates_ > 0 && values_.size() % coordinates_ == 0);
+  }
+
+  std::size_t size() const { return coordinates_ == 0 ? 0 : values_.size() / coordinates_; }  ///< M.
+  std::size_t coordinates() const { return coordinates_; }                                    ///< Numbers of a pose.
+  /// [coordinates], SI.
+  std::span<const double> operator[](PoseIndex pose) const {
+    return std::span(values_).subspan(pose.value * coordinates_, coordinates_);
+  }
+  /// All values of one coordinate, [M].
+  std::vector<double> column(std::size_t coordinate) const {
+    std::vector<double> values(size());
+    for (std::size_t m = 0; m < values.size(); ++m) values[m] = values_[m * coordinates_ + coordinate];
+    return values;
+  }
+  bool operator==(const PoseSet&) const = default;  ///< Whether all numbers are equal.
+
+ private:
+  std::size_t coordinates_ = 0;
+  std::vector<double> values_;
+};
 
 /// The values from one end to the other, both included.
 struct Range {
   double lower;  ///< SI
   double upper;  ///< SI
 };
+
+/// Points in the pose's own coordinates, or in those of one of the model's charts.
+struct PoseTable {
+  std::optional<std::size_t> chart;  ///< position among the model's charts; none: the pose's own coordinates
+  PoseSet points;                    ///< [M x coordinates], SI
+};
+
+/// The coordinates of the pose, or of a chart.
+const std::vector<PoseCoordinate>& coordinates(const ModelDescription& model, std::optional<std::size_t> chart);
+
+/// Points run through in time.
+struct TimedPoints {
+  std::vector<double> time;  ///< [M] s, strictly ascending
+  PoseTable table;           ///< [M]
+};
+
+/// What a study says of a trajectory: a named curve of the model, or points of a file.
+struct Trajectory {
+  std::optional<std::size_t> curve = {};  ///< position among the model's curves; none: of a file
+  std::vector<double> origin = {};        ///< where the curve's zero stands, [coordinates of its chart], SI
+  std::string file = {};                  ///< as written in the study; empty for a curve
+  TimedPoints from_file = {};             ///< at least two; empty where the file was not opened
+  std::size_t points = 0;                 ///< poses, evenly spaced in time; 0: those of the file as they are
+  std::optional<Range> time = {};         ///< s; none where points is 0, or where the file was not opened and sets it
+  Place first_row = {};                   ///< of the file (point m is m lines below)
+};
+
+/// The trajectory's points: of a curve at evenly spaced times, both ends included; those of the file as they are; or
+/// those of the file interpolated over time at evenly spaced times, each coordinate by itself: a modified Akima spline
+/// through four points or more, straight lines through two or three. Precondition: the file was opened, the times lie
+/// inside its range.
+TimedPoints sampled(const Trajectory& trajectory, const ModelDescription& model);
 
 /// The range that one joint's displacement from home must stay in, ends included.
 struct JointLimit {
@@ -60,8 +123,7 @@ struct SelectedPoses {
 /// in its range, and its condition number is at most max_condition.
 ///
 /// - interior: Sobol' points in the box, in order; the first `count` feasible ones. Fewer poses are the first of more.
-/// - boundary: points of the feasible set's boundary, uniform by area; see boundary_poses(). Fewer are the first of
-/// more.
+/// - boundary: points of the feasible set's boundary, uniform by area; see boundary_poses(). Fewer begin more.
 /// - grid: with grid_counts all feasible points of that grid, the last coordinate fastest. Ranges are divided evenly,
 ///   both ends included; 1 means the middle. Else the coarsest grid with equal numbers for all coordinates and at least
 ///   `count` feasible points, thinned evenly to `count`.
@@ -70,8 +132,7 @@ struct SelectedPoses {
 ///
 /// Throws InputError at the place of the limit that rejected most, or of the selection, when the box gives fewer poses
 /// than wanted (interior and grid: after max(100 000, 100 count) candidates); at count_place when poses of the boundary
-/// coincide to rounding; at the line of a file's first pose that does not exist, is out of reach or above
-/// max_condition; for the first point of a trajectory to which no pose belongs, or one out of reach or above
+/// coincide to rounding; for the first pose of a file or a trajectory that does not exist, is out of reach or above
 /// max_condition: at its line where the poses are a file's own, else at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 

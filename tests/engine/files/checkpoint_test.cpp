@@ -6,8 +6,7 @@
 #include <csignal>
 
 #include "engine/base/error.h"
-#include "engine/files/checkpoint_files.h"
-#include "engine/files/sha256.h"
+#include "engine/files/content_hash.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"

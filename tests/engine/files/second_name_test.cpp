@@ -11,7 +11,7 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/files/checkpoint_files.h"
+#include "engine/files/checkpoint.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {

@@ -1,4 +1,4 @@
-#include "engine/files/trial_read.h"
+#include "engine/files/poesy_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

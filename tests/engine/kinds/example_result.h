@@ -8,12 +8,10 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
-#include "engine/kinds/evaluate/stored.h"
 #include "engine/kinds/identification/identification.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/stored.h"
 #include "engine/run/evaluation.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"
@@ -181,7 +179,7 @@ class Example {
     Analysis& analysis = study.analysis;
     analysis.kind = &kCouplingStudy;
     analysis.factors = {FactorIndex(0), FactorIndex(2)};
-    asked_of<CouplingStudy>(analysis) = {{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
+    analysis.asked = CouplingStudy{{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
     CouplingResult result;
     result.responses = 2;
     result.sizes = 2;

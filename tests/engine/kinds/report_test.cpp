@@ -1,6 +1,5 @@
-#include "engine/report/html/report.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/report/html/report.h"
+#include "engine/report/report_kind.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
 
@@ -17,7 +16,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/kinds/identification/stored.h"
+#include "engine/kinds/identification/identification.h"
 #include "engine/report/display.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/engine/kinds/stored.h"

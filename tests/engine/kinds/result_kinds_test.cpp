@@ -6,7 +6,6 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/identification/identification.h"
-#include "engine/kinds/identification/stored.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -3,11 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/kinds/coupling/stored.h"
+#include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/stored.h"
 #include "engine/kinds/registry.h"
-#include "engine/kinds/sensitivity/stored.h"
+#include "engine/kinds/sensitivity/result.h"
 
 /// What a kind found, of results that tests make or change.
 namespace poesy {

@@ -1,9 +1,8 @@
-#include "engine/kinds/stored_study.h"
+#include "engine/kinds/study_file.h"
 
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
-#include "engine/kinds/study_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,11 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_01.hpp>
-#include <cmath>
-#include <numeric>
-#include <random>
 #include <set>
 #include <vector>
 
@@ -13,8 +8,6 @@
 
 namespace poesy {
 namespace {
-
-static_assert(std::uniform_random_bit_generator<StreamEngine>);
 
 const StreamAddress kAddress{
     .seed = 42, .purpose = Purpose::error_samples, .factor = FactorIndex(5), .pose = PoseIndex(11)};
@@ -94,50 +87,6 @@ TEST(FillUniforms, PiecesMakeTheWhole) {
   std::vector<double> joined = uniforms(kAddress, 0, 333);
   for (const double draw : uniforms(kAddress, 333, 668)) joined.push_back(draw);
   EXPECT_EQ(joined, whole);
-}
-
-TEST(StreamEngine, CallKIsTheDrawOfSampleK) {
-  StreamEngine engine(kAddress);
-  for (std::size_t k = 0; k < 100; ++k) EXPECT_EQ(engine(), random_bits(kAddress, SampleIndex(k)));
-}
-
-TEST(StreamEngine, DiscardSkipsDraws) {
-  StreamEngine engine(kAddress);
-  engine();
-  engine.discard(41);
-  EXPECT_EQ(engine(), random_bits(kAddress, SampleIndex(42)));
-}
-
-TEST(StreamEngine, FeedsBoostDistributions) {
-  StreamEngine engine(kAddress);
-  boost::random::uniform_01<double> uniform;
-  boost::random::normal_distribution<double> normal;
-  double sum = 0.0;
-  for (int k = 0; k < 1000; ++k) {
-    const double u = uniform(engine);
-    ASSERT_GE(u, 0.0);
-    ASSERT_LT(u, 1.0);
-    sum += normal(engine);
-  }
-  // The mean of 1000 standard normal draws; z at alpha = 0.001 is 3.291.
-  EXPECT_LE(std::abs(sum / 1000.0), 3.291 / std::sqrt(1000.0));
-}
-
-TEST(StreamEngine, ShufflesRepeatably) {
-  const auto shuffled = [](const StreamAddress& address) {
-    std::vector<int> order(100);
-    std::iota(order.begin(), order.end(), 0);
-    std::shuffle(order.begin(), order.end(), StreamEngine(address));
-    return order;
-  };
-  std::vector<int> order = shuffled(kAddress);
-  EXPECT_EQ(order, shuffled(kAddress));
-  StreamAddress other = kAddress;
-  other.pose = PoseIndex(12);
-  EXPECT_NE(order, shuffled(other));
-  EXPECT_FALSE(std::is_sorted(order.begin(), order.end()));
-  std::sort(order.begin(), order.end());
-  for (int k = 0; k < 100; ++k) EXPECT_EQ(order[static_cast<std::size_t>(k)], k);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 
 namespace poesy {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/report/display.h"
 #include "engine/report/html/figures.h"
-#include "engine/report/html/markup.h"
+#include "engine/report/html/page.h"
 #include "engine/report/solves.h"
-#include "engine/report/study_settings.h"
 
 namespace poesy {
 namespace {

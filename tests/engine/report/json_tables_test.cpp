@@ -1,11 +1,10 @@
-#include "engine/report/json_tables.h"
+#include "engine/report/tables.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "engine/report/tables.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {

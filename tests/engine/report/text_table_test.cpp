@@ -1,4 +1,4 @@
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/run.h"
 #include "engine/run/run_options.h"
 #include "tests/engine/run/prepared.h"
 #include "tests/support/fake_model.h"

@@ -9,7 +9,7 @@
 #include "engine/run/rounds.h"
 #include "engine/run/run_options.h"
 #include "engine/stats/tolerance.h"
-#include "engine/study/milestones.h"
+#include "engine/study/plan.h"
 #include "tests/engine/run/adaptive_study.h"
 #include "tests/support/kinds.h"
 

@@ -12,7 +12,6 @@
 
 #include "bench/published_study.h"
 #include "engine/run/evaluate_unit.h"
-#include "engine/run/pose_unit.h"
 #include "models/registry.h"
 #include "tests/models/chain/block_samples.h"
 #include "tests/support/kinds.h"

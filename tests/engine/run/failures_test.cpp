@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/kinds/monte_carlo/run.h"
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/monte_carlo/kind.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/random/stream.h"
 #include "engine/run/replay.h"
 #include "engine/run/run_options.h"

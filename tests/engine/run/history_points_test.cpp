@@ -1,4 +1,4 @@
-#include "engine/run/history_points.h"
+#include "engine/run/evaluate_unit.h"
 
 #include <gtest/gtest.h>
 

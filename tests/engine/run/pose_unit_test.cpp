@@ -1,4 +1,4 @@
-#include "engine/run/pose_unit.h"
+#include "engine/run/evaluate_unit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/run.h"
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/random/stream.h"
 #include "engine/run/run_options.h"
-#include "engine/stats/quantile_interval.h"
+#include "engine/stats/buckets.h"
 #include "tests/engine/stats/plain_sort.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/run/run_in_order.h"
+#include "engine/run/fold.h"
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"

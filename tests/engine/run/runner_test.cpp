@@ -1,5 +1,5 @@
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/run.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/run_options.h"
 

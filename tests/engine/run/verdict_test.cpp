@@ -1,7 +1,6 @@
-#include "engine/kinds/monte_carlo/verdict.h"
+#include "engine/kinds/monte_carlo/collector.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluation.h"
-#include "engine/run/verdict.h"
 
 #include <gtest/gtest.h>
 

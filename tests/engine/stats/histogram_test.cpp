@@ -1,4 +1,4 @@
-#include "engine/stats/histogram.h"
+#include "engine/stats/buckets.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "engine/random/normal_quantile.h"
+#include "engine/random/distribution.h"
 
 namespace poesy {
 namespace {

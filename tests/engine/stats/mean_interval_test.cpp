@@ -1,4 +1,4 @@
-#include "engine/stats/mean_interval.h"
+#include "engine/stats/moments.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/stats/quantile_interval.h"
+#include "engine/stats/buckets.h"
 
 // How often a 95 % interval of a quantile holds the quantile, known in closed form, in repeated experiments with fixed
 // seeds. It must not miss it more often than 5 %; a correct interval fails with probability alpha = 0.001 (z < -3.090,

@@ -1,4 +1,4 @@
-#include "engine/stats/quantile_interval.h"
+#include "engine/stats/buckets.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/stats/rounding.h"
+#include "engine/stats/indices.h"
 
 #include <gtest/gtest.h>
 

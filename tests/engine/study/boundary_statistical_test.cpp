@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "engine/study/poses/boundary.h"
+#include "engine/study/poses/workspace.h"
 #include "tests/engine/study/region.h"
 
 namespace poesy {

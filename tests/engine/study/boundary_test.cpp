@@ -1,4 +1,4 @@
-#include "engine/study/poses/boundary.h"
+#include "engine/study/poses/workspace.h"
 
 #include <gtest/gtest.h>
 

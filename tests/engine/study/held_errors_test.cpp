@@ -1,4 +1,4 @@
-#include "engine/study/error_words.h"
+#include "engine/study/study.h"
 
 #include <gtest/gtest.h>
 

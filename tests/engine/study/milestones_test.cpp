@@ -1,8 +1,6 @@
-#include "engine/study/milestones.h"
+#include "engine/study/plan.h"
 
 #include <gtest/gtest.h>
-
-#include "engine/study/plan.h"
 
 namespace poesy {
 namespace {

@@ -72,7 +72,8 @@ TEST(InteriorPoses, AreSpreadEvenly) {
 TEST(InteriorPoses, OfAPlainBoxAreTheSobolPointsBitForBit) {
   const PoseSelection selection = interior(1738);
   const SelectedPoses selected = select_poses(selection, kModel);
-  std::vector<double> expected = sobol_points(1738, 3);
+  std::vector<double> expected(std::size_t{1738} * 3);
+  SobolSequence(3).next(expected);
   for (std::size_t k = 0; k < expected.size(); ++k) {
     const Range& range = selection.workspace[k % 3];
     expected[k] = std::lerp(range.lower, range.upper, expected[k]);

@@ -1,11 +1,12 @@
 #include "engine/kinds/study_file.h"
-#include "engine/study/keys.h"
+#include "engine/study/study_kind.h"
 
 #include <gtest/gtest.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <functional>
 #include <set>
 #include <sstream>
@@ -144,6 +145,11 @@ struct Use {
   std::string full_name;  ///< as messages have it
   std::string word;       ///< of the table's chooser, there
 };
+
+/// Whether a key stands for names of the model's, which is said in capitals.
+bool is_name_of_model(const StudyKey& key) {
+  return std::ranges::all_of(key.name, [](unsigned char letter) { return std::isupper(letter) != 0; });
+}
 
 /// The description of a name in a table: its own, or that of names of the model's.
 const StudyKey* description(const StudyTable& table, const std::string& name) {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/kinds/study_file.h"
-#include "engine/study/study_text.h"
+#include "engine/study/study.h"
 #include "tests/engine/study/valid_study.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"

@@ -1,10 +1,9 @@
-#include "engine/study/poses/trajectory.h"
+#include "engine/study/poses/pose_selection.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/study/poses/pose_selection.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 
@@ -18,7 +17,7 @@ Trajectory wave(std::size_t points, double start, double end) {
   trajectory.curve = 0;
   trajectory.origin = {0.3, -1.0, 0.5};
   trajectory.points = points;
-  trajectory.time = TimeRange{start, end};
+  trajectory.time = Range{start, end};
   return trajectory;
 }
 
@@ -74,7 +73,7 @@ TEST(File, IsInterpolatedBetweenItsPoints) {
   Trajectory trajectory = file_of(
       time, [](double t) { return -1.0 + 0.3 * std::sin(3.0 * t); }, kUpright);
   trajectory.points = 1001;
-  trajectory.time = TimeRange{time.front(), time.back()};
+  trajectory.time = Range{time.front(), time.back()};
   const TimedPoints points = sampled(trajectory, kModel.description());
   const std::vector<double> z = points.table.points.column(0);
   ASSERT_EQ(z.size(), 1001u);
@@ -88,7 +87,7 @@ TEST(File, IsMetAtItsPoints) {
   Trajectory trajectory = file_of(
       {0.0, 1.0, 2.0, 3.0, 4.0}, [](double t) { return t * t * t; }, kUpright);
   trajectory.points = 5;
-  trajectory.time = TimeRange{0.0, 4.0};
+  trajectory.time = Range{0.0, 4.0};
   const std::vector<double> z = sampled(trajectory, kModel.description()).table.points.column(0);
   for (std::size_t m = 0; m < 5; ++m) EXPECT_NEAR(z[m], std::pow(double(m), 3), 1e-13);
 }
@@ -100,7 +99,7 @@ TEST(File, OfAStraightLineIsThatLineWithAnyNumberOfPoints) {
     Trajectory trajectory = file_of(
         time, [](double t) { return 2.0 * t - 1.0; }, [](double t) { return 3.0 - t; });
     trajectory.points = 17;
-    trajectory.time = TimeRange{0.25, time.back() - 0.125};
+    trajectory.time = Range{0.25, time.back() - 0.125};
     const TimedPoints points = sampled(trajectory, kModel.description());
     for (std::size_t m = 0; m < 17; ++m) {
       const auto point = points.table.points[PoseIndex(m)];
@@ -114,7 +113,7 @@ TEST(File, OfThreePointsIsJoinedByStraightLines) {
   Trajectory trajectory = file_of(
       {0.0, 1.0, 3.0}, [](double t) { return std::abs(t - 1.0); }, kUpright);
   trajectory.points = 7;
-  trajectory.time = TimeRange{0.0, 3.0};
+  trajectory.time = Range{0.0, 3.0};
   EXPECT_EQ(sampled(trajectory, kModel.description()).table.points.column(0),
             (std::vector{1.0, 0.5, 0.0, 0.5, 1.0, 1.5, 2.0}));
 }
@@ -151,7 +150,7 @@ TEST(Refused, APointOfAnInterpolatedFileAtTheStudysPlace) {
   Trajectory trajectory = file_of(
       {0.0, 1.0}, [](double t) { return t - 0.5; }, kUpright);
   trajectory.points = 5;
-  trajectory.time = TimeRange{0.0, 1.0};
+  trajectory.time = Range{0.0, 1.0};
   test::expect_input_error([&] { select_poses(selection_of(trajectory), kModel); }, {"study.toml", 8, 14},
                            {"point 3 of 5, at t = 0.5 s", "z must be negative", "SI: metres and radians"});
 }

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <span>
 
-#include "models/three_prs/closure_solver.h"
+#include "models/three_prs/closure.h"
 #include "tests/models/three_prs/reference.h"
 
 namespace poesy::three_prs {

@@ -1,4 +1,4 @@
-#include "models/three_prs/machine.h"
+#include "models/three_prs/model.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "models/registry.h"
-#include "models/three_prs/machine_evaluator.h"
+#include "models/three_prs/evaluators.h"
 #include "models/three_prs/slides.h"
 #include "tests/models/three_prs/reference.h"
 
@@ -304,7 +304,7 @@ class CountingHead final : public Evaluator {
 TEST(Machine, AsksTheHeadOncePerBlockAndOneSampleWhereItDoesNotVary) {
   std::vector<std::size_t> asked;
   const auto evaluator =
-      exact_machine_evaluator({}, std::make_unique<CountingHead>(published("exact")->evaluator({}), asked));
+      machine_evaluator({}, Fidelity::exact, std::make_unique<CountingHead>(published("exact")->evaluator({}), asked));
   const std::vector<double> pose{0.1, 0.1, 0.8, 0.1, 0.1}, errors(kAll, 1e-4), values(2 * 50, 1e-3);
   Block block(50);
   evaluator->evaluate({pose, errors, factors_named({"a_x_1", "x_roll"}), values, 50}, block.outcomes());

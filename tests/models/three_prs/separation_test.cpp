@@ -1,4 +1,4 @@
-#include "models/three_prs/separation.h"
+#include "models/three_prs/error_mapping.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/three_prs/error_mapping.h"
 #include "tests/models/three_prs/reference.h"
 
 namespace poesy::three_prs {

@@ -23,7 +23,7 @@ PoseSelection curve(const Model& model, std::size_t position, std::size_t points
   selection.trajectory->curve = position;
   selection.trajectory->origin = curve.origin;
   selection.trajectory->points = points;
-  selection.trajectory->time = TimeRange{curve.start, curve.end};
+  selection.trajectory->time = Range{curve.start, curve.end};
   return selection;
 }
 

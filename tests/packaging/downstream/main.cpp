@@ -7,7 +7,6 @@
 #include "engine/base/error.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/result_file.h"
-#include "engine/kinds/sensitivity/options.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"

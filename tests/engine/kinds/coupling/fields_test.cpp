@@ -6,7 +6,6 @@
 #include "engine/files/h5.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/coupling/coupling.h"
-#include "engine/kinds/coupling/stored.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,4 +1,4 @@
-#include "engine/kinds/coupling/rows.h"
+#include "engine/kinds/coupling/coupling.h"
 #include "engine/run/evaluation.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,6 @@
 #include "engine/files/h5.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/stored.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "bench/published_study.h"
+#include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/run.h"
 #include "engine/random/stream.h"
 #include "engine/run/evaluation.h"
 #include "tests/engine/stats/plain_sort.h"

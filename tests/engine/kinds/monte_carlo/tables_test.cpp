@@ -4,8 +4,8 @@
 
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "tests/engine/kinds/stored.h"
 
 namespace poesy {

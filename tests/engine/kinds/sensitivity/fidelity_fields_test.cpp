@@ -7,7 +7,7 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/tolerance_files.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/kinds/study_file.h"
 #include "engine/study/study_file.h"
 #include "tests/engine/kinds/example_result.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/kinds/sensitivity/fidelity.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/run.h"
 #include "tests/support/kinds.h"
 #include "tests/support/two_fidelities_model.h"
 

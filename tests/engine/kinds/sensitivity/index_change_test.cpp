@@ -1,10 +1,10 @@
-#include "engine/kinds/sensitivity/index_change.h"
+#include "engine/kinds/sensitivity/linearity.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 

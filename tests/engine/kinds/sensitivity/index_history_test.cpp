@@ -1,6 +1,6 @@
-#include "engine/kinds/sensitivity/index_history.h"
+#include "engine/kinds/sensitivity/collector.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/run.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "engine/kinds/sensitivity/linearity.h"
-#include "engine/kinds/sensitivity/run.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/run/run_options.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 
-#include "engine/run/some_poses.h"
+#include "engine/run/evaluate_unit.h"
 #include "engine/stats/indices.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"

@@ -5,8 +5,8 @@
 
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/report/table.h"
 #include "engine/report/tables.h"
-#include "engine/report/text_table.h"
 #include "tests/engine/kinds/stored.h"
 
 namespace poesy {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "engine/kinds/monte_carlo/run.h"
+#include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/sensitivity/run.h"
 #include "engine/study/poses/pose_selection.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"

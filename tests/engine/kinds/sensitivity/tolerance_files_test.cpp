@@ -1,5 +1,5 @@
-#include "engine/kinds/sensitivity/tolerance_files.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/files/h5.h"
 #include "engine/kinds/study_file.h"
-#include "engine/study/study_text.h"
+#include "engine/study/study.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/engine/kinds/stored.h"
 #include "tests/support/kinds.h"

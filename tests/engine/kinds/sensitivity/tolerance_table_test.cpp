@@ -1,11 +1,11 @@
-#include "engine/kinds/sensitivity/tolerance_table.h"
+#include "engine/kinds/sensitivity/tolerances.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {

@@ -1,4 +1,4 @@
-#include "engine/kinds/sensitivity/two_rankings.h"
+#include "engine/kinds/sensitivity/ranking.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "engine/base/error.h"
 #include "engine/report/display.h"
-#include "engine/report/json_tables.h"
-#include "engine/report/text_table.h"
+#include "engine/report/table.h"
+#include "engine/report/tables.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {

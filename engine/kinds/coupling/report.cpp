@@ -1,0 +1,304 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include "engine/kinds/coupling/coupling.h"
+#include "engine/kinds/coupling/kind.h"
+#include "engine/report/display.h"
+#include "engine/report/tables.h"
+#include "engine/stats/indices.h"
+
+namespace poesy {
+namespace {
+
+double rounding_at(const StoredCoupling& stored, std::size_t z) {
+  return size_rounding(stored.linear[z], stored.angular[z]);
+}
+
+Cell place_cell(const StoredResult& result, bool known, std::int64_t pose) {
+  return text_cell(known ? coordinates_text(result, static_cast<std::size_t>(pose)) : std::string());
+}
+
+Cell pose_cell(bool known, std::int64_t pose) {
+  return known ? count_cell(static_cast<std::uint64_t>(pose)) : text_cell("");
+}
+
+std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::size_t at) {
+  const StoredCoupling& stored = coupling_of(result);
+  const CouplingResult& found = stored.found;
+  const double rounding = rounding_at(stored, at / found.subsets % found.sizes);
+  const auto cell = [&](double value) {
+    Cell shown = number_cell(value / display(result.responses[r]).si, 5);
+    if (value <= rounding) shown.text = "0";
+    return shown;
+  };
+  const bool opposed = found.cancellation_max[at] > 0.0;
+  return {text_cell(stored.subsets[at % found.subsets]),
+          cell(found.effect_max[at]),
+          pose_cell(found.effect_max[at] > rounding, found.effect_max_pose[at]),
+          place_cell(result, found.effect_max[at] > rounding, found.effect_max_pose[at]),
+          cell(found.root_sum_square_max[at]),
+          cell(found.worst_case_max[at]),
+          cell(found.interaction_max[at]),
+          opposed ? percent_cell(found.opposed_share[at]) : text_cell(""),
+          opposed ? percent_cell(found.cancellation_max[at]) : text_cell(""),
+          pose_cell(opposed, found.cancellation_max_pose[at]),
+          place_cell(result, opposed, found.cancellation_max_pose[at])};
+}
+
+Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
+  const StoredCoupling& stored = coupling_of(result);
+  const CouplingResult& found = stored.found;
+  const NamedUnit& response = result.responses[r];
+  const std::string_view unit = display(response).name;
+  Table table{
+      .name = fmt::format("coupling_{}_{}", z + 1, response.name),
+      .caption = fmt::format("{}: {} [{}]", stored.size_names[z], response.name, unit),
+      .columns = {
+          text_column("subset", "subset"), number_column("effect_max", "largest effect", unit),
+          number_column("effect_max_pose", "at pose", "", 1), text_column("effect_max_where", "largest where", 4),
+          number_column("root_sum_square_max", "root sum square", unit),
+          number_column("worst_case_max", "worst case", unit), number_column("interaction_max", "interaction", unit),
+          percent_column("opposed_share", "opposed", 3), percent_column("cancellation_max", "cancellation", 2),
+          number_column("cancellation_max_pose", "at pose", "", 2),
+          text_column("cancellation_max_where", "cancelled where", 4)}};
+  for (std::size_t k = 0; k < found.subsets; ++k) {
+    table.rows.push_back(subset_row(result, r, (r * found.sizes + z) * found.subsets + k));
+  }
+  return table;
+}
+
+/// Whether a source alone does nothing at any pose, at any size, to one of the responses shown.
+bool does_nothing(const StoredResult& result, const std::string& source) {
+  const StoredCoupling& stored = coupling_of(result);
+  const CouplingResult& found = stored.found;
+  const auto k = static_cast<std::size_t>(std::ranges::find(stored.subsets, source) - stored.subsets.begin());
+  if (k == found.subsets) return false;
+  return std::ranges::any_of(result.signed_headline, [&](std::size_t r) {
+    for (std::size_t z = 0; z < found.sizes; ++z) {
+      if (!(found.effect_max[(r * found.sizes + z) * found.subsets + k] <= rounding_at(stored, z))) return false;
+    }
+    return true;
+  });
+}
+
+/// Whether each limb has the same errors, as the stored study, complete as it is, says.
+bool same_in_all_limbs(const StoredResult& result) {
+  return study_setting(result.study_text, "analysis", "limbs") == "\"all\"";
+}
+
+std::vector<std::string> notes(const StoredResult& result) {
+  const StoredCoupling& stored = coupling_of(result);
+  std::vector<std::string> list{
+      fmt::format("{} of errors, alone and together; largest values over {}",
+                  counted(stored.sources.size(), "source", "sources"), counted(stored.found.poses, "pose", "poses")),
+      "interaction: together minus the sum of each alone",
+      "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much at most; a "
+      "norm, which has no sign, cannot tell"};
+  const std::vector<std::uint64_t>& count = stored.found.count;
+  if (std::ranges::any_of(count, [&](std::uint64_t poses) { return poses < stored.found.poses; })) {
+    list.emplace_back("some subsets leave out poses that were not solved: see the export's coupling_summary.csv");
+  }
+  if (same_in_all_limbs(result) &&
+      std::ranges::any_of(stored.sources, [&](const std::string& source) { return does_nothing(result, source); })) {
+    list.emplace_back(
+        "all limbs have the same error here, so sources that are symmetric cancel; limbs = \"independent\" "
+        "shows what they can do");
+  }
+  return list;
+}
+
+/// Norms have no sign and cannot tell what cancels, so they are not shown.
+ShownCells cells(const StoredResult& result) {
+  const CouplingResult& found = coupling_of(result).found;
+  return shown_cells(result, found.sizes * (2 * found.subsets + 3), result.signed_headline);
+}
+
+/// The curves of a coupling result: one panel for each response and size. Refers to all that it is given.
+class Curves {
+ public:
+  Curves(const StoredResult& result, const PoseFigures& figures)
+      : result_(result), found_(coupling_of(result).found), figures_(figures) {}
+
+  Lines effects() const {
+    return lines("", [&](std::size_t r, std::size_t z) { return effect_series(r, z); });
+  }
+  /// In panels of their own, because they may be far smaller than effects.
+  Lines interactions() const {
+    return lines("interaction in ",
+                 [&](std::size_t r, std::size_t z) { return subset_series("interaction", found_.interaction, r, z); });
+  }
+  Lines cancellations() const {
+    Lines all = lines(
+        "", [&](std::size_t r, std::size_t z) { return subset_series("cancellation", found_.cancellation, r, z); });
+    for (Panel& panel : all.panels) panel.unit = "%";
+    return all;
+  }
+  /// What all sources do together at each pose, and how much they cancel.
+  std::vector<Field> fields() const {
+    std::vector<Field> list;
+    for (const auto& [r, z] : panels()) {
+      const std::string label = panel_label(r, z);
+      list.push_back(
+          {label + ", all sources", unit_text(result_.responses[r]), curve("effect", found_.effect, r, z, last())});
+      if (has_subsets()) {
+        list.push_back({label + ", cancellation", "%", curve("cancellation", found_.cancellation, r, z, last())});
+      }
+    }
+    return list;
+  }
+  bool has_subsets() const { return found_.subsets > sources(); }
+
+ private:
+  /// The first subsets are the sources one by one.
+  std::size_t sources() const { return std::min(coupling_of(result_).sources.size(), found_.subsets); }
+  std::size_t last() const { return found_.subsets - 1; }
+  const std::string& subset(std::size_t k) const { return coupling_of(result_).subsets[k]; }
+  /// Each response with each size, of which the last comes first: it is what tables show.
+  std::vector<std::pair<std::size_t, std::size_t>> panels() const {
+    std::vector<std::pair<std::size_t, std::size_t>> list;
+    for (const std::size_t r : figures_.responses()) {
+      for (std::size_t z = found_.sizes; z-- > 0;) list.emplace_back(r, z);
+    }
+    return list;
+  }
+  std::string panel_label(std::size_t r, std::size_t z) const {
+    return fmt::format("{} at {}", result_.responses[r].name, coupling_of(result_).size_names[z]);
+  }
+
+  template <class SeriesOf>
+  Lines lines(const std::string& prefix, const SeriesOf& series_of) const {
+    Lines all{.x = figures_.axis(), .panels = {}, .most = sources() + 4};
+    for (const auto& [r, z] : panels()) {
+      all.panels.push_back({prefix + panel_label(r, z), unit_text(result_.responses[r]), series_of(r, z)});
+    }
+    return all;
+  }
+
+  /// Of values [R x Z x K x M], one curve; shares in percent.
+  ArrayName curve(std::string_view what, const std::vector<double>& values, std::size_t r, std::size_t z,
+                  std::size_t k) const {
+    const std::size_t at = (r * found_.sizes + z) * found_.subsets + k;
+    const double unit = what == "cancellation" ? 0.01 : display(result_.responses[r]).si;
+    return figures_.add(fmt::format("{}/{}/{}/{}", what, r, z, k),
+                        std::span(values).subspan(at * found_.poses, found_.poses), unit);
+  }
+
+  /// Of values [R x Z x K x M]: the subsets of more than one source, but for that of all.
+  void add_subsets(std::vector<Series>& list, std::string_view what, const std::vector<double>& values, std::size_t r,
+                   std::size_t z) const {
+    for (std::size_t k = sources(); k + 1 < found_.subsets; ++k) {
+      list.push_back({subset(k), curve(what, values, r, z, k)});
+    }
+  }
+
+  /// All sources together, then the other subsets.
+  std::vector<Series> subset_series(std::string_view what, const std::vector<double>& values, std::size_t r,
+                                    std::size_t z) const {
+    std::vector<Series> list{{subset(last()), curve(what, values, r, z, last())}};
+    add_subsets(list, what, values, r, z);
+    return list;
+  }
+
+  /// Each source alone, all together with what they add up to and their interaction, then the other subsets.
+  std::vector<Series> effect_series(std::size_t r, std::size_t z) const {
+    std::vector<Series> list;
+    for (std::size_t k = 0; k < sources(); ++k) {
+      list.push_back({subset(k) + " alone", curve("effect", found_.effect, r, z, k)});
+    }
+    const auto add = [&](std::string label, std::string_view what, const std::vector<double>& values,
+                         std::string style) {
+      list.push_back(
+          {.label = std::move(label), .value = curve(what, values, r, z, last()), .style = std::move(style)});
+    };
+    if (has_subsets()) {
+      add(subset(last()) + " together", "effect", found_.effect, "solid");
+      add("interaction of all", "interaction", found_.interaction, "dotted");
+      add("worst case of all", "worst_case", found_.worst_case, "dashed");
+      add("root sum square of all", "root_sum_square", found_.root_sum_square, "dashed");
+    }
+    add_subsets(list, "effect", found_.effect, r, z);
+    return list;
+  }
+
+  const StoredResult& result_;
+  const CouplingResult& found_;
+  const PoseFigures& figures_;
+};
+
+/// The tables of the last size, and those of the others to be unfolded.
+void add_tables(const StoredResult& result, std::span<const Table> tables, Section& section) {
+  const std::size_t shown = std::min(tables.size(), result.signed_headline.size());
+  section.folded("The tables of the other sizes", tables.first(tables.size() - shown));
+  for (const Table& table : tables.last(shown)) section.table(table);
+}
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (coupling_of(result).found.subsets == 0) return;
+  const PoseFigures figures(result, cells(result), page);
+  const Curves curves(result, figures);
+  Section& section = page.add_section("together", "What the sources do, alone and together");
+  section.paragraph(
+      "Each source of errors has its size alone, and with others. The interaction is what all do together less the sum "
+      "of what each does alone. Worst case: the sum of their magnitudes, where signs are not known. Root sum square: "
+      "what is to be expected where either sign is as likely.");
+  figures.add_note(section);
+  add_figure(page, section, "sources", curves.effects(),
+             result.time.empty() ? "The effect at each pose." : "The effect along the trajectory.");
+  if (curves.has_subsets()) {
+    add_figure(page, section, "interactions", curves.interactions(), "The interaction of each subset of the sources.");
+  }
+  add_tables(result, tables, section);
+  Section& cancels = page.add_section("where", "Where they cancel, and where they add up");
+  cancels.paragraph(
+      "Cancellation is the part of the sources' effects that opposes each other: 0 where none opposes another, 100 % "
+      "where nothing is left of them together.");
+  if (curves.has_subsets()) {
+    add_figure(page, cancels, "cancellation", curves.cancellations(), "How much the sources cancel each other.");
+  }
+  figures.add_workspace(cancels, curves.fields());
+}
+
+SolveTally tally(const StoredResult& result) {
+  return {"size", coupling_of(result).size_names, result.poses.size(), coupling_of(result).found.solves};
+}
+
+/// Items are subsets at a size.
+std::vector<std::string> sized_subsets(const StoredCoupling& coupling) {
+  std::vector<std::string> list;
+  for (const std::string& size : coupling.size_names) {
+    for (const std::string& subset : coupling.subsets) list.push_back(fmt::format("{} at {}", subset, size));
+  }
+  return list;
+}
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const CouplingResult& found = coupling_of(result).found;
+  Comparable all = comparable_by_response(result, "subset", sized_subsets(coupling_of(result)));
+  add_quantity(all, result, "largest effect over the poses", "effect_max",
+               [&](std::size_t r, std::size_t n) { return found.effect_max[r * found.sizes * found.subsets + n]; });
+  return all;
+}
+
+}  // namespace
+
+std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions&) {
+  std::vector<Table> tables;
+  for (std::size_t z = 0; z < coupling_of(result).found.sizes; ++z) {
+    for (const std::size_t r : result.signed_headline) tables.push_back(response_table(result, z, r));
+  }
+  if (!tables.empty()) tables.back().notes = notes(result);
+  return tables;
+}
+
+constinit const ReportKind kCouplingReport{
+    .tally = tally,
+    .tables = coupling_tables,
+    .words = [](const StoredResult& result) { return StudyWords{.sizes = coupling_of(result).size_names}; },
+    .shown_cells = cells,
+    .page = add_page,
+    .comparable = comparable};
+
+}  // namespace poesy

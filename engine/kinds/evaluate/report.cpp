@@ -1,0 +1,339 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/nan.h"
+#include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/kind.h"
+#include "engine/report/display.h"
+#include "engine/report/tables.h"
+#include "engine/run/evaluation.h"
+
+namespace poesy {
+namespace {
+
+constexpr int kDigits = 6;
+
+/// Mean and extremes of a response over the solved samples; NaN where none is.
+struct Summary {
+  double mean = kNaN;
+  double smallest = mean;
+  double largest = mean;
+};
+
+Summary summary(const EvaluationResult& found, std::size_t r) {
+  const std::size_t all = found.poses * found.samples;
+  double sum = 0.0;
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -smallest;
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < all; ++n) {
+    if (!solved(found.status[n])) continue;
+    const double value = found.response[r * all + n];
+    sum += value;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+    ++count;
+  }
+  return count == 0 ? Summary() : Summary{sum / static_cast<double>(count), smallest, largest};
+}
+
+/// "; 38 of 40 pass" where the study limits the response.
+std::string passes(const StoredResult& result, std::size_t r) {
+  const LimitVerdict* verdict = verdict_on(result, r);
+  return verdict == nullptr ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
+}
+
+/// "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty where rows have no labels or none
+/// was solved.
+std::string worst_note(const StoredResult& result, std::size_t r) {
+  const RowLabels& labels = evaluation_of(result).labels;
+  if (labels.names.empty()) return {};
+  const std::vector<RowOutcome> outcomes = row_outcomes(evaluation_of(result), r);
+  const std::size_t worst = worst_row(outcomes);
+  if (worst == outcomes.size()) return {};
+  const NamedUnit& response = result.responses[r];
+  return fmt::format("{} {} is worst in {}: {} at {}{}", labels.column, labels.names[worst], response.name,
+                     response_text(response, outcomes[worst].extreme), place_text(result, outcomes[worst].pose),
+                     passes(result, r));
+}
+
+Table parts_table(const StoredResult& result) {
+  const RowLabels& labels = evaluation_of(result).labels;
+  Table table{.name = "parts",
+              .caption = "Each " + labels.column + " over its poses: mean, and the value of the largest magnitude",
+              .columns = {},
+              .notes = {"poses: those that were solved"}};
+  std::vector<std::vector<RowOutcome>> outcomes;  // of each response of the headline
+  for (const std::size_t r : result.headline) outcomes.push_back(row_outcomes(evaluation_of(result), r));
+  std::vector<FilledColumn> columns{
+      {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
+      {number_column("poses", "poses"),
+       [&](std::size_t row) { return count_cell(outcomes.empty() ? 0 : outcomes.front()[row].solved); }}};
+  for (std::size_t h = 0; h < outcomes.size(); ++h) {
+    const NamedUnit& response = result.responses[result.headline[h]];
+    const std::vector<RowOutcome>& of = outcomes[h];
+    const std::string_view unit = display(response).name;
+    const int dispensable = 3 * static_cast<int>(h);  // the last response's columns go first
+    columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
+                       [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
+    columns.push_back({number_column(response.name + "_extreme", response.name + " extreme", unit, dispensable),
+                       [&](std::size_t row) { return value_cell(of[row].extreme, response, kDigits); }});
+    columns.push_back(
+        {number_column(response.name + "_extreme_pose", "at pose", "", dispensable + 1),
+         [&](std::size_t row) { return of[row].solved == 0 ? text_cell("") : count_cell(of[row].pose); }});
+  }
+  fill(table, positions(labels.names.size()), columns);
+  return table;
+}
+
+Table cases_table(const StoredResult& result) {
+  const StoredEvaluation& found = evaluation_of(result);
+  const std::size_t cases = found.cases.size();
+  Table table{.name = "cases",
+              .caption = "Each case over its poses: mean and largest value of the responses",
+              .columns = {},
+              .notes = {"poses: those whose solve counts"}};
+  std::vector<FilledColumn> columns{
+      {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
+      {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count[c]); }}};
+  int dispensable = 0;  // of the first response's columns; the last response's go first
+  for (const std::size_t r : result.headline) {
+    const NamedUnit& response = result.responses[r];
+    const std::string_view unit = display(response).name;
+    columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable),
+                       [&, r](std::size_t c) { return value_cell(found.mean[r * cases + c], response, kDigits); }});
+    columns.push_back(
+        {number_column(response.name + "_max", response.name + " max", unit, dispensable == 0 ? 0 : dispensable + 1),
+         [&, r](std::size_t c) { return value_cell(found.max[r * cases + c], response, kDigits); }});
+    dispensable += 2;
+  }
+  fill(table, positions(cases), columns);
+  return table;
+}
+
+ShownCells cells(const StoredResult& result) {
+  const std::size_t cases = evaluation_of(result).cases.size();
+  return shown_cells(result, cases == 0 ? kSummaryRows : cases);
+}
+
+/// One response to one row of errors at all poses, [M]; NaN where it was not solved.
+std::vector<double> response_to(const EvaluationResult& found, std::size_t r, std::size_t sample) {
+  std::vector<double> values(found.poses);
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    const std::size_t at = m * found.samples + sample;
+    values[m] = solved(found.status[at]) ? found.response[r * found.poses * found.samples + at] : kNaN;
+  }
+  return values;
+}
+
+/// A curve over the poses for each case, and the same as fields of the workspace.
+void add_cases(const StoredResult& result, const PoseFigures& figures, Page& page, Section& section) {
+  const std::vector<std::string>& cases = evaluation_of(result).cases;
+  Lines lines{.x = figures.axis(), .panels = {}};
+  std::vector<Field> fields;
+  for (const std::size_t r : figures.responses()) {
+    const NamedUnit& response = result.responses[r];
+    Panel panel{response.name, unit_text(response), {}};
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+      const ArrayName array =
+          figures.add(fmt::format("case/{}/{}", c, r), response_to(evaluation_of(result).evaluation, r, c), response);
+      panel.series.push_back({cases[c], array});
+      fields.push_back({fmt::format("{}, {}", response.name, cases[c]), unit_text(response), array});
+    }
+    lines.panels.push_back(std::move(panel));
+  }
+  add_figure(page, section, "cases", std::move(lines),
+             result.time.empty() ? "Each case at each pose." : "Each case along the trajectory.");
+  figures.add_condition(fields);
+  figures.add_workspace(section, std::move(fields));
+}
+
+/// Order statistics of a response over these samples (positions pose x samples + sample) that were solved, NaN of none.
+std::vector<double> order_statistics(const EvaluationResult& found, std::size_t response, std::size_t first,
+                                     std::size_t count, std::span<const double> levels) {
+  std::vector<double> values;
+  for (std::size_t at = first; at < first + count; ++at) {
+    if (solved(found.status[at])) values.push_back(found.response[response * found.poses * found.samples + at]);
+  }
+  std::ranges::sort(values);
+  std::vector<double> list;
+  for (const double level : levels) {
+    const double at = std::round(level * (static_cast<double>(values.size()) - 1.0));
+    list.push_back(values.empty() ? kNaN : values[static_cast<std::size_t>(at)]);
+  }
+  return list;
+}
+
+/// Of the rows at each pose: the 5 % quantile, the median, the 95 % quantile and the largest value, each [M].
+std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
+  constexpr std::array kLevels{0.05, 0.5, 0.95, 1.0};
+  std::array<std::vector<double>, 4> quantiles;
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    const std::vector<double> values = order_statistics(found, r, m * found.samples, found.samples, kLevels);
+    for (std::size_t q = 0; q < values.size(); ++q) quantiles[q].push_back(values[q]);
+  }
+  return quantiles;
+}
+
+/// The distribution of each response over all poses and rows.
+void add_distribution(const StoredResult& result, Page& page, Section& section) {
+  constexpr std::size_t kLevels = 101;
+  const EvaluationResult& found = evaluation_of(result).evaluation;
+  std::vector<double> levels;
+  for (std::size_t n = 0; n < kLevels; ++n) levels.push_back(static_cast<double>(n) / (kLevels - 1.0));
+  ArrayPool& pool = page.figures.pool;
+  Lines lines{.x = {"share of the samples below", "%", pool.add("axis_levels", levels, 0.01)}, .panels = {}};
+  for (const std::size_t r : headline_order(result)) {
+    const NamedUnit& response = result.responses[r];
+    const std::vector<double> values = order_statistics(found, r, 0, found.poses * found.samples, levels);
+    const ArrayName array = pool.add(fmt::format("distribution/{}", r), values, display(response).si);
+    lines.panels.push_back({response.name, unit_text(response), {{"all poses and rows", array}}});
+  }
+  add_figure(page, section, "distribution", std::move(lines), "The distribution of each response by its quantiles.");
+}
+
+void add_rows(const StoredResult& result, const PoseFigures& figures, Page& page, Section& section) {
+  Lines lines{.x = figures.axis(), .panels = {}};
+  std::vector<Field> fields;
+  for (const std::size_t r : figures.responses()) {
+    const NamedUnit& response = result.responses[r];
+    const std::string unit = unit_text(response);
+    const auto [low, middle, high, largest] = quantiles_at_poses(evaluation_of(result).evaluation, r);
+    const auto add = [&](std::string_view what, const std::vector<double>& values) {
+      return figures.add(fmt::format("{}/{}", what, r), values, response);
+    };
+    const ArrayName median = add("median", middle);
+    const ArrayName max = add("max", largest);
+    Panel panel{response.name, unit, {{"median", median, add("low", low), add("high", high)}}};
+    panel.series.push_back({.label = "largest", .value = max, .style = "dotted"});
+    lines.panels.push_back(std::move(panel));
+    fields.push_back({response.name + ", median", unit, median});
+    fields.push_back({response.name + ", largest", unit, max});
+  }
+  add_figure(
+      page, section, "rows", std::move(lines),
+      "At each pose the median over the rows, in a band from the 5 % to the 95 % quantile, and the largest value.");
+  figures.add_condition(fields);
+  figures.add_workspace(section, std::move(fields), "Each dot is a pose, coloured by what is chosen.");
+}
+
+std::string rows_text(const StoredResult& result) {
+  const std::string poses = counted(result.poses.size(), "pose", "poses");
+  if (evaluation_of(result).pairing == Pairing::row_by_row)
+    return fmt::format("{}, each with a row of errors of its own.", poses);
+  return fmt::format("{} of errors, each at {}.", counted(evaluation_of(result).evaluation.samples, "row", "rows"),
+                     poses);
+}
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const bool cases = !evaluation_of(result).cases.empty();
+  add_limits(tables, page);
+  Section& section = page.add_section("responses", cases ? "What each case does" : "What the errors do");
+  section.paragraph(cases ? "Each case is a fixed set of errors. Poses where it was not solved are left out."
+                          : rows_text(result) + " Samples that were not solved are left out.");
+  if (!cases) add_distribution(result, page, section);
+  for (const std::string_view name : {"evaluation", "cases", "parts"}) section.table(tables, name);
+  const PoseFigures figures(result, cells(result), page);
+  Section& where = page.add_section("where", result.time.empty() ? "Where in the workspace" : "Along the trajectory");
+  figures.add_note(where);
+  if (cases) {
+    add_cases(result, figures, page, where);
+  } else {
+    add_rows(result, figures, page, where);
+  }
+}
+
+/// Samples that are no cases are one row together.
+SolveTally tally(const StoredResult& result) {
+  const std::vector<std::string>& cases = evaluation_of(result).cases;
+  const EvaluationResult& found = evaluation_of(result).evaluation;
+  SolveTally outcomes{"case", cases, found.poses, {}};
+  if (cases.empty()) outcomes.names = {"all rows"};
+  outcomes.cells.resize(outcomes.names.size() * found.poses);
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    for (std::size_t s = 0; s < found.samples; ++s) {
+      const std::size_t row = cases.empty() ? 0 : s;
+      const std::size_t at = m * found.samples + s;
+      outcomes.cells[row * found.poses + m].add(found.status[at], found.iterations[at]);
+    }
+  }
+  return outcomes;
+}
+
+StudyWords words(const StoredResult& result) {
+  const StoredEvaluation& stored = evaluation_of(result);
+  if (stored.cases.empty()) {
+    return {.from_tables = true, .samples = counted(stored.evaluation.samples, "row of errors", "rows of errors")};
+  }
+  return {.samples = counted(stored.cases.size(), "case", "cases")};
+}
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const StoredEvaluation& stored = evaluation_of(result);
+  if (stored.cases.empty()) {
+    constexpr double kLevels[] = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
+    const EvaluationResult& found = stored.evaluation;
+    Comparable all = comparable_by_response(
+        result, "number",
+        {"smallest", "5 % quantile", "25 % quantile", "median", "75 % quantile", "95 % quantile", "largest"});
+    std::vector<std::vector<double>> statistics;
+    for (std::size_t r = 0; r < result.responses.size(); ++r) {
+      statistics.push_back(order_statistics(found, r, 0, found.poses * found.samples, kLevels));
+    }
+    add_quantity(all, result, "over all poses and rows", "rows",
+                 [&](std::size_t r, std::size_t n) { return statistics[r][n]; });
+    return all;
+  }
+  const std::size_t cases = stored.cases.size();
+  Comparable all = comparable_by_response(result, "case", stored.cases);
+  add_quantity(all, result, "mean over the poses", "case_mean",
+               [&](std::size_t r, std::size_t c) { return stored.mean[r * cases + c]; });
+  add_quantity(all, result, "largest over the poses", "case_max",
+               [&](std::size_t r, std::size_t c) { return stored.max[r * cases + c]; });
+  return all;
+}
+
+std::vector<Table> evaluation_tables(const StoredResult& result, const TableOptions&) {
+  const StoredEvaluation& stored = evaluation_of(result);
+  std::vector<Table> tables{stored.cases.empty() ? evaluation_table(result) : cases_table(result)};
+  if (!stored.labels.names.empty()) tables.push_back(parts_table(result));
+  return tables;
+}
+
+}  // namespace
+
+Table evaluation_table(const StoredResult& result) {
+  std::vector<Summary> found;
+  for (std::size_t r = 0; r < result.responses.size(); ++r)
+    found.push_back(summary(evaluation_of(result).evaluation, r));
+  const auto number = [&](const std::string& name, double Summary::*member) {
+    return FilledColumn{number_column(name, name), [&, member](std::size_t r) {
+                          return value_cell(found[r].*member, result.responses[r], kDigits);
+                        }};
+  };
+  Table table{.name = "evaluation", .caption = "Responses over all samples that were solved", .columns = {}};
+  fill(table, result.headline,
+       {name_column(result.responses, "response"), unit_column(result.responses), number("mean", &Summary::mean),
+        number("smallest", &Summary::smallest), number("largest", &Summary::largest)});
+  for (const std::size_t r : result.headline) {
+    if (std::string note = worst_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
+  }
+  return table;
+}
+
+constinit const ReportKind kEvaluationReport{.tally = tally,
+                                             .tables = evaluation_tables,
+                                             .words = words,
+                                             .shown_cells = cells,
+                                             .page = add_page,
+                                             .comparable = comparable};
+
+}  // namespace poesy

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/kinds/identification/identification.h"
+#include "engine/kinds/identification/kind.h"
+#include "engine/report/display.h"
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+std::string verdict(const IdentificationResult& found, std::size_t p) {
+  if (found.single[p] != 0) return "deforms alone";
+  return found.coupled[p] != 0 ? "deforms in a coupling" : "absorbed";
+}
+
+bool groups_agree(const IdentificationResult& found) {
+  for (std::size_t cell = 0; cell < found.coupled_by_group.size(); ++cell) {
+    if (found.coupled_by_group[cell] != found.coupled[cell % found.factors]) return false;
+    if (found.single_by_group[cell] != found.single[cell % found.factors]) return false;
+  }
+  return true;
+}
+
+std::vector<std::string> notes(const IdentificationResult& found) {
+  std::vector<std::string> list{
+      fmt::format("under each group of sizes: poses where the error alone deforms, of {}; {} decide, rounding ends at "
+                  "{:.3g}",
+                  found.poses, found.required_poses, found.rounding)};
+  if (!groups_agree(found)) list.push_back("the groups do not agree: see the export's identification.csv");
+  return list;
+}
+
+Table verdict_table(const StoredResult& result) {
+  const IdentificationResult& found = identification_of(result);
+  Table table{
+      .name = "identification",
+      .caption = fmt::format("{} of {} errors deform alone, {} with couplings", std::ranges::count(found.single, 1),
+                             found.factors, std::ranges::count(found.coupled, 1)),
+      .columns = {},
+      .notes = notes(found)};
+  std::vector<FilledColumn> columns{
+      name_column(result.factors, "error"),
+      {text_column("verdict", "verdict"), [&](std::size_t p) { return text_cell(verdict(found, p)); }}};
+  for (std::size_t g = 0; g < found.groups; ++g) {
+    columns.push_back(
+        {number_column(fmt::format("deforming_poses_{}", g + 1), identification_of(result).sizes[g].name, "",
+                       static_cast<int>(g)),
+         [&, g](std::size_t p) { return count_cell(found.poses - found.single_below[g * found.factors + p]); }});
+  }
+  fill(table, positions(found.factors), columns);
+  return table;
+}
+
+Table coupling_rows(const StoredResult& result) {
+  Table table{.name = "couplings",
+              .caption = "Errors that deform together and not alone",
+              .columns = {text_column("error", "error"), text_column("with", "with"), text_column("group", "group"),
+                          number_column("deforming_poses", "poses")},
+              .notes = {fmt::format("poses: where the two deform, of {}", identification_of(result).poses)}};
+  for (const Coupling& coupling : identification_of(result).couplings) {
+    table.rows.push_back(
+        {text_cell(result.factors[coupling.first].name), text_cell(result.factors[coupling.second].name),
+         text_cell(identification_of(result).sizes[coupling.group].name), count_cell(coupling.deforming_poses)});
+  }
+  return table;
+}
+
+std::vector<std::string> group_names(const StoredResult& result) {
+  std::vector<std::string> names;
+  for (const ErrorSize& group : identification_of(result).sizes) names.push_back(group.name);
+  return names;
+}
+
+/// Of counts of poses [G x P], the share of all poses, or of all but these.
+std::vector<double> share_of_poses(const IdentificationResult& found, const std::vector<std::uint64_t>& counts,
+                                   bool but_these) {
+  std::vector<double> list;
+  for (const std::uint64_t count : counts) {
+    const std::uint64_t those = but_these ? found.poses - count : count;
+    list.push_back(static_cast<double>(those) / static_cast<double>(found.poses));
+  }
+  return list;
+}
+
+Bars bars_of(const StoredResult& result, ArrayPool& pool) {
+  const IdentificationResult& found = identification_of(result);
+  const std::vector<std::vector<std::string>> percent(found.groups, {"%"});
+  const auto quantity = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
+    return BarQuantity{std::move(label), percent, pool.add(array, shares, 0.01)};
+  };
+  return {{{"size of the errors", group_names(result)}},
+          {quantity("poses where the error deforms alone", "single", share_of_poses(found, found.single_below, true)),
+           quantity("poses where the errors of its frame deform together", "coupled",
+                    share_of_poses(found, found.coupled_below, true)),
+           quantity("poses where leaving it out of them takes nine tenths away", "coupled_reduced",
+                    share_of_poses(found, found.coupled_reduced, false))},
+          names_of(result.factors)};
+}
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const IdentificationResult& found = identification_of(result);
+  Section& section = page.add_section("which-errors-deform", "Which errors deform the mechanism");
+  section.paragraph(fmt::format(
+      "Each error was set alone, and then together with those of its frame that do not deform alone, at {}. An error "
+      "is harmless where nothing deforms by more than {:.3g}, which is rounding, at {} of the {} poses; a pose that "
+      "was "
+      "not solved counts as deformed.",
+      counted(found.groups, "size", "sizes"), found.rounding, count_text(found.required_poses),
+      count_text(found.poses)));
+  add_figure(page, section, "deforming", bars_of(result, page.figures.pool),
+             "At how many of the poses each error deforms the mechanism.");
+  for (const Table& table : tables) section.table(table);
+}
+
+SolveTally tally(const StoredResult& result) { return {"", {"all errors"}, 1, {identification_of(result).solves}}; }
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const IdentificationResult& found = identification_of(result);
+  std::vector<double> percent;
+  for (const std::uint64_t below : found.single_below) {
+    percent.push_back(100.0 - 100.0 * static_cast<double>(below) / static_cast<double>(found.poses));
+  }
+  return {.option_word = "size of the errors",
+          .options = group_names(result),
+          .item_word = "error",
+          .items = names_of(result.factors),
+          .quantities = {{"poses where the error deforms alone", "deforms",
+                          std::vector<std::vector<std::string>>(found.groups, {"%"}), std::move(percent)}}};
+}
+
+std::vector<Table> identification_tables(const StoredResult& result, const TableOptions&) {
+  std::vector<Table> tables{verdict_table(result)};
+  if (!identification_of(result).couplings.empty()) tables.push_back(coupling_rows(result));
+  return tables;
+}
+
+}  // namespace
+
+constinit const ReportKind kIdentificationReport{
+    .tally = tally,
+    .tables = identification_tables,
+    .words = [](const StoredResult& result) { return StudyWords{.sizes = group_names(result)}; },
+    .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
+    .page = add_page,
+    .comparable = comparable};
+
+}  // namespace poesy

@@ -1,0 +1,390 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/base/nan.h"
+#include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/kind.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/report/display.h"
+#include "engine/report/tables.h"
+
+namespace poesy {
+namespace {
+
+constexpr int kDigits = 6;
+
+/// "q_0_95", a name of JSON.
+std::string quantile_name(double level) {
+  std::string name = "q_" + shortest(level);
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '-' || c == '+'; }, '_');
+  return name;
+}
+
+std::string quantile_heading(double level) { return "q_" + shortest(level); }
+
+/// The lowest quantiles go first, then the smallest value; mean, spread and what is high stay.
+std::vector<FilledColumn> overall_columns(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  const auto number = [&result](std::string name, std::string heading, const std::vector<double>& values,
+                                int dispensable = 0, std::size_t stride = 1, std::size_t offset = 0) {
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
+                        [&result, &values, stride, offset](std::size_t r) {
+                          return value_cell(values[r * stride + offset], result.responses[r], kDigits);
+                        }};
+  };
+  std::vector<FilledColumn> columns{
+      name_column(result.responses, "response"),  unit_column(result.responses),
+      number("mean", "mean", found.overall_mean), number("std", "std", found.overall_std),
+      number("rms", "rms", found.overall_rms),    number("min", "min", found.overall_min, 1)};
+  const std::size_t levels = found.levels.size();
+  for (std::size_t q = 0; q < levels; ++q) {
+    const int dispensable = q + 1 == levels ? 0 : static_cast<int>(levels - q);
+    columns.push_back(number(quantile_name(found.levels[q]), quantile_heading(found.levels[q]), found.overall_quantiles,
+                             dispensable, levels, q));
+  }
+  columns.push_back(number("max", "max", found.overall_max));
+  return columns;
+}
+
+/// Precondition: there are poses and quantiles.
+Table overall_table(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  Table table{.name = "overall",
+              .caption = fmt::format("{} together: responses over the samples of {}{}",
+                                     counted(result.factors.size(), "error varies", "errors vary"),
+                                     found.poses == 1 ? "" : "all ", counted(found.poses, "pose", "poses")),
+              .columns = {},
+              .notes = {fmt::format(
+                  "{} at each pose; std: standard deviation; rms: root mean square; {}: {} of the samples lie "
+                  "below it (quantiles to {} of their value)",
+                  counted(found.solves.front().total(), "sample", "samples"), quantile_heading(found.levels.back()),
+                  percent_text(found.levels.back()), percent_text(found.quantile_relative_error))}};
+  fill(table, result.headline, overall_columns(result));
+  return table;
+}
+
+/// The pose where a number is largest; NaN counts as least.
+std::size_t worst_pose(const std::vector<double>& at_poses) {
+  const auto worst =
+      std::ranges::max_element(at_poses, [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
+  return static_cast<std::size_t>(worst - at_poses.begin());
+}
+
+/// The largest of one number of each pose, and its pose.
+void add_worst_pose(std::vector<Cell>& row, const std::vector<double>& at_poses, const Unit& unit) {
+  const std::size_t worst = worst_pose(at_poses);
+  row.push_back(number_cell(at_poses[worst] / unit.si, kDigits));
+  row.push_back(std::isnan(at_poses[worst]) ? text_cell("") : count_cell(worst));
+}
+
+/// Of [R x M x Q] numbers of quantiles, those of one response and quantile, [M]; empty where there are none.
+std::vector<double> at_poses(const MonteCarloResult& found, const std::vector<double>& quantiles, std::size_t r,
+                             std::size_t q) {
+  std::vector<double> values;
+  for (std::size_t m = 0; m < found.poses && !quantiles.empty(); ++m) {
+    values.push_back(quantiles[(r * found.poses + m) * found.levels.size() + q]);
+  }
+  return values;
+}
+
+/// The poses where the highest quantile of a response is the largest.
+struct WorstPoses {
+  std::vector<double> quantile;  ///< [M]
+  std::size_t worst;             ///< the pose of the largest
+  double low;                    ///< its interval; NaN in files of older versions
+  double high;
+  std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, the largest quantile first
+};
+
+WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
+  const std::size_t highest = found.levels.size() - 1;
+  WorstPoses poses{at_poses(found, found.quantiles, r, highest), 0, kNaN, kNaN, {}};
+  poses.worst = worst_pose(poses.quantile);
+  const std::vector<double> low = at_poses(found, found.quantiles_ci_low, r, highest);
+  const std::vector<double> high = at_poses(found, found.quantiles_ci_high, r, highest);
+  if (low.empty()) return poses;
+  poses.low = low[poses.worst];
+  poses.high = high[poses.worst];
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    if (m != poses.worst && high[m] > poses.low) poses.alike.push_back(m);
+  }
+  std::ranges::stable_sort(poses.alike, std::ranges::greater(), [&](std::size_t m) { return poses.quantile[m]; });
+  return poses;
+}
+
+std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  const Unit& unit = display(result.responses[r]);
+  std::vector<double> mean;
+  double sum = 0.0;
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    mean.push_back(found.mean[r * found.poses + m]);
+    sum += mean.back();
+  }
+  std::vector<Cell> row{text_cell(result.responses[r].name), text_cell(unit.name),
+                        number_cell(sum / static_cast<double>(found.poses) / unit.si, kDigits)};
+  add_worst_pose(row, mean, unit);
+  const WorstPoses poses = worst_poses(found, r);
+  add_worst_pose(row, poses.quantile, unit);
+  row.push_back(number_cell(poses.low / unit.si, kDigits));
+  row.push_back(number_cell(poses.high / unit.si, kDigits));
+  row.push_back(std::isnan(poses.low) ? text_cell("") : count_cell(poses.alike.size()));
+  return row;
+}
+
+/// Names the poses that cannot be told from the worst; empty where there is none.
+std::string alike_text(const StoredResult& result, std::size_t r) {
+  constexpr std::size_t kMost = 5;
+  const WorstPoses poses = worst_poses(monte_carlo_of(result), r);
+  if (poses.alike.empty()) return {};
+  std::string names;
+  const std::size_t named = std::min(kMost, poses.alike.size());
+  for (std::size_t k = 0; k < named; ++k) names += (k == 0 ? "" : ", ") + place_text(result, poses.alike[k]);
+  if (poses.alike.size() > named) {
+    names += fmt::format(" and {}", counted(poses.alike.size() - named, "other", "others"));
+  }
+  return fmt::format("{}: the largest {} is at {}, but its samples do not tell it from {}", result.responses[r].name,
+                     quantile_heading(monte_carlo_of(result).levels.back()), place_text(result, poses.worst), names);
+}
+
+/// Precondition: there are poses and quantiles.
+Table poses_table(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  const std::string name = "largest_" + quantile_name(found.levels.back());
+  const std::string heading = quantile_heading(found.levels.back());
+  Table table{
+      .name = "poses",
+      .caption = "Pose by pose: the mean of the poses' means, and the worst poses",
+      .columns = {text_column("response", "response"), text_column("unit", "unit"),
+                  number_column("mean_of_means", "mean of means"), number_column("largest_mean", "largest mean"),
+                  number_column("largest_mean_pose", "at pose"), number_column(name, "largest " + heading),
+                  number_column("largest_quantile_pose", "at pose"), number_column(name + "_low", "low", "", 1),
+                  number_column(name + "_high", "high", "", 1), number_column("poses_like_it", "poses like it")}};
+  for (const std::size_t r : result.headline) table.rows.push_back(poses_row(result, r));
+  if (found.quantiles_ci_low.empty()) return table;
+  table.notes.push_back(
+      fmt::format("low, high: {} interval of the largest {}, from order statistics; inf: too few samples for an end. "
+                  "poses like it: other "
+                  "poses whose interval reaches above low",
+                  percent_text(found.conf_level), heading));
+  for (const std::size_t r : result.headline) {
+    if (std::string text = alike_text(result, r); !text.empty()) table.notes.push_back(std::move(text));
+  }
+  return table;
+}
+
+/// The histogram of a response and its cumulative curve, as outlines over the edges of the bins. Without the first and
+/// the last bin, which reach out to the extremes.
+struct Outline {
+  std::vector<double> x;        ///< [2 B] each bin's lower and upper end, in the unit shown
+  std::vector<double> density;  ///< [2 B] share of the samples per unit of x
+  std::vector<double> below;    ///< [2 B] share of the samples below x
+};
+
+Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
+  const std::size_t bins = found.histogram_counts.size() / found.responses;
+  const std::span counts = std::span(found.histogram_counts).subspan(r * bins, bins);
+  const std::span edges = std::span(found.histogram_edges).subspan(r * (bins + 1), bins + 1);
+  const double all = static_cast<double>(found.overall_count[r]);
+  Outline drawn;
+  double sum = static_cast<double>(counts.front()) / all;
+  for (std::size_t b = 1; b + 1 < bins; ++b) {
+    // Bins that are left over are at the largest value.
+    if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
+    const double share = static_cast<double>(counts[b]) / all;
+    const double density = share / ((edges[b + 1] - edges[b]) / unit);
+    drawn.x.insert(drawn.x.end(), {edges[b] / unit, edges[b + 1] / unit});
+    drawn.density.insert(drawn.density.end(), {density, density});
+    drawn.below.insert(drawn.below.end(), {sum, sum + share});
+    sum += share;
+  }
+  return drawn;
+}
+
+/// The limit of a response where it is drawn: on both sides of zero if the response has values there.
+std::vector<Mark> limit_marks(const StoredResult& result, std::size_t r, double unit) {
+  const LimitVerdict* verdict = verdict_on(result, r);
+  if (verdict == nullptr) return {};
+  std::vector<Mark> marks{{"limit", verdict->limit / unit}};
+  if (monte_carlo_of(result).overall_min[r] < 0.0) marks.push_back({"limit", -verdict->limit / unit});
+  return marks;
+}
+
+std::string distribution_caption(const StoredResult& result, std::size_t r) {
+  const NamedUnit& response = result.responses[r];
+  std::string text = fmt::format(
+      "{}: its distribution over the samples of all poses, and below it the share of the samples below a value. The "
+      "outermost 0.05 % on either side are not drawn.",
+      response.name);
+  if (const LimitVerdict* verdict = verdict_on(result, r)) {
+    text += fmt::format(" {} of the draws are within the limit.",
+                        percent_text(static_cast<double>(verdict->within) / static_cast<double>(verdict->tried)));
+  }
+  return text;
+}
+
+Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
+  const NamedUnit& response = result.responses[r];
+  const std::string unit = unit_text(response);
+  const Outline drawn = outline(monte_carlo_of(result), r, display(response).si);
+  const auto add = [&](std::string_view what, const std::vector<double>& values, double scale) {
+    return pool.add(fmt::format("{}/{}", what, r), values, scale);
+  };
+  const ArrayName zero = add("histogram_zero", std::vector<double>(drawn.x.size(), 0.0), 1.0);
+  const ArrayName density = add("histogram", drawn.density, 0.01);
+  return {.x = {response.name, unit, add("histogram_x", drawn.x, 1.0)},
+          .panels = {{"share of the samples per unit",
+                      unit.empty() ? "%" : "%/" + unit,
+                      {{"samples of all poses", density, zero, density}}},
+                     {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
+          .marks = limit_marks(result, r, display(response).si)};
+}
+
+void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  Section& section = page.add_section("how-large", "How large are the deviations");
+  section.paragraph(fmt::format("All {} vary at once.", counted(result.factors.size(), "error", "errors")));
+  section.table(tables, "overall");
+  for (const std::size_t r : headline_order(result)) {
+    if (found.histogram_counts.empty() || found.overall_count[r] == 0) continue;
+    add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, page.figures.pool),
+               distribution_caption(result, r));
+  }
+  section.table(tables, "poses");
+}
+
+std::string quantile_label(double level) { return percent_text(level) + " quantile"; }
+
+SolveTally tally(const StoredResult& result) {
+  return {"", {"all errors"}, result.poses.size(), monte_carlo_of(result).solves};
+}
+
+/// The mean of each pose in a band from the lowest to the highest quantile, and what colours the workspace.
+void add_where(const StoredResult& result, Page& page) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  const std::vector<double>& levels = found.levels;
+  const PoseFigures figures(result, shown_cells(result, kSummaryRows), page);
+  Lines bands{.x = figures.axis(), .panels = {}};
+  std::vector<Field> fields;
+  for (const std::size_t r : figures.responses()) {
+    const NamedUnit& response = result.responses[r];
+    const std::string unit = unit_text(response);
+    const auto add = [&](std::string_view what, std::span<const double> at_poses) {
+      return figures.add(fmt::format("{}/{}", what, r), at_poses, response);
+    };
+    const auto quantile = [&](std::size_t q) {
+      return add(fmt::format("quantile/{}", q), at_poses(found, found.quantiles, r, q));
+    };
+    const ArrayName mean = add("mean", std::span(found.mean).subspan(r * found.poses, found.poses));
+    const ArrayName highest = quantile(levels.size() - 1);
+    bands.panels.push_back({response.name, unit, {{"mean", mean, quantile(0), highest}}});
+    fields.push_back({response.name + ", mean", unit, mean});
+    fields.push_back({response.name + ", " + quantile_label(levels.back()), unit, highest});
+    fields.push_back({response.name + ", standard deviation", unit,
+                      add("std", std::span(found.std).subspan(r * found.poses, found.poses))});
+  }
+  fields.push_back(figures.not_converged(tally(result).shares_by_pose()));
+  figures.add_condition(fields);
+  Section& section = page.add_section("where", "Where in the workspace");
+  section.paragraph(
+      fmt::format("Pose by pose: the mean of the samples, and between which quantiles ({} and {}) they lie.",
+                  quantile_label(levels.front()), quantile_label(levels.back())));
+  figures.add_note(section);
+  add_figure(page, section, "poses", std::move(bands),
+             "The mean at each pose, and how far the lowest and the highest quantile are from it.");
+  figures.add_workspace(section, std::move(fields));
+}
+
+void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  Section& section = add_how_sure(page, "How sure are the means", monte_carlo_of(result).conf_level);
+  if (result.convergence) {
+    ArrayPool& pool = page.figures.pool;
+    const EstimateCourse course = with_ends(result.convergence->course);
+    Lines lines = over_samples(course, pool);
+    for (const std::size_t r : headline_order(result)) {
+      const NamedUnit& response = result.responses[r];
+      const std::string array = fmt::format("samples/{}", r);
+      lines.panels.push_back({response.name,
+                              unit_text(response),
+                              {series_of(course, r, display(response).si, "all errors together", array, pool)}});
+    }
+    section.paragraph("The mean over the samples of all poses after so many samples, with its interval.");
+    add_figure(page, section, "convergence", std::move(lines),
+               "The overall mean over the number of samples, with its interval.");
+  } else {
+    section.paragraph(
+        "With a fixed number of samples a Monte Carlo study does not keep how its means settled. One with adaptive "
+        "samples does: samples = { min = .., max = .., relative_error = .. } under [analysis].");
+  }
+  section.table(tables, "convergence");
+}
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (monte_carlo_of(result).poses == 0 || monte_carlo_of(result).levels.empty()) return;
+  add_limits(tables, page);
+  add_how_large(result, tables, page);
+  add_where(result, page);
+  add_how_sure(result, tables, page);
+}
+
+Settling settling(const StoredResult& result) { return {"overall means", {"all errors"}, result.headline}; }
+
+void warn(const StoredResult& result, std::vector<std::string>& list) {
+  if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
+}
+
+/// The numbers of a Monte Carlo result over the samples of all poses, by name; in the order of the levels.
+std::vector<std::pair<std::string, std::vector<double>>> overall(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  std::vector<std::pair<std::string, std::vector<double>>> list{
+      {"mean", found.overall_mean}, {"standard deviation", found.overall_std}, {"smallest", found.overall_min}};
+  for (std::size_t q = 0; q < found.levels.size(); ++q) {
+    std::vector<double> values;
+    for (std::size_t r = 0; r < found.responses; ++r) {
+      values.push_back(found.overall_quantiles[r * found.levels.size() + q]);
+    }
+    list.emplace_back(shortest(100.0 * found.levels[q]) + " % quantile", std::move(values));
+  }
+  list.emplace_back("largest", found.overall_max);
+  return list;
+}
+
+Comparable comparable(const StoredResult& result, const StoredResult&) {
+  const auto numbers = overall(result);
+  std::vector<std::string> names;
+  for (const auto& number : numbers) names.push_back(number.first);
+  Comparable all = comparable_by_response(result, "number", std::move(names));
+  add_quantity(all, result, "over the samples of all poses", "overall",
+               [&](std::size_t r, std::size_t n) { return numbers[n].second[r]; });
+  return all;
+}
+
+}  // namespace
+
+std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  std::vector<Table> tables;
+  if (found.poses > 0 && !found.levels.empty()) {
+    tables.push_back(overall_table(result));
+    tables.push_back(poses_table(result));
+  }
+  return tables;
+}
+
+constinit const ReportKind kMonteCarloReport{
+    .tally = tally,
+    .tables = monte_carlo_tables,
+    .settling = settling,
+    .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+    .warn = warn,
+    .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
+    .page = add_page,
+    .comparable = comparable};
+
+}  // namespace poesy

@@ -1,0 +1,401 @@
+#include "engine/kinds/sensitivity/tolerances.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/nan.h"
+#include "engine/kinds/sensitivity/figures.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/ranking.h"
+
+namespace poesy {
+namespace {
+
+/// /tolerances, for programs that know no other group.
+struct ToleranceGroup {
+  double conf_level = 0.0;
+  std::vector<std::string> kind;            ///< [P] "linear" or "angular"
+  std::vector<std::uint64_t> limb;          ///< [P]
+  std::vector<std::string> unit;            ///< [P]
+  std::vector<double> index;                ///< [R x P]
+  std::vector<double> index_ci_low;         ///< [R x P]
+  std::vector<double> index_ci_high;        ///< [R x P]
+  std::vector<double> equal_effect;         ///< [R x P]
+  std::vector<double> mean_square_share;    ///< [R x P]
+  std::vector<double> rms_effect;           ///< [R x P]
+  std::vector<double> background_rms;       ///< [R]
+  std::vector<std::string> reference;       ///< [R] names; empty where there is none
+  std::vector<double> reference_tolerance;  ///< [R] NaN where there is none
+  std::vector<double> mean_square_bound;    ///< [R] Response::mean_square_bound
+};
+
+const std::vector<Attribute<ToleranceGroup>> kIndexLevel{{"conf_level", &ToleranceGroup::conf_level}};
+
+/// What is read back.
+const Fields<ToleranceGroup> kReadFields{
+    {"limb", &ToleranceGroup::limb, kByFactor, "1", "Limb of the error, from 1"},
+    {"reference_factor", &ToleranceGroup::reference, kByResponse, "1",
+     "The error from which equal_effect is counted; empty when no error has an effect"},
+    {"reference_tolerance", &ToleranceGroup::reference_tolerance, kByResponse, "SI: unit of reference_factor",
+     "Tolerance of reference_factor"},
+    {"mean_square_bound", &ToleranceGroup::mean_square_bound, kByResponse, "1",
+     "To first order, the mean square of all errors together is at most this times the sum of those of each error "
+     "alone; 1: they add exactly",
+     "mean_square_bound"}};
+
+/// What follows from other groups, and is for other programs alone.
+const Group<ToleranceGroup> kToleranceGroup{
+    "/tolerances",
+    "Tolerances from the indices; a tolerance is the standard deviation of a normal error",
+    {},
+    {},
+    {{"kind", &ToleranceGroup::kind, kByFactor, "1", "Kind of the error: linear or angular"},
+     {"unit", &ToleranceGroup::unit, kByFactor, "1", "SI unit of the error and of its tolerance"},
+     {"index", &ToleranceGroup::index, kByResponseFactor, kIndexUnit,
+      "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
+     {"index_ci_low", &ToleranceGroup::index_ci_low, kByResponseFactor, kIndexUnit,
+      "Lower end of the interval of index", "", kIndexLevel},
+     {"index_ci_high", &ToleranceGroup::index_ci_high, kByResponseFactor, kIndexUnit,
+      "Upper end of the interval of index", "", kIndexLevel},
+     {"equal_effect", &ToleranceGroup::equal_effect, kByResponseFactor, "SI: factor unit, see /tolerances/unit",
+      "Tolerance that gives every error the reference's effect: index(reference) / index x reference_tolerance (Du et "
+      "al. 2022, Section 6.3, Table 10); infinity: no effect on its own; NaN: unknown"},
+     {"mean_square_share", &ToleranceGroup::mean_square_share, kByResponseFactor, "1",
+      "Share of what all errors add to the response's mean square over samples and poses, with sigma as set in the "
+      "study: (rms_effect x sigma)^2 over its sum; NaN: unknown"},
+     {"rms_effect", &ToleranceGroup::rms_effect, kByResponseFactor, kIndexUnit,
+      "Growth of the response's mean square over samples and poses per tolerance^2, square root of it: mean square = "
+      "background_rms^2 + sum of (rms_effect x tolerance)^2"},
+     {"background_rms", &ToleranceGroup::background_rms, kByResponse, kResponseUnit,
+      "Root mean square over the poses of the response with all varied errors zero"}}};
+
+/// The study's reference, or the error of smallest effect at one unit of those in which people read it.
+std::optional<ReferenceError> reference_for(const Study& study, const SensitivityResult& found, std::size_t response) {
+  const std::vector<FactorIndex>& factors = study.analysis.factors;
+  if (const auto& chosen = asked_of<SensitivityOptions>(study.analysis).reference) {
+    const auto at = std::ranges::find(factors, chosen->factor);
+    return ReferenceError{static_cast<std::size_t>(at - factors.begin()), chosen->tolerance};
+  }
+  const std::vector<double> sigma = standard_deviations(study);
+  const auto smallest = smallest_effect(response_study(found, sigma, response).index, sigma);
+  if (!smallest) return std::nullopt;
+  return ReferenceError{*smallest, display_unit(study.model().factors[factors[*smallest].value].dimension).si};
+}
+
+void append_response(ToleranceGroup& group, const Study& study, const SensitivityResult& found, std::size_t r) {
+  const std::vector<double> sigma = standard_deviations(study);
+  const Tolerances all = response_tolerances(found, sigma, r, reference_for(study, found, r));
+  const auto append = [](std::vector<double>& list, const std::vector<double>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+  };
+  append(group.equal_effect, all.equal_effect);
+  append(group.mean_square_share, all.mean_square_share);
+  for (const double effect : all.mean_square.effects) group.rms_effect.push_back(std::sqrt(effect));
+  group.background_rms.push_back(std::sqrt(all.mean_square.background));
+  const auto& reference = all.reference;
+  const auto& factors = study.analysis.factors;
+  group.reference.push_back(reference ? study.model().factors[factors[reference->factor].value].name : "");
+  group.reference_tolerance.push_back(reference ? reference->tolerance : kNaN);
+  group.mean_square_bound.push_back(study.model().responses[r].mean_square_bound);
+}
+
+/// The numbers of each error. heading(name, unit, suffix): of a column; the suffix is "_display" for the units people
+/// read.
+template <class Heading>
+void append_tolerance_columns(CsvTable& table, const StoredResult& result, const ResponseTolerances& tolerances,
+                              const Heading& heading) {
+  const SensitivityResult& found = sensitivity_of(result);
+  const std::size_t first = tolerances.response * found.factors;
+  const std::string index_unit = csv_unit(kIndexUnit, result, &result.responses[tolerances.response]);
+  table.columns.push_back(list_column(heading("index", index_unit, ""), found.global, first));
+  table.columns.push_back(list_column(heading("index_ci_low", index_unit, ""), found.global_ci_low, first));
+  table.columns.push_back(list_column(heading("index_ci_high", index_unit, ""), found.global_ci_high, first));
+  table.columns.push_back(
+      {"mean_square_share", [shares = tolerances.all.mean_square_share](std::size_t p) { return shares[p]; }});
+  table.columns.push_back({"index_change", [&found, first](std::size_t p) {
+                             return found.index_change.empty() ? kNaN : found.index_change[first + p];
+                           }});
+  std::vector<std::pair<std::string, std::vector<double>>> lists{{"equal_effect", tolerances.all.equal_effect}};
+  if (tolerances.limit) {
+    lists.emplace_back("limit_equal_effect", tolerances.limit->equal_effect);
+    lists.emplace_back("limit_equal_tolerance", tolerances.limit->equal_tolerance);
+  }
+  for (const auto& [name, list] : lists) {
+    table.columns.push_back(
+        {heading(name, si_units(result.factors), ""), [values = list](std::size_t p) { return values[p]; }});
+  }
+  for (const auto& [name, list] : lists) {
+    table.columns.push_back(
+        {heading(name, display_units(result.factors), "_display"),
+         [&result, values = list](std::size_t p) { return values[p] / display(result.factors[p]).si; }});
+  }
+}
+
+Cell tolerance_cell(double tolerance, const Unit& unit) {
+  return std::isinf(tolerance) ? text_cell("no effect") : number_cell(tolerance / unit.si);
+}
+
+void add_reference_notes(std::vector<std::string>& notes, const StoredResult& result,
+                         const ResponseTolerances& tolerances) {
+  const NamedUnit& response = result.responses[tolerances.response];
+  const std::optional<ReferenceError>& reference = tolerances.all.reference;
+  if (!reference) {
+    notes.push_back(fmt::format("no error has an effect on {}", response.name));
+    return;
+  }
+  const NamedUnit& factor = result.factors[reference->factor];
+  const double rms = std::sqrt(tolerances.all.mean_square.at(tolerances.all.equal_effect));
+  notes.push_back(fmt::format("equal effect: as much as {} = {}; with these, predicted root mean square of {}: {}",
+                              factor.name, readable_text({reference->tolerance, dimension_of(factor.unit)}),
+                              response.name, std::isnan(rms) ? "unknown" : response_text(response, rms)));
+}
+
+void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result,
+                     const ResponseTolerances& tolerances) {
+  if (!tolerances.limit) return;
+  const NamedUnit& response = result.responses[tolerances.response];
+  notes.push_back(
+      fmt::format("limit: predicted root mean square of {} over samples and poses = {}; the background alone gives {}",
+                  response.name, response_text(response, tolerances.limit->limit),
+                  response_text(response, std::sqrt(tolerances.all.mean_square.background))));
+  notes.emplace_back(
+      "equal tolerance: one number for all lengths and one for all angles, in the proportion of the median "
+      "sigma that the study sets to lengths and to angles");
+  notes.emplace_back(
+      "an error without effect on its own has its equal tolerance, because it may act together with others");
+}
+
+/// How much the limit may be exceeded although the study was made at small errors.
+void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
+  if (!tolerances.limit || sensitivity_of(result).mean_square_bound.empty()) return;
+  const double bound = std::sqrt(sensitivity_of(result).mean_square_bound[tolerances.response]);
+  if (bound == 1.0) return;
+  const NamedUnit& response = result.responses[tolerances.response];
+  notes.push_back(
+      fmt::format("the root mean square may come out up to {:.3g} times as large, {}, even where every effect is "
+                  "linear: {} is made of several norms, and their mean squares do not add exactly. To be safe, give "
+                  "--limit \"{}\"",
+                  bound, response_text(response, tolerances.limit->limit * bound), response.name,
+                  response_text(response, tolerances.limit->limit / bound)));
+}
+
+/// That a tolerance speaks of a normal error, where the study's errors are something else.
+void add_distribution_note(std::vector<std::string>& notes, const StoredResult& result) {
+  std::vector<std::string> shapes;
+  std::size_t count = 0;
+  for (const std::string& shape : result.factor_distribution) {
+    if (shape == "normal") continue;
+    ++count;
+    if (std::ranges::find(shapes, shape) == shapes.end()) shapes.push_back(shape);
+  }
+  if (count == 0) return;
+  notes.push_back(
+      fmt::format("{} of {} not normal in the study ({}): the tolerance is still the standard deviation of a normal "
+                  "error, the same as of an error of another distribution where effects are linear",
+                  count, counted(result.factors.size(), "error is", count == 1 ? "errors is" : "errors are"),
+                  fmt::join(shapes, ", ")));
+}
+
+/// How many errors have a tolerance larger than the size at which they were studied, of a limit by either way to share
+/// it.
+void add_extrapolation_note(std::vector<std::string>& notes, const StoredResult& result,
+                            const ResponseTolerances& tolerances) {
+  const std::vector<std::span<const double>> lists = proposed_tolerances(tolerances);
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    const double studied = result.factor_sigma[p] * (1.0 + 1e-9);
+    const auto larger = [&](std::span<const double> list) { return std::isfinite(list[p]) && list[p] > studied; };
+    count += std::ranges::any_of(lists, larger) ? 1U : 0U;
+  }
+  if (count == 0) return;
+  notes.push_back(
+      fmt::format("{} of {} a tolerance larger than the sigma of the study: it extrapolates beyond the size "
+                  "studied. Confirm it by a Monte Carlo study: errors that act with the square of their "
+                  "size make it too loose",
+                  count, counted(result.factors.size(), "error has", count == 1 ? "errors has" : "errors have")));
+}
+
+std::vector<std::string> notes(const StoredResult& result, const ResponseTolerances& tolerances) {
+  std::vector<std::string> list;
+  add_reference_notes(list, result, tolerances);
+  add_limit_notes(list, result, tolerances);
+  add_bound_note(list, result, tolerances);
+  add_distribution_note(list, result);
+  add_extrapolation_note(list, result, tolerances);
+  if (!has_index_changes(result)) {
+    list.push_back(
+        fmt::format("whether indices hold at other sizes is not known, because an older poesy ({}) wrote "
+                    "this result",
+                    result.poesy_version));
+  }
+  if (!tolerances.caveat.empty()) list.push_back(tolerances.caveat);
+  list.push_back(fmt::format(
+      "index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "
+      "tolerances are counted from it as published; share: of what the errors add to the mean square of the "
+      "response over samples and poses, the quantity that a limit limits, at the size the study sets",
+      100.0 * sensitivity_of(result).conf_level));
+  return list;
+}
+
+/// Refers to both.
+std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
+  const std::size_t r = tolerances.response;
+  const SensitivityResult& found = sensitivity_of(result);
+  const auto tolerance = [&result](std::string name, std::string heading, const std::vector<double>& values) {
+    return FilledColumn{number_column(std::move(name), std::move(heading)), [&result, &values](std::size_t p) {
+                          return tolerance_cell(values[p], display(result.factors[p]));
+                        }};
+  };
+  std::vector<FilledColumn> list{
+      name_column(result.factors, "error"),
+      {text_column("kind", "kind", 4),
+       [&](std::size_t p) { return text_cell(error_kind(dimension_of(result.factors[p].unit))); }},
+      {number_column("limb", "limb", "", 3),
+       [&](std::size_t p) { return count_cell(sensitivity_of(result).factor_limb[p]); }},
+      tolerance("equal_effect", "equal effect", tolerances.all.equal_effect)};
+  if (tolerances.limit) {
+    list.push_back(tolerance("limit_equal_effect", "limit, equal effect", tolerances.limit->equal_effect));
+    list.push_back(tolerance("limit_equal_tolerance", "limit, equal tolerance", tolerances.limit->equal_tolerance));
+  }
+  list.push_back(unit_column(result.factors));
+  list.push_back(index_column(result, found.global, r, "index", "index"));
+  list.push_back(index_column(result, found.global_ci_low, r, "index_low", "low", 2));
+  list.push_back(index_column(result, found.global_ci_high, r, "index_high", "high", 2));
+  list.push_back({percent_column("mean_square_share", "share", 1),
+                  [&](std::size_t p) { return percent_cell(tolerances.all.mean_square_share[p]); }});
+  return list;
+}
+
+Bars tolerance_bars(const StoredResult& result, const Tolerances& found, ArrayPool& pool) {
+  std::vector<std::string> units;
+  std::vector<double> shown;
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    units.push_back(unit_text(result.factors[p]));
+    shown.push_back(found.equal_effect[p] / display(result.factors[p]).si);
+  }
+  return error_bars(result, {share_quantity("share of the mean square that the study's sizes cause",
+                                            "mean_square_share", found.mean_square_share, pool),
+                             {"tolerance of equal effect", {units}, pool.add("equal_effect", shown)}});
+}
+
+}  // namespace
+
+void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
+  ToleranceGroup group;
+  group.conf_level = found.conf_level;
+  group.index = found.global;
+  group.index_ci_low = found.global_ci_low;
+  group.index_ci_high = found.global_ci_high;
+  for (const FactorIndex index : study.analysis.factors) {
+    const Factor& factor = study.model().factors[index.value];
+    group.kind.emplace_back(error_kind(factor.dimension));
+    group.unit.push_back(unit_of(factor));
+    group.limb.push_back(factor.limb);
+  }
+  for (std::size_t r = 0; r < found.responses; ++r) append_response(group, study, found, r);
+  write_group(result, kToleranceGroup, group);
+  write_fields(result, "/tolerances", kReadFields, group);
+}
+
+void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found) {
+  if (!file.exists("/tolerances")) return;
+  ToleranceGroup group;
+  read_fields(file, "/tolerances", kReadFields, group);
+  found.factor_limb = group.limb;
+  found.mean_square_bound = group.mean_square_bound;
+  for (std::size_t r = 0; r < group.reference.size(); ++r) {
+    const std::string& name = group.reference[r];
+    const auto at = std::ranges::find(factors, name, &NamedUnit::name);
+    const auto factor = static_cast<std::size_t>(at - factors.begin());
+    if (at == factors.end() && !name.empty()) throw h5::Error("its reference error is none of its factors");
+    const ReferenceError reference{factor, group.reference_tolerance[r]};
+    found.tolerance_reference.push_back(name.empty() ? std::nullopt : std::optional(reference));
+  }
+}
+
+bool has_tolerances(const StoredResult& result) {
+  const StoredSensitivity& found = sensitivity_of(result);
+  return !found.factor_limb.empty() && !found.background.empty();
+}
+
+ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response) {
+  const StoredSensitivity& found = sensitivity_of(result);
+  return {response, response_tolerances(found, result.factor_sigma, response, found.tolerance_reference[response]),
+          std::nullopt};
+}
+
+void append_tolerance_tables(CsvTables& tables, const StoredResult& result) {
+  if (!has_tolerances(result)) return;
+  for (std::size_t r = 0; r < sensitivity_of(result).tolerance_reference.size(); ++r) {
+    CsvTable table = lines_of_factors(result, "tolerances_" + result.responses[r].name);
+    table.columns.push_back({"angular", [&](std::size_t p) {
+                               return dimension_of(result.factors[p].unit) == Dimension::angle ? 1.0 : 0.0;
+                             }});
+    table.columns.push_back(list_column("limb", sensitivity_of(result).factor_limb));
+    const auto heading = [](const std::string& name, const std::string& unit, const char*) {
+      return with_unit(name, unit);
+    };
+    append_tolerance_columns(table, result, stored_tolerances(result, r), heading);
+    tables.push_back(std::move(table));
+  }
+}
+
+std::string write_tolerances(const std::string& folder, const StoredResult& result,
+                             const ResponseTolerances& tolerances) {
+  make_folder(folder);
+  CsvTable table = lines_of_factors(result, "tolerances");
+  table.first.heading = "factor,kind,limb,unit,display_unit,index_unit,studied_as";
+  table.first.text = [&](std::size_t p) {
+    const NamedUnit& factor = result.factors[p];
+    const std::string shape = result.factor_distribution.empty() ? "unknown" : result.factor_distribution[p];
+    return fmt::format("{},{},{},{},{},{}/{},{}", factor.name, error_kind(dimension_of(factor.unit)),
+                       sensitivity_of(result).factor_limb[p], factor.unit, display(factor).name,
+                       result.responses[tolerances.response].unit, factor.unit, shape);
+  };
+  const auto heading = [](const std::string& name, const std::string&, const char* suffix) { return name + suffix; };
+  append_tolerance_columns(table, result, tolerances, heading);
+  return write_csv(folder, table);
+}
+
+Table tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances) {
+  Table table{.name = "tolerances",
+              .caption = fmt::format("Tolerances for {}: standard deviations of normal errors",
+                                     result.responses[tolerances.response].name),
+              .columns = {},
+              .notes = notes(result, tolerances)};
+  fill(table, positions(result.factors.size()), columns(result, tolerances));
+  return table;
+}
+
+void add_tolerance_section(const StoredResult& result, Page& page) {
+  if (!has_tolerances(result)) return;
+  Section& section = page.add_section("tolerances", "How tight must each be");
+  const std::size_t response = response_named(result, default_ranking(result));
+  const std::string& name = result.responses[response].name;
+  const std::optional<ReferenceError>& reference = sensitivity_of(result).tolerance_reference[response];
+  if (!reference) {
+    section.paragraph(fmt::format("No error has an effect on {}, so nothing can be said about tolerances.", name));
+    return;
+  }
+  ResponseTolerances found = stored_tolerances(result, response);
+  found.caveat = wrong_sizes_text(result, found);
+  section.paragraph(fmt::format(
+      "Tolerances, as standard deviations of normal errors, with which every error has the same effect on {}: the "
+      "tighter one, the more its error matters. They are counted from a reference, and all may be multiplied by one "
+      "number. 'poesy tolerances' with --limit gives those that keep {} below a limit, and studies that confirm them.",
+      name, name));
+  add_figure(page, section, "tolerances", tolerance_bars(result, found.all, page.figures.pool),
+             fmt::format(
+                 "What each error adds to the mean square of {} over samples and poses, and its tolerance of equal "
+                 "effect; {}.",
+                 name,
+                 mixed_units(result.factors) ? "the largest share first, for tolerances in mm and in deg do not compare"
+                                             : "the largest first"));
+  section.table(tolerance_table(result, found));
+}
+
+}  // namespace poesy

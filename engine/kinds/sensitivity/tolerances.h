@@ -1,0 +1,93 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/files/output_folder.h"
+#include "engine/files/result_parts.h"
+#include "engine/kinds/kind.h"
+#include "engine/kinds/result_file.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/model/model.h"
+#include "engine/report/display.h"
+#include "engine/report/table.h"
+#include "engine/stats/tolerance.h"
+
+namespace poesy {
+
+/// Tolerances for one response of a sensitivity result, within a limit on it if there is one.
+struct ResponseTolerances {
+  std::size_t response;                  ///< position among the result's
+  Tolerances all;                        ///< without regard to a limit
+  std::optional<LimitTolerances> limit;  ///< within the limit, if there is one
+  std::string caveat = {};               ///< why they may not hold, for tables and studies; empty: no known reason
+};
+
+/// What a program that sets tolerances needs, without the rest: /tolerances.
+/// @{
+void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found);
+void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found);
+/// @}
+/// tolerances_RESPONSE.csv; none for a file of an older version.
+void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
+/// The section of a report, where the result has tolerances.
+void add_tolerance_section(const StoredResult& result, Page& page);
+
+/// The lists of tolerances [P] that are to be used: within the limit by either way to share it, without one those of
+/// equal effect. Refers to the tolerances.
+std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
+
+/// The largest tolerance that makes sense for each error of a sensitivity result, [P], SI: a quarter of the part that
+/// it is an error of (Model::error_bound). Throws InputError when the stored study cannot be read with this catalog.
+std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog);
+
+/// Whether a sensitivity result holds what tolerances are made of; one of an older version may not.
+bool has_tolerances(const StoredResult& result);
+
+/// Those of one response, counted from the reference that the result states. Precondition: has_tolerances().
+ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response);
+
+/// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:
+///
+///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the
+///     study) | index, index_ci_low, index_ci_high, mean_square_share, index_change (as
+///     /sensitivity/index_change), equal_effect, and with a limit limit_equal_effect and limit_equal_tolerance, in
+///     `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
+///
+/// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error,
+/// whatever the error was studied as; "inf" says that the error has no effect on its own. Returns the path. Throws
+/// FileError.
+std::string write_tolerances(const std::string& folder, const StoredResult& result,
+                             const ResponseTolerances& tolerances);
+
+/// Claims what write_tolerances, and with a limit write_confirmation, are going to write into the folder. Throws
+/// InputError where they would replace what is not poesy's.
+void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
+                           const Catalog& catalog);
+
+/// The studies that test tolerances.
+struct Confirmation {
+  std::vector<std::string> paths;       ///< the studies that were written
+  std::vector<std::string> at_largest;  ///< "delta_1_0_y is 15 mm", each once
+};
+
+/// Writes Monte Carlo studies that confirm or refute the tolerances within the limit, confirm_equal_effect.toml and
+/// confirm_equal_tolerance.toml: the study of the result with each of its errors normal with its tolerance. Poses that
+/// came from a file are written beside them as confirm_poses.csv. Each study states its limit ([analysis.limits],
+/// judged by the root mean square), so that running it says PASS or FAIL, and begins with the caveat as a comment. A
+/// tolerance above largest_tolerances() is cut to it. Precondition: tolerances.limit. Throws FileError; InputError when
+/// the stored study cannot be read with this catalog.
+Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
+                                const ResponseTolerances& tolerances, const Catalog& catalog);
+
+/// Tolerances of every error for one response, in mm and deg; notes say from which reference and limit, and the root
+/// mean square that the equal-effect tolerances are predicted to give.
+Table tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances);
+
+/// Tolerances from the indices of a sensitivity result; see SetTolerances.
+std::string set_sensitivity_tolerances(const StoredResult& result, const TolerancesOptions& options,
+                                       const Catalog& catalog, std::size_t width);
+
+}  // namespace poesy

@@ -1,0 +1,273 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/report/display.h"
+#include "engine/report/report_kind.h"
+
+namespace poesy {
+namespace {
+
+bool described(const std::vector<NamedUnit>& things) {
+  return std::ranges::any_of(things, [](const NamedUnit& thing) { return !thing.description.empty(); });
+}
+
+/// A description as a sentence of its own.
+std::string sentence(const NamedUnit& thing) {
+  std::string text = thing.description;
+  if (text.empty()) return "-";
+  if (text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text + (text.back() == '.' ? "" : ".");
+}
+
+Table table_of(std::string name, std::string word, std::string caption, const std::vector<NamedUnit>& things) {
+  Table table{.name = std::move(name),
+              .caption = std::move(caption),
+              .columns = {text_column("name", std::move(word)), text_column("unit", "unit"),
+                          text_column("description", "what it is")}};
+  for (const NamedUnit& thing : things) {
+    table.rows.push_back({text_cell(thing.name), text_cell(unit_text(thing)), text_cell(thing.description)});
+  }
+  return table;
+}
+
+Table status_table(const SolveCounts& solves, std::string_view at_fidelity) {
+  Table table{.name = "solves",
+              .caption = fmt::format("How the solves{} ended", at_fidelity),
+              .columns = {text_column("status", "status"), number_column("solves", "solves"),
+                          percent_column("share", "share"), text_column("meaning", "meaning")}};
+  for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
+    const std::uint64_t count = solves.by_status[status];
+    table.rows.push_back({text_cell(kStatusNames[status]), count_cell(count),
+                          percent_cell(share_of(count, solves.total())), text_cell(kStatusMeanings[status])});
+  }
+  return table;
+}
+
+Table failures_table(const ReportedResult& result) {
+  Table table{.name = "failures",
+              .caption = "Samples that did not converge, in the order of errors, poses and samples",
+              .columns = {text_column("error", "error"), number_column("pose", "pose"), text_column("where", "where"),
+                          number_column("sample", "sample"), text_column("status", "status"),
+                          text_column("replay", "replay it with")},
+              .notes = {fmt::format("At most {} of each error at a pose are listed, and {} in all.",
+                                    FailedSamples::kMost, count_text(kMostFailuresListed))}};
+  for (const Failure& failure : result.stored.failures) {
+    const std::string& error = result.stored.varied[failure.slot];
+    const std::uint64_t sample = failure.failed.sample.value;
+    table.rows.push_back(
+        {text_cell(error), count_cell(failure.pose.value),
+         text_cell(coordinates_text(result.stored, failure.pose.value)), count_cell(sample),
+         text_cell(kStatusNames[static_cast<std::size_t>(failure.failed.status)]),
+         text_cell(fmt::format("poesy replay {} {} {} {}", result.path, error, failure.pose.value, sample))});
+  }
+  return table;
+}
+
+/// Of the rows that have any.
+void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
+  if (outcomes.names.size() < 2) return;
+  const std::vector<double> shares = outcomes.shares_by_row();
+  std::vector<std::string> names;
+  std::vector<double> failing;
+  for (std::size_t row = 0; row < shares.size(); ++row) {
+    if (shares[row] == 0.0) continue;
+    names.push_back(outcomes.names[row]);
+    failing.push_back(shares[row]);
+  }
+  const std::size_t others = shares.size() - names.size();
+  Bars bars{{}, {{"not converged", {{"%"}}, page.figures.pool.add("not_converged_rows", failing, 0.01)}}, names};
+  add_figure(page, section, "not-converged", std::move(bars),
+             fmt::format("Share of the solves of each {} that did not converge{}.", outcomes.row_word,
+                         others == 0 ? "" : fmt::format("; {} more had none", count_text(others))));
+}
+
+void add_figures(const ReportKind& kind, const StoredResult& result, const SolveTally& outcomes, Page& page,
+                 Section& section) {
+  add_bars(outcomes, page, section);
+  if (outcomes.poses < 2 || outcomes.poses != result.poses.size()) return;
+  const PoseFigures figures(result, kind.shown_cells(result), page);
+  std::vector<Field> fields{figures.not_converged(outcomes.shares_by_pose())};
+  figures.add_condition(fields);
+  figures.add_workspace(section, std::move(fields), "Where solves did not converge: each dot is a pose.",
+                        "not-converged-where");
+}
+
+/// A fact about a run with its label; empty where it is not known or does not apply.
+using RunFact = std::pair<std::string, std::string>;
+
+std::string setting(const StoredResult& result, std::string_view section, std::string_view key) {
+  return readable_setting(result.study_text, section, key);
+}
+
+std::string poses_text(const StoredResult& result, const StudyWords& words) {
+  std::string text = count_text(result.poses.size());
+  if (words.from_tables) return text + ", from a table";
+  const std::string choice = setting(result, "poses", "select");
+  if (!choice.empty()) text += ", " + choice;
+  return result.time.empty() ? text
+                             : text + fmt::format(", from {:.4g} to {:.4g} s", result.time.front(), result.time.back());
+}
+
+std::string samples_text(const StoredResult& result, const StudyWords& words) {
+  if (!words.samples.empty()) return words.samples;
+  const std::string fixed = setting(result, "analysis", "samples");
+  if (!fixed.empty()) return fixed;
+  const std::string least = setting(result, "analysis", "samples.min");
+  if (least.empty()) return {};
+  return fmt::format("adaptive, {} to {}, until intervals are within +-{} of their value", least,
+                     setting(result, "analysis", "samples.max"), setting(result, "analysis", "samples.relative_error"));
+}
+
+/// How many of the errors are not drawn as the others of their unit are.
+std::string own_distributions_text(const StoredResult& result) {
+  const auto own = std::ranges::count_if(result.factors, [&](const NamedUnit& factor) {
+    return !setting(result, "errors.override", factor.name).empty();
+  });
+  if (own == 0) return {};
+  return fmt::format("{} of {} errors have a distribution of their own", own, result.factors.size());
+}
+
+std::string speed_text(const RunFacts& run) {
+  if (!(run.wall_seconds > 0.0)) return {};
+  const double speed = static_cast<double>(run.solves) / run.wall_seconds;
+  return count_text(static_cast<std::uint64_t>(std::llround(speed)));
+}
+
+/// How and where the result came into being: the same labels in the same order for every result.
+std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& reported) {
+  const StoredResult& result = reported.stored;
+  const RunFacts& run = result.facts;
+  const StudyWords words = kind.words(result);
+  const std::string tolerance_unit = result.metric == "platform" ? "of the reach" : "rad, m";
+  return {
+      {"result file", reported.path},
+      {"title", result.title},
+      {"kind of study", result.kind},
+      {"mechanism", result.model},
+      {"fidelity of the model", setting(result, "mechanism", "fidelity")},
+      {"poses", poses_text(result, words)},
+      {"errors", result.factors.empty() ? "" : count_text(result.factors.size())},
+      {"linear errors", words.draws ? setting(result, "errors", "linear") : ""},
+      {"angular errors", words.draws ? setting(result, "errors", "angular") : ""},
+      {"other errors", words.draws ? own_distributions_text(result) : ""},
+      {"sizes of the errors", fmt::format("{}", fmt::join(words.sizes, "; "))},
+      {"samples at each pose", samples_text(result, words)},
+      {"metric", metric_text(result)},
+      {"solver", setting(result, "solver", "method")},
+      {fmt::format("tolerance of the solver [{}]", tolerance_unit), setting(result, "solver", "tolerance")},
+      {"most iterations", setting(result, "solver", "max_iterations")},
+      {"samples not converged", setting(result, "solver", "not_converged")},
+      {"seed", words.draws ? setting(result, "run", "seed") : ""},
+      {"poesy", result.poesy_version},
+      {"commit", result.git_commit},
+      {"date (UTC)", run.created},
+      {"machine", run.host},
+      {"processor", run.cpu},
+      {"threads", std::to_string(run.threads)},
+      {"ranks", std::to_string(run.ranks)},
+      {"wall time [s]", fmt::format("{:.2f}", run.wall_seconds)},
+      {"solves", count_text(run.solves)},
+      {"solves per second", speed_text(run)},
+      {"content hash (SHA-256)",
+       result.content_sha256 + (result.changed ? " (the content no longer has this hash)" : "")},
+  };
+}
+
+/// The facts of one result, or of two where they agree (same) or do not.
+Table facts_table(const ReportKind& kind, std::span<const ReportedResult> results, bool same) {
+  const bool two = results.size() == 2;
+  Table table{.name = same ? "what_was_run_alike" : "what_was_run",
+              .caption = !two   ? "What was run"
+                         : same ? "What is the same in both runs"
+                                : "What differs between the runs",
+              .columns = {text_column("fact", "fact")}};
+  std::vector<std::vector<RunFact>> facts;
+  for (const ReportedResult& result : results) {
+    const std::string letter(two ? kLetters[facts.size()] : "value");
+    table.columns.push_back(text_column(letter, letter));
+    facts.push_back(run_facts(kind, result));
+  }
+  for (std::size_t n = 0; n < facts.front().size(); ++n) {
+    if (two && (facts[0][n].second == facts[1][n].second) != same) continue;
+    std::vector<Cell>& row = table.rows.emplace_back();
+    row.push_back(text_cell(facts.front()[n].first));
+    for (const std::vector<RunFact>& of_result : facts) row.push_back(text_cell(of_result[n].second));
+  }
+  return table;
+}
+
+}  // namespace
+
+void add_responses(const StoredResult& result, Page& page) {
+  if (!described(result.responses)) return;
+  for (const NamedUnit& response : result.responses) page.figures.about.emplace(response.name, response.description);
+  std::vector<std::size_t> shown = headline_order(result);
+  for (const std::size_t r : result.signed_headline) {
+    if (std::ranges::find(shown, r) == shown.end()) shown.push_back(r);
+  }
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const std::size_t r : shown) list.emplace_back(result.responses[r].name, sentence(result.responses[r]));
+  page.add_section("what-is-measured", "What is measured").definitions(list);
+}
+
+void add_glossary(const StoredResult& result, Page& page) {
+  const std::vector<NamedUnit>& errors = result.factors;
+  const std::vector<NamedUnit>& coordinates = result.pose_coordinates;
+  if (!described(errors) && !described(coordinates)) return;
+  for (const NamedUnit& error : errors) page.figures.about.emplace(error.name, error.description);
+  Section& section = page.add_section("names", "What the names mean");
+  if (described(coordinates))
+    section.table(table_of("coordinates", "coordinate", "Coordinates of a pose", coordinates));
+  if (described(errors)) section.table(table_of("errors", "error", "Errors", errors));
+}
+
+void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page) {
+  const StoredResult& stored = result.stored;
+  const SolveTally outcomes = kind.tally(stored);
+  const SolveCounts total = outcomes.total();
+  const std::string at_first = at_first_fidelity(outcomes);
+  Section& section = page.add_section("not-solved", "What was not solved");
+  if (total.not_converged() == 0) {
+    section.paragraph(fmt::format("All {} solves{} converged.", count_text(total.total()), at_first));
+  } else {
+    section.paragraph(unsolved_text(stored, outcomes) +
+                      " Each is counted where it happened. Whether the numbers above leave such solves out is the "
+                      "study's choice, not_converged under [solver].");
+    if (many_not_converged(stored, total.not_converged(), total.total()))
+      add_figures(kind, stored, outcomes, page, section);
+  }
+  if (const std::optional<SecondFidelity>& second = outcomes.second) {
+    const std::string solves = count_text(second->total);
+    section.paragraph(
+        second->not_converged == 0
+            ? fmt::format("All {} solves at fidelity \"{}\" converged.", solves, second->second)
+            : fmt::format(
+                  "At fidelity \"{}\", {} of {} solves did not converge: what is said of it rests on the others.",
+                  second->second, count_text(second->not_converged), solves));
+  }
+  section.table(status_table(total, at_first));
+  if (!stored.failures.empty()) {
+    section.folded("Samples that did not converge, and how to replay them", failures_table(result));
+  }
+}
+
+void add_what_was_run(const ReportKind& kind, std::span<const ReportedResult> results, Page& page) {
+  const StoredResult& first = results.front().stored;
+  Section& section = page.add_section("what-was-run", "What was run");
+  section.paragraph(
+      kind.words(first).from_tables
+          ? "Of the study below, mechanism and solver were used; poses and errors came from tables, and are in the "
+            "result file."
+          : "The study below holds every setting, those that its author left out among them. With the same program on "
+            "the same kind of processor it gives the same numbers for any number of threads.");
+  section.table(facts_table(kind, results, false));
+  if (results.size() == 2) section.folded("What is the same in both", facts_table(kind, results, true));
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    const std::string name = results.size() == 2 ? fmt::format("The study of {}", kLetters[n]) : "The study";
+    section.folded_text(name + ", resolved", results[n].stored.study_text);
+  }
+}
+
+}  // namespace poesy
