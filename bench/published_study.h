@@ -35,7 +35,7 @@ inline Study published_study(std::size_t poses, std::size_t samples) {
 /// The same by the metric of the platform, exact or to first order.
 inline Study platform_study(std::size_t poses, std::size_t samples, std::size_t fidelity = 0) {
   Study study = published_study(poses, samples);
-  study.mechanism.entry = study.mechanism.entry->by_platform.get();
+  study.mechanism.entry = study.mechanism.entry->other_metric.get();
   study.mechanism.fidelity = fidelity;
   study.solver.tolerance = study.model().tolerance;
   return study;

@@ -104,6 +104,7 @@ int check(const std::string& path) {
   const Outlook expected = outlook(study, *model, poses.poses);
   print(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)));
   if (const std::string held = held_errors_text(study); !held.empty()) print("# " + held + "\n");
+  for (const std::string& line : model->mobility()) print("# mobility: " + line + "\n");
   for (const std::string& unusual : model->unusual_geometry()) {
     print("# hint: " + unusual + "; is that meant?\n");
   }

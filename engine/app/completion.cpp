@@ -35,7 +35,7 @@ std::vector<std::string_view> known_responses() {
   };
   for (const CatalogEntry& entry : registry()) {
     add(entry);
-    if (entry.by_platform) add(*entry.by_platform);
+    if (entry.other_metric) add(*entry.other_metric);
   }
   return names;
 }

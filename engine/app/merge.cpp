@@ -39,7 +39,7 @@ int merge(const MergeOptions& options) {
   for (const std::string& path : options.shards) shards.push_back(read_shard(path));
   std::vector<Bytes> merged = merge_shards(shards);
   const StoredShard& first = shards.front();
-  const StoredStudy whole = stored_study(first.study_text, first.poses, first.path, registry());
+  const StoredStudy whole = stored_study(first, registry());
   const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   // The whole run from here on: as one that is resumed when all its stages are done.

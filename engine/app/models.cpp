@@ -4,17 +4,27 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
+#include "engine/report/mechanism_picture.h"
 #include "engine/report/tables.h"
+#include "engine/study/text_file.h"
 #include "models/registry.h"
 
 namespace poesy::app {
 namespace {
 
-/// The mechanism of that name, in capitals or small letters. Throws InputError that lists the known ones.
-const CatalogEntry& find_model(const std::string& name) {
+/// Larger files describe no mechanism.
+constexpr std::size_t kMostBytes = 1 << 20;
+
+/// The mechanism of that name, in capitals or small letters, or of the file at this path. Throws InputError that lists
+/// the known names.
+CatalogEntry find_model(const std::string& name) {
   if (const CatalogEntry* entry = find(registry(), name)) return *entry;
+  if (name.find_first_of("./") != std::string::npos) {
+    return registry().from_text(read_text(name, "mechanism", kMostBytes), name);
+  }
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : registry()) known.push_back(entry.description.name);
   throw InputError({}, "no model '" + printable(name) + "'", suggestion(lower_case(name), known));
@@ -33,13 +43,13 @@ struct TemplateOptions {
 
 int print_template(const TemplateOptions& options) {
   if (options.reference) {
-    print(study_reference());
+    print(study_reference() + registry().file_reference());
     return kDone;
   }
-  const CatalogEntry& entry = find_model(options.model);
+  const CatalogEntry entry = find_model(options.model);
   const StudyKind& wanted = kind_named(options.kind);
   ModelDescription as_named = entry.description;
-  as_named.name = options.model;
+  if (entry.file.empty()) as_named.name = options.model;
   if (const auto refusal = wanted.no_template != nullptr ? wanted.no_template(as_named) : std::nullopt) {
     throw InputError({}, refusal->problem, refusal->remedy);
   }
@@ -47,25 +57,51 @@ int print_template(const TemplateOptions& options) {
   return kDone;
 }
 
-int print_models(const std::string& name) {
-  print(name.empty() ? models_text(registry()) : model_text(find_model(name)));
+void write_picture(const CatalogEntry& entry, const std::string& path) {
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch();
+  if (!sketch) {
+    throw InputError({}, "there is no picture of '" + entry.description.name + "'",
+                     "pictures are of mechanisms from files");
+  }
+  const auto is_picture = [](const std::string& existing) { return is_marked(existing, kPictureMark); };
+  check_output_path(path, {"picture", is_picture}, {{entry.file}});
+  write_text(path, mechanism_picture(*sketch, entry.description.title));
+}
+
+struct ModelsOptions {
+  std::string model;
+  std::string picture;
+};
+
+int print_models(const ModelsOptions& options) {
+  if (options.model.empty()) {
+    print(models_text(registry()));
+    return kDone;
+  }
+  const CatalogEntry entry = find_model(options.model);
+  if (!options.picture.empty()) write_picture(entry, options.picture);
+  print(model_text(entry));
   return kDone;
 }
 
 }  // namespace
 
 Command& add_models(Command& program) {
-  const auto [command, name] = program.add_command("models", "list the mechanisms, or describe one", print_models);
-  command.add_value("model", name, "MODEL", "mechanism");
+  const auto [command, options] = program.add_command("models", "list the mechanisms, or describe one", print_models);
+  CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism, or its file");
+  command.add_value("-o,--output", options.picture, "PICTURE.svg", "picture of a mechanism from a file")->needs(named);
   command.examples = {{"which mechanisms are there?", "poesy models"},
-                      {"errors, poses and responses of one", "poesy models 2upr-rpu"}};
+                      {"errors, poses and responses of one", "poesy models 2upr-rpu"},
+                      {"what was understood of a mechanism's file", "poesy models rps3.toml -o rps3.svg"}};
   return command;
 }
 
 Command& add_template(Command& program) {
   const auto [command, options] =
       program.add_command("template", "print a complete, commented study file", print_template);
-  CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism");
+  CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism, or its file");
   command.add_value("kind", options.kind, "KIND", "kind of study: " + either(names(study_kinds())));
   command.add_flag("--reference", options.reference, "print the reference of all keys of study files, as Markdown")
       ->excludes(named);

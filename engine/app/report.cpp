@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -27,30 +26,14 @@ std::string default_path(const std::vector<std::string>& results) {
   return (first.parent_path() / (name + ".html")).string();
 }
 
-/// Whether a file is a report, or empty.
-bool may_be_replaced(const std::string& path) {
-  constexpr std::size_t kHead = 1024;
-  std::string head(kHead, '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return false;
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return head.empty() || head.find(kReportMark) != std::string::npos;
-}
-
-void write_whole(const std::string& path, const std::string& html) {
-  FileWriter file(path);
-  file.expect(html.size());
-  file.write(html);
-  file.commit();
-}
+bool may_be_replaced(const std::string& path) { return is_marked(path, kReportMark); }
 
 int report(const ReportOptions& options) {
   const std::string path = options.report.empty() ? default_path(options.results) : options.report;
   check_output_path(path, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back({read_result_with_warning(result), result});
-  write_whole(path, html_report(kind_of(results.front().stored).report, results));
+  write_text(path, html_report(kind_of(results.front().stored).report, results));
   std::puts(path.c_str());
   return kDone;
 }

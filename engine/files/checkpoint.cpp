@@ -98,7 +98,7 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
           .model = study.model().name,
           .seed = study.seed,
           .samples = study.analysis.samples,
-          .study = resolved_text(rest),
+          .study = resolved_text(rest) + (study.mechanism.file ? study.mechanism.file->text : ""),
           .poses = hash_of(poses),
           .shard = shard ? to_string(*shard) : ""};
 }

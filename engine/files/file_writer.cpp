@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -53,6 +54,16 @@ bool sync_folder(const std::string& path) {
 }
 
 }  // namespace
+
+bool is_marked(const std::string& path, std::string_view mark) {
+  constexpr std::size_t kHead = 1024;
+  std::string head(kHead, '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return false;
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.empty() || head.find(mark) != std::string::npos;
+}
 
 void check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs) {
   const fs::path folder = folder_of(path);
@@ -151,6 +162,13 @@ void FileWriter::fail(std::string_view action, int error) const {
   std::string reason = std::generic_category().message(error);
   if (error == ENOSPC && descriptor_ != kClosed) reason += missing_space();
   throw FileError(path_, std::string(action) + " (" + reason + ")", remedy(error));
+}
+
+void write_text(const std::string& path, std::string_view text) {
+  FileWriter file(path);
+  file.expect(text.size());
+  file.write(text);
+  file.commit();
 }
 
 }  // namespace poesy

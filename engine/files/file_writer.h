@@ -13,6 +13,9 @@ struct OutputKind {
   bool (*may_be_replaced)(const std::string& path);  ///< whether a file that stands there is of this kind, or empty
 };
 
+/// Whether a file is empty, or has this mark in its first kilobyte.
+bool is_marked(const std::string& path, std::string_view mark);
+
 /// Throws when no such file can come into being at this path, before anything is computed: InputError when its folder
 /// does not exist, when what stands there is one of the inputs or must not be replaced, FileError when the folder
 /// cannot be written.
@@ -49,5 +52,8 @@ class FileWriter {
   std::size_t expected_ = 0;
   int descriptor_ = -1;
 };
+
+/// Writes a whole file, or nothing. Throws FileError.
+void write_text(const std::string& path, std::string_view text);
 
 }  // namespace poesy

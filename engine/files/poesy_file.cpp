@@ -209,4 +209,8 @@ void expect_filetype(const std::string& path, const h5::File& file, std::string_
   throw FileError(path, "is a whole result, not a shard of one", "give files that poesy run --shard wrote");
 }
 
+std::string mechanism_text(const h5::File& file) {
+  return file.exists("/mechanism/text") ? file.read<std::string>("/mechanism/text").at(0) : std::string();
+}
+
 }  // namespace poesy

@@ -45,6 +45,9 @@ void trial_read(const std::string& path, const std::function<void()>& read);
 /// The root's attribute of this name, which holds one text.
 std::string text_attribute(const h5::File& file, const std::string& name);
 
+/// The file that describes the mechanism; empty where there is none.
+std::string mechanism_text(const h5::File& file);
+
 /// Throws FileError, which says what it is instead, when the file's type is not this one.
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype);
 

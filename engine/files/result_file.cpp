@@ -167,6 +167,12 @@ void add_header(ResultBuilder& result, std::string_view filetype, std::string_vi
   file.set_attribute("/", "git_commit", git_commit());
   file.make_group("/study");
   result.add_scalar("/study/text", resolved_text(study), {"1", "The study, every default filled in (TOML)"});
+  if (const std::optional<MechanismText>& own = study.mechanism.file) {
+    file.make_group("/mechanism");
+    result.add_scalar("/mechanism/text", own->text, {"1", "The file that describes the mechanism (TOML)"});
+    file.set_attribute("/mechanism", "file", own->name);
+    file.set_attribute("/mechanism", "sha256", hex(sha256(std::as_bytes(std::span(own->text)))));
+  }
   add_poses(result, study.model(), poses);
 }
 
@@ -239,6 +245,7 @@ void read_header(const h5::File& file, StoredResult& result) {
   result.content_sha256 = stored_hash(file);
   result.changed = result.content_sha256 != content_sha256(file);
   result.study_text = file.read<std::string>("/study/text").at(0);
+  result.mechanism_text = mechanism_text(file);
   result.pose_coordinates = read_pose_coordinates(file);
   SelectedPoses poses = read_poses(file);
   result.poses = std::move(poses.poses);

@@ -65,6 +65,7 @@ struct StoredResult {
   std::string title;           ///< of the study
   std::string model;           ///< name of the mechanism
   std::string study_text;      ///< the study with every default filled in
+  std::string mechanism_text;  ///< the file that describes the mechanism; empty where there is none
   std::string poesy_version;   ///< of the program that wrote it
   std::string git_commit;      ///< of that program
   std::string content_sha256;  ///< as the file states it

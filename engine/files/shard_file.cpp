@@ -29,6 +29,7 @@ StoredShard read_checked(const std::string& path, const h5::File& file) {
   stored.poesy_version = text_attribute(file, "poesy_version");
   stored.git_commit = text_attribute(file, "git_commit");
   stored.study_text = file.read<std::string>("/study/text").at(0);
+  stored.mechanism_text = mechanism_text(file);
   stored.poses = read_poses(file);
   stored.shard.count = file.attribute<std::uint64_t>("/shard", "shards").at(0);
   stored.shard.index = file.attribute<std::uint64_t>("/shard", "shard").at(0) - 1;
@@ -64,6 +65,12 @@ void check_same_study(const StoredShard& shard, const StoredShard& first) {
     const auto [there, here] = first_difference(shard.study_text, first.study_text);
     refuse(shard, fmt::format("is of another study: it has {} where {} has {}", there, first.path, here),
            "merge shards of one study");
+  }
+  if (shard.mechanism_text != first.mechanism_text) {
+    const auto [there, here] = first_difference(shard.mechanism_text, first.mechanism_text);
+    refuse(shard,
+           fmt::format("is of another mechanism: its file has {} where that of {} has {}", there, first.path, here),
+           "merge shards of one mechanism");
   }
   if (shard.poses.poses != first.poses.poses) {
     refuse(shard, "has other poses than " + first.path + ", though under the same name", "merge shards of one study");

@@ -14,14 +14,15 @@ namespace poesy {
 /// What a shard file says: an HDF5 file with /study, /poses and /run as in a result, and in /shard what the shard
 /// found, for the program that wrote it alone.
 struct StoredShard {
-  std::string path;           ///< of the file
-  std::string poesy_version;  ///< exact: bytes of a state are for the program that wrote them
-  std::string git_commit;     ///< of that program
-  std::string study_text;     ///< the study with every default filled in
-  SelectedPoses poses;        ///< of the whole study
-  Shard shard;                ///< which part of the study
-  std::vector<Bytes> stages;  ///< states of the study's runs (engine/run/checkpoints.h)
-  RunFacts facts;             ///< of the run that solved it
+  std::string path;            ///< of the file
+  std::string poesy_version;   ///< exact: bytes of a state are for the program that wrote them
+  std::string git_commit;      ///< of that program
+  std::string study_text;      ///< the study with every default filled in
+  std::string mechanism_text;  ///< the file that describes the mechanism; empty where there is none
+  SelectedPoses poses;         ///< of the whole study
+  Shard shard;                 ///< which part of the study
+  std::vector<Bytes> stages;   ///< states of the study's runs (engine/run/checkpoints.h)
+  RunFacts facts;              ///< of the run that solved it
 };
 
 /// Writes a shard, in the way of results: whole or not at all. Throws FileError.

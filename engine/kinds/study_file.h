@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/files/result_file.h"
+#include "engine/files/shard_file.h"
 #include "engine/model/model.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
@@ -15,7 +16,8 @@ namespace poesy {
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use);
 
 /// The same for a study's text; `path` names it in messages.
-Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use);
+Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
+                    const std::string* mechanism_text = nullptr);
 
 /// A complete, commented study of this kind and mechanism.
 std::string template_text(const CatalogEntry& entry, const StudyKind& kind);
@@ -29,12 +31,11 @@ struct StoredStudy {
   SelectedPoses poses;  ///< those of the result, whether the study's files still exist or not
 };
 
-/// Reads a resolved study that is kept beside its poses. Nothing else is opened: a file of poses or of a trajectory
-/// need not exist any more, and the study's own pose selection is not to be asked for poses.
-/// Throws FileError that names `path`, the file that keeps them, when this program cannot read the text, or the poses
+/// Reads the resolved study that a shard keeps beside its poses. Nothing else is opened: a file of poses, of a
+/// trajectory or of the mechanism need not exist any more, and the study's own pose selection is not to be asked for
+/// poses. Throws FileError that names the file that keeps them, when this program cannot read the text, or the poses
 /// are not of its mechanism.
-StoredStudy stored_study(const std::string& resolved_text, SelectedPoses poses, const std::string& path,
-                         const Catalog& catalog);
+StoredStudy stored_study(const StoredShard& shard, const Catalog& catalog);
 
 /// The study of a result, with its poses; those that were rejected are not kept in memory.
 StoredStudy stored_study(const StoredResult& result, const std::string& path, const Catalog& catalog);

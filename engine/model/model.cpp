@@ -17,6 +17,10 @@ const FactorSet* ModelDescription::find_set(std::string_view set_name) const {
   return found == factor_sets.end() ? nullptr : &*found;
 }
 
+const CatalogEntry& by_metric(const CatalogEntry& entry, std::string_view metric) {
+  return entry.description.metric != metric && entry.other_metric ? *entry.other_metric : entry;
+}
+
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name) {
   const auto found = std::ranges::find(catalog, lower_case(model_name),
                                        [](const CatalogEntry& entry) { return lower_case(entry.description.name); });

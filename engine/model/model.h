@@ -14,6 +14,7 @@
 
 #include "engine/base/index.h"
 #include "engine/base/units.h"
+#include "engine/model/sketch.h"
 #include "engine/model/status.h"
 
 namespace poesy {
@@ -172,6 +173,8 @@ struct ModelDescription {
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
   std::vector<SourceSet> sources;     ///< those of a coupling study that names none; no factor in two of them
   std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows; empty: all of them
+  /// The joints of a mechanism from a file, as they were understood, in lines for people; empty for the others.
+  std::string structure = {};
   /// Those that a summary of coupled sources shows, with signs, for a norm cannot tell what cancels; empty: the
   /// headline.
   std::vector<std::size_t> signed_headline;
@@ -275,6 +278,12 @@ class Model {
   /// Points of the platform by which its limbs' mismatch is weighed, in its frame; empty where none are.
   virtual std::vector<PlatformPoint> metric_points() const { return {}; }
 
+  /// How the mechanism can move, in lines for people; none where it was never asked.
+  virtual std::vector<std::string> mobility() const { return {}; }
+
+  /// How the mechanism looks at home; empty where the model has no picture.
+  virtual std::optional<Sketch> sketch() const { return std::nullopt; }
+
   /// What of the geometry is possible, but so unusual that it may be a slip; clauses for people: "the platform (l_A =
   /// 800 mm) is larger than the base (l_B = 200 mm)". None unless a model says otherwise.
   virtual std::vector<std::string> unusual_geometry() const { return {}; }
@@ -295,17 +304,29 @@ struct CatalogEntry {
   /// among description.fidelities, 0 where there is no choice.
   /// Throws std::invalid_argument with a clause that names the parameter and the rule it breaks.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;
-  /// The same mechanism by the metric of its platform, with responses of its own; null where no angle is weighed
-  /// against a length, and in the entry by the metric itself.
-  std::shared_ptr<const CatalogEntry> by_platform = nullptr;
+  /// The same mechanism by the other metric, with responses of its own; null where no angle is weighed against a
+  /// length, and in that entry itself.
+  std::shared_ptr<const CatalogEntry> other_metric = nullptr;
   /// Where the description's metric is "platform": builds it with other points of the platform, at least three (its
   /// frame, m). Throws std::invalid_argument as build does.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity,
                                        std::span<const PlatformPoint> points)>
       build_with_points = nullptr;
+  std::string file = {};  ///< path of the file that describes it; empty for those of the catalog
 };
 
-using Catalog = std::vector<CatalogEntry>;  ///< Mechanisms by name, in the order in which they are listed.
+/// The entry or its other_metric, whichever weighs by this metric; the entry where nothing is weighed.
+const CatalogEntry& by_metric(const CatalogEntry& entry, std::string_view metric);
+
+/// Mechanisms by name, in the order in which they are listed, and the way to those that somebody describes in a file.
+struct Catalog : std::vector<CatalogEntry> {
+  using vector::vector;
+  /// The mechanism of a file's text; `path` is for messages. Null: there are none from files.
+  /// Throws InputError "FILE:LINE:COL: ..." where the text describes no mechanism.
+  CatalogEntry (*from_text)(const std::string& text, const std::string& path) = nullptr;
+  /// The reference of such files, as Markdown.
+  std::string (*file_reference)() = nullptr;
+};
 
 /// The entry of that name, in capitals or small letters, or nullptr.
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name);

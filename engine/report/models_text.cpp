@@ -23,14 +23,25 @@ std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
                      curve.name, curve.description, curve.start, curve.end, chart.name, origin);
 }
 
-/// The responses, by which metric where there is one.
-std::string responses_text(const ModelDescription& model) {
+/// The responses, by which metric where there is one, and whether it is the usual one.
+std::string responses_text(const ModelDescription& model, bool usual) {
   std::string text = "\nresponses";
   if (!model.metric.empty()) text += fmt::format(" by [solver] metric = \"{}\"", model.metric);
-  text += model.metric == "published" ? ", which a study without the key has\n" : "\n";
+  text += usual ? ", which a study without the key has\n" : "\n";
   for (const Response& response : model.responses) {
     text += fmt::format("  {:<20} {:>4} {}\n", response.name, si_unit(response.dimension), response.description);
   }
+  return text;
+}
+
+/// Joints and mobility of a mechanism from a file.
+std::string mechanism_text(const CatalogEntry& entry) {
+  const ModelDescription& model = entry.description;
+  if (model.structure.empty()) return {};
+  std::string text = "\njoints and frames at home, in the base frame\n" + model.structure + "\nmobility\n";
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : model.geometry) geometry.push_back(parameter.published);
+  for (const std::string& line : entry.build(geometry, 0)->mobility()) text += "  " + line + "\n";
   return text;
 }
 
@@ -52,6 +63,7 @@ std::string model_text(const CatalogEntry& entry) {
     text += fmt::format("  {:<16} {:>8.6g} {:<4} {}\n", parameter.name, parameter.published / unit.si, unit.name,
                         parameter.description);
   }
+  text += mechanism_text(entry);
   if (!model.fidelities.empty()) {
     text += "\nfidelity (choose it in [mechanism]; the first is the default)\n";
     for (const std::string& fidelity : model.fidelities) text += "  " + fidelity + "\n";
@@ -78,8 +90,8 @@ std::string model_text(const CatalogEntry& entry) {
   for (const Factor& factor : model.factors) {
     text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
   }
-  text += responses_text(model);
-  if (entry.by_platform) text += responses_text(entry.by_platform->description);
+  text += responses_text(model, entry.other_metric != nullptr);
+  if (entry.other_metric) text += responses_text(entry.other_metric->description, false);
   text += "\ndetails (given by `poesy evaluate`)\n";
   for (const Detail& detail : model.details) {
     text += fmt::format("  {:<20} {:>4} {}\n", detail.name, detail.components.size(), detail.description);

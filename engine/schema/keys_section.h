@@ -27,9 +27,12 @@ class StudyValue {
   /// `name` is the value's full name for messages: "errors.linear.sigma".
   StudyValue(const toml::node& node, std::string name, const Place& section, const StudyTables& tables);
 
-  const Place& place() const { return place_; }          ///< Where it stands.
-  bool is_text() const { return node_->is_string(); }    ///< Whether it is a text in quotes.
-  bool is_section() const { return node_->is_table(); }  ///< Whether it is a table.
+  const std::string& full_name() const { return name_; }  ///< For messages.
+  const Place& place() const { return place_; }           ///< Where it stands.
+  bool is_text() const { return node_->is_string(); }     ///< Whether it is a text in quotes.
+  bool is_section() const { return node_->is_table(); }   ///< Whether it is a table.
+  /// Whether it is true or false; empty for any other value.
+  std::optional<bool> boolean() const { return node_->value_exact<bool>(); }
 
   std::string text() const;  ///< A text in quotes.
   /// An integer within these bounds, both included.

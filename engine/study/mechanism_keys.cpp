@@ -1,20 +1,49 @@
 #include "engine/base/text.h"
+#include "engine/study/study.h"
 #include "engine/study/study_kind.h"
+#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
+
+constexpr std::size_t kMostBytes = 1 << 20;
+
+void take_entry(const CatalogEntry* entry, MechanismChoice& choice) {
+  choice.entry = entry;
+  for (const GeometryParameter& parameter : entry->description.geometry) {
+    choice.geometry.push_back(parameter.published);
+  }
+}
 
 void read_model(const StudyValue& value, Study& study, const Reading& reading) {
   const std::string written = value.text();
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : reading.catalog) known.push_back(entry.description.name);
-  study.mechanism.entry = find(reading.catalog, written);
-  if (study.mechanism.entry == nullptr) {
+  const CatalogEntry* const entry = find(reading.catalog, written);
+  if (entry == nullptr) {
     value.fail("is '" + printable(written) + "', which is unknown", suggestion(lower_case(written), known));
   }
-  for (const GeometryParameter& parameter : study.model().geometry) {
-    study.mechanism.geometry.push_back(parameter.published);
-  }
+  take_entry(entry, study.mechanism);
+}
+
+void read_file(const StudyValue& value, Study& study, const Reading& reading) {
+  reading.root.section("mechanism").refuse("model", "a mechanism from a file");
+  if (reading.catalog.from_text == nullptr) value.fail("cannot be read here", "name a model");
+  MechanismText file{.name = value.text(), .text = {}, .entry = {}};
+  const bool kept = reading.mechanism_text != nullptr;
+  const std::string path = kept ? file.name : beside_study(reading.root, file.name);
+  file.text = kept ? *reading.mechanism_text : read_text(path, "mechanism", kMostBytes);
+  file.entry = std::make_shared<const CatalogEntry>(reading.catalog.from_text(file.text, path));
+  take_entry(file.entry.get(), study.mechanism);
+  study.mechanism.file = std::move(file);
+}
+
+std::string model_line(const Study& study) {
+  return study.mechanism.file ? "" : "model = " + in_quotes(study.model().name) + "\n";
+}
+
+std::string file_line(const Study& study) {
+  return study.mechanism.file ? "file = " + in_quotes(study.mechanism.file->name) + "\n" : "";
 }
 
 void read_geometry(const StudyValue& value, Study& study, const Reading&) {
@@ -66,10 +95,17 @@ const StudyRows& mechanism_keys() {
       .meaning = "The mechanism and its geometry.",
       .rows = {
           StudyRow{.name = "model",
-                   .value = {.type = "text", .text = [](const Study& study) { return in_quotes(study.model().name); }},
+                   .value = {.type = "text"},
                    .missing = "write model = \"NAME\"; 'poesy models' lists the names",
                    .meaning = "Name of the mechanism; 'poesy models' lists them.",
-                   .reader = read_model},
+                   .reader = read_model,
+                   .lines = model_line},
+          StudyRow{.name = "file",
+                   .value = {.type = "text"},
+                   .usual = "",
+                   .meaning = "Instead of model: a mechanism's file, relative to the study's folder.",
+                   .reader = read_file,
+                   .lines = file_line},
           StudyRow{.name = "geometry",
                    .value = {.type = "table"},
                    .usual = "as published",
@@ -103,7 +139,9 @@ StudyTables mechanism_tables() {
 void read_mechanism(Study& study, const Reading& reading) {
   const StudySection section = reading.root.require("mechanism").section();
   study.mechanism.place = section.place();
-  read_keys(mechanism_keys(), section, study, reading);
+  section.allow();
+  if (!section.find("file")) static_cast<void>(section.require("model"));
+  read_keys(mechanism_keys(), section, study, reading, Extent::partial);
 }
 
 }  // namespace poesy

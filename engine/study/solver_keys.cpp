@@ -15,7 +15,10 @@ constexpr std::int64_t kVersion = 1;
 
 void read_format(const StudyValue& value, Study&, const Reading&) {
   if (value.text() == kFormat) return;
-  value.fail("is '" + printable(value.text()) + "'", "a study has format = \"poesy-study\"");
+  value.fail("is '" + printable(value.text()) + "'",
+             value.text() == "poesy-mechanism"
+                 ? "this is a mechanism's file, of which 'poesy template FILE' makes a study"
+                 : "a study has format = \"poesy-study\"");
 }
 
 void read_version(const StudyValue& value, Study&, const Reading&) {
@@ -45,7 +48,7 @@ void require_metric(std::string_view key, const Study& study, const Reading& rea
 void read_metric(const StudyValue& value, Study& study, const Reading& reading) {
   require_metric("metric", study, reading);
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "metric").value.words);
-  if (known[value.word(known)] == "platform") study.mechanism.entry = study.mechanism.entry->by_platform.get();
+  study.mechanism.entry = &by_metric(*study.mechanism.entry, known[value.word(known)]);
 }
 
 /// A point of the platform: three lengths.
@@ -117,7 +120,7 @@ std::vector<StudyRow> solver_rows() {
                                     "by how far points of the platform are moved: a length, whatever the unit and the "
                                     "frame"},
                                    {"published", "as in the paper: radians against metres, at the base's origin"}}},
-               .usual = "`\"published\"`",
+               .usual = "`\"published\"`, for mechanisms from files `\"platform\"`",
                .meaning = "How mismatch of angle is weighed against mismatch of position where limbs work against each "
                           "other; only for models that have such a mismatch.",
                .reader = read_metric,

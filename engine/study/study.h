@@ -20,9 +20,16 @@
 
 namespace poesy {
 
+/// A mechanism's file.
+struct MechanismText {
+  std::string name;                           ///< as the study has it, relative to the study's folder
+  std::string text;                           ///< all that stands in it
+  std::shared_ptr<const CatalogEntry> entry;  ///< made of the text
+};
+
 /// Which mechanism, with the value of every geometry parameter in the order of its description (SI).
 struct MechanismChoice {
-  const CatalogEntry* entry = nullptr;  ///< of the catalog, which must outlive the study
+  const CatalogEntry* entry = nullptr;  ///< of the catalog, which must outlive the study, or of `file`
   std::vector<double> geometry;         ///< SI, in the order of the description
   std::size_t fidelity = 0;             ///< position among the model's fidelities, 0 where it offers no choice
   Place place;                          ///< of the section, for messages about the geometry as a whole
@@ -31,6 +38,8 @@ struct MechanismChoice {
   /// Of the platform's metric; empty: the model's own.
   std::vector<PlatformPoint> points = {};
   Place points_place = {};  ///< for messages about the points
+  /// Where somebody described the mechanism; nothing for those of the catalog.
+  std::optional<MechanismText> file = std::nullopt;
 };
 
 /// How each error source is distributed.

@@ -157,11 +157,11 @@ Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, 
 }
 
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
-                    const StudyKinds& kinds) {
+                    const StudyKinds& kinds, const std::string* mechanism_text) {
   check_lines(text, path);
   const toml::table table = parse(text, path);
   const StudySection root(table, "", {path, 1, 1}, kinds.tables);
-  Study study = study_from({root, catalog, kinds, use});
+  Study study = study_from({root, catalog, kinds, use, mechanism_text});
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   if (use == StudyUse::run) check_error_bounds(root, study, *model);
   return study;

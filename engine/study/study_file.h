@@ -22,9 +22,10 @@ struct StudyKinds;
 /// A pose file named by the study is found relative to the study's folder.
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds);
 
-/// The same for a study's text; `path` names it in messages.
+/// The same for a study's text; `path` names it in messages. mechanism_text: of the file that the study names, instead
+/// of what stands there now; null: the file is read.
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
-                    const StudyKinds& kinds);
+                    const StudyKinds& kinds, const std::string* mechanism_text = nullptr);
 
 /// The study with every default filled in, as TOML that reads back to the same study.
 std::string resolved_text(const Study& study);

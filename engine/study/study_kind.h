@@ -32,6 +32,8 @@ struct Reading {
   const Catalog& catalog;    ///< of mechanisms
   const StudyKinds& kinds;   ///< of studies
   StudyUse use;              ///< how much must be there
+  /// What a study that is kept beside its mechanism's file says; null: the file is read.
+  const std::string* mechanism_text = nullptr;
 };
 
 /// The scope of tables whose rows need the value alone.
@@ -152,6 +154,8 @@ void read_solver(Study& study, const Reading& reading);
 
 /// What errors of this dimension have that have no distribution of their own.
 Distribution usual_distribution(const StudySection& root, Dimension dimension);
+/// A file named by the study, relative to the study's folder.
+std::string beside_study(const StudySection& section, const std::string& file);
 /// A factor set, "all", or a list of names without repetition.
 std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescription& model);
 /// The text of `name`, which must not be among those that are taken; `usual` where there is none.

@@ -36,7 +36,10 @@ std::string fidelity_keys(const TemplateLines& lines, const Study& shown) {
 
 std::string mechanism_section(const TemplateLines& lines, const Study& shown) {
   const ModelDescription& model = shown.model();
-  std::string text = "\n[mechanism]\n" + lines.explained("mechanism", "model", "model = " + in_quotes(model.name)) +
+  const std::string& file = shown.mechanism.entry->file;
+  std::string text = "\n[mechanism]\n" +
+                     (file.empty() ? lines.explained("mechanism", "model", "model = " + in_quotes(model.name))
+                                   : lines.explained("mechanism", "file", "file = " + in_quotes(file))) +
                      fidelity_keys(lines, shown);
   if (model.geometry.empty()) return text;
   text += "\n" + lines.explained("mechanism", "geometry", "# [mechanism.geometry]");
@@ -116,7 +119,7 @@ std::string sets_comment(const ModelDescription& model) {
 std::string template_text(const CatalogEntry& entry, const StudyKind& kind, const StudyKinds& kinds) {
   const TemplateLines lines(kinds.tables);
   Study shown;
-  shown.mechanism.entry = entry.by_platform ? entry.by_platform.get() : &entry;
+  shown.mechanism.entry = &by_metric(entry, "platform");
   shown.analysis.kind = &kind;
   POESY_EXPECTS(kind.no_template == nullptr || !kind.no_template(shown.model()));
   return head(lines, shown) + mechanism_section(lines, shown) + "\n[poses]\n" + charts_comment(shown.model()) +

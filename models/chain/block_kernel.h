@@ -1,7 +1,9 @@
 #pragma once
 
+#include "models/chain/block_kernel_meeting.h"
 #include "models/chain/block_kernel_metric.h"
 #include "models/chain/block_kernel_passes.h"
+#include "models/chain/block_kernel_platform.h"
 
 namespace poesy::chain {
 
@@ -33,6 +35,15 @@ void map_block(const KernelChain& chain, const KernelSamples& samples, const Ker
                const KernelOutcome& outcome, double* scratch) {
   with_kernel<T>(
       chain, [&](auto kernel) { typename decltype(kernel)::Type(chain, samples, {}, {}, outcome, scratch).map(map); });
+}
+
+/// Finds how the platform moves in a block.
+template <class T>
+void move_platform_block(const KernelChain& chain, const KernelSamples& samples, const KernelPlatform& platform,
+                         const KernelOutcome& outcome, double* scratch) {
+  with_kernel<T>(chain, [&](auto kernel) {
+    typename decltype(kernel)::Type(chain, samples, {}, {}, outcome, scratch).move_platform(platform);
+  });
 }
 
 }  // namespace poesy::chain

@@ -111,6 +111,8 @@ class BlockKernel {
   void solve();
   /// All samples to first order.
   void map(const KernelMap& map);
+  /// How the platform moves, for all samples.
+  void move_platform(const KernelPlatform& platform);
 
  private:
   static constexpr std::size_t kLanes = T::kLanes;
@@ -120,6 +122,7 @@ class BlockKernel {
   static constexpr double kRestingStep = 1e-12;
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
+  static constexpr double kMet = 1e-9;         ///< limbs meet that are closer, relative to the reach
   static constexpr double kShortLength = 1e3;  ///< times the tolerance
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
@@ -179,6 +182,8 @@ class BlockKernel {
   template <KernelPass pass>
   std::size_t run(std::size_t count, std::uint32_t rounds);
   void load_all(std::size_t first = 0);
+  void load_constant_segments();
+  void map_rows(const KernelMap& map);
   template <std::size_t errors>
   void add_mapped(const KernelMap& map, std::size_t first, std::size_t v);
   template <std::size_t known_rows>
@@ -214,6 +219,26 @@ class BlockKernel {
   void weigh();
   template <class Diagonal>
   T step_length(const T* x, Diagonal diagonal) const;
+
+  // block_kernel_meeting.h: solves of limbs that can meet.
+  struct Meeting {
+    T matrix[6][6];  ///< lower triangle of the sum of P_i
+    T pull[6];       ///< sum of P_i xi_i
+    T margin{1.0};   ///< by how much the smallest pivot is above rounding
+  };
+  void solve_meeting();
+  Verdict meeting_round();
+  void project_limb(std::size_t i, Meeting& all);
+  T solve_platform(Meeting& all, T* motion) const;
+  void step_limb(std::size_t i, const T* motion, T& left2, T& length2);
+  void carry_residual_of_pairs();
+  Screw by_metric(const Screw& screw) const;
+  T weight(int row, int column) const;
+
+  // block_kernel_platform.h: how the platform moves.
+  Screw platform_motion(const KernelPlatform& platform, std::size_t at);
+  void displace(const Screw& motion, const double* point, bool is_linear, double* rows, double* length) const;
+  void finish_platform(const KernelPlatform& platform, const Screw& motion, std::size_t at) const;
 
   // block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;
@@ -255,7 +280,8 @@ class BlockKernel {
   Motion* segment_;
   Motion* pose_;
   Screw* column_;
-  Screw* row_;  ///< W times each column, which as published is the column itself
+  Screw* row_;   ///< W times each column, which as published is the column itself
+  Screw* rows_;  ///< of limbs that meet: L^-1 C^T W
   Screw* mu_;
   Screw* pull_;
   T* joint_;

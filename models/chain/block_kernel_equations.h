@@ -59,6 +59,12 @@ void BlockKernel<T, Shape, Measure>::gauss_newton_matrix() {
       }
     }
   }
+  for (std::size_t n = 0; n < chain_.idle_freedoms; ++n) {
+    const double* idle = chain_.idle + n * size;
+    for (std::size_t a = 0; a < size; ++a) {
+      for (std::size_t b = 0; b < size; ++b) matrix[a * size + b] = matrix[a * size + b] + T(idle[a] * idle[b]);
+    }
+  }
 }
 
 /// M = N + how the logarithm bends - how the columns turn.

@@ -122,6 +122,12 @@ void BlockKernel<T, Shape, Measure>::limb_pose(std::size_t i, Motion& pose) {
         g.r[3 * row] = madd(s, y, c * x);
         g.r[3 * row + 1] = nmadd(s, x, c * y);
       }
+      if (const double advance = chain_.joint[j].advance; advance != 0.0) {
+        for (int k = 0; k < 3; ++k) {
+          column.v[k] = madd(T(advance), axis[k], column.v[k]);
+          g.p[k] = madd(T(advance) * q, axis[k], g.p[k]);
+        }
+      }
     } else {
       for (int k = 0; k < 3; ++k) {
         column.w[k] = T(0.0);

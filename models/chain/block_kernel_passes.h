@@ -24,6 +24,7 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
   pose_ = reinterpret_cast<Motion*>(take_lanes(12 * chain.limbs));
   column_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
   row_ = Measure::kWeighted ? reinterpret_cast<Screw*>(take_lanes(6 * chain.joints)) : column_;
+  rows_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.joints));
   mu_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.pairs));
   pull_ = reinterpret_cast<Screw*>(take_lanes(6 * chain.limbs));
   joint_ = reinterpret_cast<T*>(take_lanes(chain.joints));
@@ -44,16 +45,23 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
 }
 
 template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::solve() {
+void BlockKernel<T, Shape, Measure>::load_constant_segments() {
   for (std::size_t s = 0; s < chain_.segments; ++s) {
     const KernelPiece& piece = chain_.piece[chain_.segment[s].first_piece];
     if (chain_.segment[s].pieces != 1 || piece.is_error) continue;
     for (int n = 0; n < 9; ++n) segment_[s].r[n] = T(piece.constant[n]);
     for (int n = 0; n < 3; ++n) segment_[s].p[n] = T(piece.constant[9 + n]);
   }
+}
+
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::solve() {
+  load_constant_segments();
   for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
   const std::uint32_t cap = options_.max_iterations;
-  if constexpr (Measure::kWeighted) {
+  if (chain_.meets) {
+    solve_meeting();
+  } else if constexpr (Measure::kWeighted) {
     solve_by_metric();
   } else if (options_.method == KernelMethod::gauss_newton) {
     run<KernelPass::published>(samples_.count, cap);
@@ -67,8 +75,9 @@ void BlockKernel<T, Shape, Measure>::solve() {
   for (std::size_t at = 0; at < samples_.count; at += kLanes) judge(at);
 }
 
+/// The rows of a map, of all samples, into memory_.
 template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
+void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map) {
   load_all(samples_.count - samples_.count % kLanes);  // whole batches are read where they are
   for (std::size_t first = 0; first < map.rows; first += kMapRows) {
     for (std::size_t row = first; row < first + kMapRows; ++row) {
@@ -80,6 +89,11 @@ void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
     for (; v + kMapErrors <= samples_.varied; v += kMapErrors) add_mapped<kMapErrors>(map, first, v);
     for (; v < samples_.varied; ++v) add_mapped<1>(map, first, v);
   }
+}
+
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::map(const KernelMap& map) {
+  map_rows(map);
   for (std::size_t at = 0; at < samples_.count; at += kLanes) {
     map.rows == kMapRows ? finish_mapped<kMapRows>(map, at) : finish_mapped<0>(map, at);
   }

@@ -8,7 +8,7 @@ namespace poesy::chain {
 
 template <>
 Kernels kernels<simd::Isa::POESY_KERNEL_ISA>() {
-  return {solve_block<simd::Lanes>, map_block<simd::Lanes>};
+  return {solve_block<simd::Lanes>, map_block<simd::Lanes>, move_platform_block<simd::Lanes>};
 }
 
 }  // namespace poesy::chain

@@ -7,8 +7,9 @@ namespace poesy::chain {
 
 /// What there is for an instruction set.
 struct Kernels {
-  KernelSolve solve;   ///< of a block
-  KernelMapBlock map;  ///< of a block
+  KernelSolve solve;                 ///< of a block
+  KernelMapBlock map;                ///< of a block
+  KernelMovePlatform move_platform;  ///< of a block
 };
 
 /// Of one instruction set. Each is a translation unit of its own, block_kernels.cpp compiled for that set; see

@@ -13,6 +13,7 @@ namespace poesy::chain {
 /// A passive joint, in the order of the limbs, base to platform.
 struct KernelJoint {
   bool revolute;   ///< else prismatic
+  double advance;  ///< m per rad along the axis of a helical joint, which is revolute otherwise; else 0
   double nominal;  ///< displacement from which a solve starts unless told otherwise (rad, m)
 };
 
@@ -56,9 +57,12 @@ struct KernelChain {
   const KernelSegment* segment;  ///< [joints + limbs], limb by limb
   std::size_t segments;          ///< how many
   const KernelPiece* piece;      ///< of all segments
+  const double* idle;            ///< [idle_freedoms x joints] see NormalEquations::idle()
+  std::size_t idle_freedoms;     ///< how many
   const double* metric;          ///< [36] W by rows, see Metric; null: as published
   double origin[3];              ///< of the platform (m), by a metric
-  double reach;                  ///< m, by a metric
+  double reach;                  ///< m, by a metric, or where limbs meet
+  bool meets;                    ///< whether all limbs can hold the platform in one place, whatever the errors
 };
 
 /// Samples in rows: entry (v, b) at v * stride + b.
@@ -102,6 +106,21 @@ struct KernelMap {
   const double* norms;     ///< [3 x rows x rows] upper triangles R: each response is |R y|; null as published
 };
 
+/// How the platform moves, each limb's by xi_i = log(g_i g_nominal^-1) and the platform by the mean xi of these, so
+/// that it is displaced by D = exp(xi). In the base frame (m).
+struct KernelPlatform {
+  double nominal[12];           ///< where it is without errors: R by rows, then p
+  double tool[3];               ///< a second point that is reported; with has_tool
+  bool has_tool;                ///< whether there is one
+  const double* displacements;  ///< [joints x stride] of passive joints, solved; not used with a map
+  const KernelMap* map;         ///< to first order: of xi by its components, 6 rows; null: solved
+  double* responses;            ///< [platform_rows() x stride]
+};
+
+/// Rows of a platform's motion: x, y, z of D p - p, theta_x, theta_y, theta_z of D's rotation vector, their lengths
+/// position and rotation, and x, y, z and length of the tool's displacement.
+static constexpr std::size_t platform_rows(bool has_tool) { return has_tool ? 12 : 8; }
+
 enum class KernelMethod {
   gauss_newton,  ///< as published
   newton,
@@ -144,7 +163,7 @@ static constexpr std::size_t kernel_memory(const KernelChain& chain) {
 static constexpr std::size_t kernel_scratch(const KernelChain& chain, const KernelSamples& samples) {
   const std::size_t rows = samples.varied + chain.joints + kernel_memory(chain) + 2 + 1;
   const std::size_t motions = 12 * (chain.segments + chain.limbs);
-  const std::size_t screws = 6 * (2 * chain.joints + chain.pairs + chain.limbs);
+  const std::size_t screws = 6 * (3 * chain.joints + chain.pairs + chain.limbs);
   const std::size_t equations = 3 * chain.joints * chain.joints + 6 * chain.joints;
   return rows * kernel_capacity(samples.count) + (motions + screws + equations) * kMostLanes;
 }
@@ -152,6 +171,10 @@ static constexpr std::size_t kernel_scratch(const KernelChain& chain, const Kern
 /// Maps a block to first order. scratch: as for a solve.
 using KernelMapBlock = void (*)(const KernelChain&, const KernelSamples&, const KernelMap&, const KernelOutcome&,
                                 double* scratch);
+
+/// Finds how the platform moves. Of the outcome only the stride counts. scratch: as for a solve.
+using KernelMovePlatform = void (*)(const KernelChain&, const KernelSamples&, const KernelPlatform&,
+                                    const KernelOutcome&, double* scratch);
 
 /// Solves a block. scratch: aligned to 64 bytes.
 using KernelSolve = void (*)(const KernelChain&, const KernelSamples&, const KernelStart&, const KernelOptions&,

@@ -84,16 +84,20 @@ BlockSolver::BlockSolver(const ParallelChain& chain, const SolverOptions& option
 }
 
 void BlockSolver::prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
-                          std::span<const FrameEntry> varied, double range, const Metric* metric) {
+                          std::span<const FrameEntry> varied, double range, const Metric* metric,
+                          const PlatformPoints* platform) {
   POESY_EXPECTS(displacements.size() == chain_->joints() && errors.size() == chain_->frames());
   varied_ = varied.size();
   metric_ = metric;
+  platform_ = platform;
   const bool is_linear = fidelity_ == Fidelity::first_order;
-  if (metric != nullptr || is_linear) {
+  if (metric != nullptr || is_linear || chain_->idle > 0 || chain_->meets) {
     is_singular_ = !first_order_.prepare(displacements, metric == nullptr ? nullptr : &metric->W);
   }
   if (is_linear) {
-    if (!is_singular_) find_map(errors, varied);
+    if (is_singular_) return;
+    find_map(errors, varied);
+    if (platform != nullptr) find_platform_map(errors, varied);
     return;
   }
   find_segments(displacements, errors, varied);
@@ -102,7 +106,7 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   // bound is lower, because near a singular pose a step may leave a thousand times its square.
   const double last = metric == nullptr ? std::sqrt(options_.tolerance / 10.0) : std::sqrt(options_.tolerance) / 100.0;
   options_.last_step = std::max(last, 1e-10);
-  if (metric != nullptr && !is_singular_) find_slopes(errors, varied);
+  if ((metric != nullptr || chain_->meets) && !is_singular_) find_slopes(errors, varied);
   fits_.clear();
   fits_made_ = 0;
   if (options_.method == KernelMethod::newton && varied.size() == 1 && range > 0.0) {
@@ -126,10 +130,10 @@ void BlockSolver::find_segments(std::span<const double> displacements, std::span
       const Joint& next = limb.joints[j];
       if (next.actuated) {
         lie::Transform<double> motion;
-        move_joint(next.type, displacements[joint], motion);
+        move_joint(next, displacements[joint], motion);
         add_piece(motion);
       } else {
-        joints_.push_back({next.type == JointType::revolute, displacements[joint]});
+        joints_.push_back({next.type == JointType::revolute, next.advance, displacements[joint]});
         close_segment();
       }
       ++joint;
@@ -244,6 +248,28 @@ void BlockSolver::find_map(std::span<const FrameError<double>> errors, std::span
   for (std::size_t r = 0; r < 3; ++r) copy(residual_space_.norms()[r], map_norms_, r * rows * rows);
 }
 
+/// Adds how the platform moves, the mean of its limbs', under this much of an error to first order.
+void BlockSolver::add_platform_motion(const FrameEntry& entry, double error, std::span<double> xi) {
+  first_order_.effect(entry, effect_, slope_);
+  lie::Screw<double> sum = first_order_.motion(entry);
+  for (std::size_t j = 0; j < slope_.size(); ++j) sum += slope_[j] * first_order_.column(j);
+  const double share = error / static_cast<double>(limbs_.size());
+  for (std::size_t k = 0; k < 6; ++k) xi[k] += share * sum[static_cast<Eigen::Index>(k)];
+}
+
+void BlockSolver::find_platform_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {
+  effect_.resize(6 * pairs_.size());
+  slope_.resize(chain_->passive_joints());
+  platform_constant_.assign(6, 0.0);
+  platform_effects_.assign(6 * varied.size(), 0.0);
+  for (std::size_t v = 0; v < varied.size(); ++v) {
+    add_platform_motion(varied[v], 1.0, std::span(platform_effects_).subspan(6 * v, 6));
+  }
+  for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
+    add_platform_motion(entry, error, platform_constant_);
+  });
+}
+
 /// Fits a range of the varied error; where the fit is not as good as it should be, fits its halves.
 void BlockSolver::predict_starts(double center, double half_width, int splits_left) {
   const double tail = fit_starts(center, half_width);
@@ -291,7 +317,22 @@ double BlockSolver::fit_starts(double center, double half_width) {
 
 void BlockSolver::solve(std::span<const double> values, std::size_t count, bool wants_residuals) {
   if (fidelity_ == Fidelity::first_order) return map(values, count, wants_residuals);
-  run(values, count, options_, nullptr);
+  if (platform_ == nullptr) return run(values, count, options_, nullptr);
+  platform_displacements_.resize(joints_.size() * kernel_capacity(count));
+  run(values, count, options_, platform_displacements_.data());
+  const KernelChain chain = kernel_chain();
+  const KernelSamples samples{values.data(), varied_, count, count};
+  move_platform(chain, samples, nullptr, make_room(chain, samples));
+}
+
+void BlockSolver::move_platform(const KernelChain& chain, const KernelSamples& samples, const KernelMap* map,
+                                double* scratch) {
+  platform_responses_.resize(platform_->rows() * kernel_capacity(samples.count));
+  KernelPlatform platform{
+      {}, {}, platform_->tool.has_value(), platform_displacements_.data(), map, platform_responses_.data()};
+  std::ranges::copy(rows_of(platform_->platform), platform.nominal);
+  if (platform.has_tool) std::copy_n(platform_->tool->data(), 3, platform.tool);
+  kernels_.move_platform(chain, samples, platform, outcome(nullptr), scratch);
 }
 
 void BlockSolver::map(std::span<const double> values, std::size_t count, bool wants_residuals) {
@@ -304,12 +345,16 @@ void BlockSolver::map(std::span<const double> values, std::size_t count, bool wa
     std::ranges::fill(iterations_, 1u);
     std::ranges::fill(delta_mu_, kNaN);
     std::ranges::fill(responses_, kNaN);
+    if (platform_ != nullptr) platform_responses_.assign(platform_->rows() * kernel_capacity(count), kNaN);
     return;
   }
   const bool maps_residuals = metric_ == nullptr || wants_residuals;
   const KernelMap map{map_constant_.size(), map_constant_.data(), map_effects_.data(),
                       maps_residuals ? map_delta_mu_.data() : nullptr, map_norms_.data()};
   kernels_.map(chain, samples, map, outcome(nullptr), scratch);
+  if (platform_ == nullptr) return;
+  const KernelMap of_platform{6, platform_constant_.data(), platform_effects_.data(), nullptr, nullptr};
+  move_platform(chain, samples, &of_platform, scratch);
 }
 
 void BlockSolver::run(std::span<const double> values, std::size_t count, const KernelOptions& options,
@@ -319,13 +364,13 @@ void BlockSolver::run(std::span<const double> values, std::size_t count, const K
   const KernelSamples samples{values.data(), varied_, count, count};
   double* scratch = make_room(chain, samples);
   KernelStart start{fits_.data(), fits_.size(), nullptr, nullptr, nullptr};
-  if (metric_ != nullptr && !is_singular_) {
+  if ((metric_ != nullptr || chain_->meets) && !is_singular_) {
     start.slopes = slopes_.data();
     start.inverse = inverse_.data();
     start.diagonal = diagonal_.data();
   }
   kernels_.solve(chain, samples, start, options, outcome(displacements), scratch);
-  if (metric_ == nullptr || !is_singular_) return;
+  if ((metric_ == nullptr && !chain_->meets) || !is_singular_) return;
   // Errors make an equation that is singular without them regular, but not meaningful.
   std::ranges::replace_if(
       status_, [](SolveStatus status) { return status != SolveStatus::non_finite; }, SolveStatus::singular);
@@ -359,9 +404,12 @@ KernelChain BlockSolver::kernel_chain() const {
                     segments_.data(),
                     segments_.size(),
                     pieces_.data(),
+                    first_order_.idle().data(),
+                    chain_->idle,
                     nullptr,
                     {},
-                    0.0};
+                    chain_->reach(),
+                    chain_->meets};
   if (metric_ == nullptr) return chain;
   chain.metric = metric_->W.data();  // symmetric: by columns is by rows
   std::copy_n(metric_->origin.data(), 3, chain.origin);

@@ -8,6 +8,7 @@
 #include "models/chain/first_order.h"
 #include "models/chain/limb.h"
 #include "models/chain/metric.h"
+#include "models/chain/platform_motion.h"
 #include "models/chain/residual_space.h"
 
 namespace poesy::chain {
@@ -27,10 +28,12 @@ class BlockSolver {
   BlockSolver(const ParallelChain& chain, const SolverOptions& options, Fidelity fidelity = Fidelity::exact);
 
   /// Fixes what the samples of the next calls have in common: nominal displacements of all joints (rad, m), constant
-  /// errors [frames], the entries that vary, and by which metric (null: as published; it must outlive the solves).
+  /// errors [frames], the entries that vary, by which metric (null: as published; it must outlive the solves), and what
+  /// is reported of the platform's motion (null: nothing; likewise).
   /// Newton's starts are predicted with one varied entry and a range, and by a metric always.
   void prepare(std::span<const double> displacements, std::span<const FrameError<double>> errors,
-               std::span<const FrameEntry> varied, double range, const Metric* metric = nullptr);
+               std::span<const FrameEntry> varied, double range, const Metric* metric = nullptr,
+               const PlatformPoints* platform = nullptr);
 
   /// values: [varied x count], row-major. To first order a singular pose makes every sample singular, and by a metric
   /// there are residuals only where they are wanted.
@@ -40,6 +43,8 @@ class BlockSolver {
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
   /// A row of the last block's responses: angular, linear, max; by a metric gap, angular, linear.
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
+  /// A row of the platform's motion in the last block; see platform_rows().
+  std::span<const double> platform(std::size_t row) const { return row_of(platform_responses_, row); }
   /// Of the last block, for each sample.
   std::span<const SolveStatus> status() const { return std::span(status_).first(count_); }
   /// Of the last block, for each sample.
@@ -61,6 +66,9 @@ class BlockSolver {
   double fit_starts(double center, double half_width);
   void run(std::span<const double> values, std::size_t count, const KernelOptions& options, double* displacements);
   void map(std::span<const double> values, std::size_t count, bool wants_residuals);
+  void add_platform_motion(const FrameEntry& entry, double error, std::span<double> xi);
+  void find_platform_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
+  void move_platform(const KernelChain& chain, const KernelSamples& samples, const KernelMap* map, double* scratch);
   double* make_room(const KernelChain& chain, const KernelSamples& samples);
   KernelOutcome outcome(double* displacements);
   KernelChain kernel_chain() const;
@@ -78,6 +86,11 @@ class BlockSolver {
   std::vector<double> diagonal_;  ///< [joints], of J^T W J itself
   std::vector<double> effect_;    ///< [6 pairs], of one error
   std::vector<double> slope_;     ///< [joints], of one error
+  const PlatformPoints* platform_ = nullptr;
+  std::vector<double> platform_effects_;        ///< [varied x 6] to first order
+  std::vector<double> platform_constant_;       ///< [6]
+  std::vector<double> platform_displacements_;  ///< [joints x stride]
+  std::vector<double> platform_responses_;      ///< [platform rows x stride]
   // To first order, in coordinates of the residual space; see KernelMap.
   std::vector<double> map_effects_;   ///< [varied x rows]
   std::vector<double> map_constant_;  ///< [rows], of constant errors

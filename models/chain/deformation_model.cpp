@@ -1,7 +1,9 @@
 #include "models/chain/deformation_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 
 #include "engine/base/contract.h"
 #include "models/chain/deformation_solver.h"
@@ -11,24 +13,36 @@ namespace {
 
 constexpr std::size_t kResponses = 3;
 
+/// What a pose is without errors.
+struct Nominal {
+  std::vector<double> displacements;       ///< [all joints]
+  std::optional<Metric> metric;            ///< there
+  std::optional<PlatformPoints> platform;  ///< there
+};
+
 class DeformationEvaluator final : public Evaluator {
  public:
   DeformationEvaluator(const DeformationModel& model, const SolverOptions& options, Fidelity fidelity)
       : model_(&model), solver_(model.chain, options, fidelity), errors_(model.chain.frames()) {
+    std::vector<std::size_t> first_frame;
     std::size_t frame = 0;
     for (const Limb& limb : model.chain.limbs) {
-      first_frame_.push_back(frame);
+      first_frame.push_back(frame);
       frame += limb.frames();
     }
+    for (const ErrorSlot& slot : model.slots) entries_.push_back({first_frame[slot.limb] + slot.frame, slot.component});
   }
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
-    POESY_EXPECTS(outcomes.responses.size() == kResponses * samples.count);
-    prepare(samples);
-    solver_.solve(samples.values, samples.count, !outcomes.details.empty());
-    for (std::size_t r = 0; r < kResponses; ++r) {
-      std::ranges::copy(solver_.response(r), outcomes.responses.data() + r * samples.count);
-    }
+    const Nominal& nominal = nominal_at(samples.pose);
+    const std::size_t deformations = model_->chain.meets ? 0 : kResponses;
+    const std::size_t motions = nominal.platform ? nominal.platform->rows() : 0;
+    POESY_EXPECTS(outcomes.responses.size() == (deformations + motions) * samples.count);
+    const std::span<const double> values = prepare(nominal, samples);
+    solver_.solve(values, samples.count, !outcomes.details.empty());
+    double* to = outcomes.responses.data();
+    for (std::size_t r = 0; r < deformations; ++r, to += samples.count) std::ranges::copy(solver_.response(r), to);
+    for (std::size_t r = 0; r < motions; ++r, to += samples.count) std::ranges::copy(solver_.platform(r), to);
     std::ranges::copy(solver_.status(), outcomes.status.begin());
     std::ranges::copy(solver_.iterations(), outcomes.iterations.begin());
     if (outcomes.details.empty()) return;
@@ -38,28 +52,70 @@ class DeformationEvaluator final : public Evaluator {
   }
 
  private:
-  void prepare(const SampleBlock& samples) {
+  /// Poses that are remembered: inverse kinematics may be iterative, and samples come back to a pose.
+  static constexpr std::size_t kMostPoses = 1024;
+
+  const Nominal& nominal_at(std::span<const double> pose) {
+    if (nominal_.size() > kMostPoses) nominal_.clear();
+    const auto [place, is_new] = nominal_.try_emplace(std::vector<double>(pose.begin(), pose.end()));
+    if (!is_new) return place->second;
+    const std::vector<double> displacements = model_->joint_displacements(pose);
+    place->second = {displacements, model_->metric(displacements), model_->platform_points(displacements)};
+    return place->second;
+  }
+
+  double& entry_of(std::size_t factor) {
+    return errors_[entries_[factor].frame][static_cast<Eigen::Index>(entries_[factor].component)];
+  }
+
+  /// Prepares the solver; returns the values of the entries that vary: those of the samples, unless several factors
+  /// add to an entry, or are scaled.
+  std::span<const double> prepare(const Nominal& nominal, const SampleBlock& samples) {
+    varies_.assign(entries_.size(), false);
+    for (const FactorIndex factor : samples.varied) varies_[factor.value] = true;
     for (auto& error : errors_) error.setZero();
-    for (std::size_t f = 0; f < model_->slots.size(); ++f) {
-      const ErrorSlot& slot = model_->slots[f];
-      errors_[first_frame_[slot.limb] + slot.frame][static_cast<Eigen::Index>(slot.component)] = samples.errors[f];
+    for (std::size_t f = 0; f < entries_.size(); ++f) {
+      if (!varies_[f]) entry_of(f) += model_->slots[f].scale * samples.errors[f];
     }
     varied_.clear();
+    bool is_plain = true;
     for (const FactorIndex factor : samples.varied) {
-      const ErrorSlot& slot = model_->slots[factor.value];
-      varied_.push_back({first_frame_[slot.limb] + slot.frame, slot.component});
+      const FrameEntry& entry = entries_[factor.value];
+      is_plain = is_plain && model_->slots[factor.value].scale == 1.0 && entry_of(factor.value) == 0.0 &&
+                 std::ranges::find(varied_, entry) == varied_.end();
+      if (std::ranges::find(varied_, entry) == varied_.end()) varied_.push_back(entry);
     }
-    const std::vector<double> displacements = model_->joint_displacements(samples.pose);
-    metric_ = model_->metric(displacements);
-    solver_.prepare(displacements, errors_, varied_, samples.range, metric_ ? &*metric_ : nullptr);
+    const double scale = samples.varied.size() == 1 ? model_->slots[samples.varied[0].value].scale : 1.0;
+    const auto values = is_plain ? samples.values : combined(samples);
+    solver_.prepare(nominal.displacements, errors_, varied_, samples.range * std::abs(scale),
+                    nominal.metric ? &*nominal.metric : nullptr, nominal.platform ? &*nominal.platform : nullptr);
+    return values;
+  }
+
+  /// Of each entry that varies: what is constant, and what every factor adds.
+  std::span<const double> combined(const SampleBlock& samples) {
+    values_.clear();
+    for (const FrameEntry& entry : varied_) {
+      values_.resize(values_.size() + samples.count, errors_[entry.frame][static_cast<Eigen::Index>(entry.component)]);
+    }
+    for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+      const std::size_t factor = samples.varied[v].value;
+      const auto row = static_cast<std::size_t>(std::ranges::find(varied_, entries_[factor]) - varied_.begin());
+      for (std::size_t b = 0; b < samples.count; ++b) {
+        values_[row * samples.count + b] += model_->slots[factor].scale * samples.values[v * samples.count + b];
+      }
+    }
+    return values_;
   }
 
   const DeformationModel* model_;
   BlockSolver solver_;
-  std::optional<Metric> metric_;          ///< at the last block's pose
-  std::vector<std::size_t> first_frame_;  ///< per limb
+  std::map<std::vector<double>, Nominal> nominal_;  ///< by pose
+  std::vector<FrameEntry> entries_;                 ///< [F] of each factor
+  std::vector<bool> varies_;                        ///< [F]
   std::vector<FrameError<double>> errors_;
   std::vector<FrameEntry> varied_;
+  std::vector<double> values_;  ///< [varied entries x B]
 };
 
 }  // namespace
@@ -96,6 +152,42 @@ std::vector<Response> responses_by_metric() {
            "mismatch of position at the platform's origin between pairs of limbs, root mean square over the pairs"}};
 }
 
+std::vector<Response> platform_responses(const PlatformReport& report) {
+  constexpr auto kLength = Dimension::length;
+  constexpr auto kAngle = Dimension::angle;
+  std::vector<Response> list{{"x", kLength, "displacement of the platform's origin along the base's x"},
+                             {"y", kLength, "displacement of the platform's origin along the base's y"},
+                             {"z", kLength, "displacement of the platform's origin along the base's z"},
+                             {"theta_x", kAngle, "rotation of the platform about the base's x (rotation vector)"},
+                             {"theta_y", kAngle, "rotation of the platform about the base's y (rotation vector)"},
+                             {"theta_z", kAngle, "rotation of the platform about the base's z (rotation vector)"},
+                             {"position", kLength, "length of the displacement of the platform's origin"},
+                             {"rotation", kAngle, "angle by which the platform is rotated"}};
+  if (!report.tool) return list;
+  list.insert(list.end(), {{"tip_x", kLength, "displacement of the tool's point along the base's x"},
+                           {"tip_y", kLength, "displacement of the tool's point along the base's y"},
+                           {"tip_z", kLength, "displacement of the tool's point along the base's z"},
+                           {"tip_position", kLength, "length of the displacement of the tool's point"}});
+  return list;
+}
+
+std::vector<Response> responses_of(const DeformationModel& model) {
+  std::vector<Response> list;
+  if (!model.chain.meets) list = model.points.empty() ? deformation_responses() : responses_by_metric();
+  if (!model.platform) return list;
+  for (Response& response : platform_responses(*model.platform)) list.push_back(std::move(response));
+  return list;
+}
+
+std::optional<PlatformPoints> DeformationModel::platform_points(std::span<const double> displacements) const {
+  if (!platform) return std::nullopt;
+  const Limb& limb = chain.limbs.front();
+  PlatformPoints reported{forward_kinematics<double>(limb, limb.home, displacements.first(limb.joints.size()),
+                                                   [](std::size_t, const lie::Screw<double>&) {})};
+  if (platform->tool) reported.tool = reported.platform.R * *platform->tool + reported.platform.p;
+  return reported;
+}
+
 std::optional<Metric> DeformationModel::metric(std::span<const double> displacements) const {
   if (points.empty()) return std::nullopt;
   return platform_metric(chain, points, displacements);
@@ -110,7 +202,7 @@ double effect_rounding(const DeformationModel& model, std::size_t response) {
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
   const double reach = model.chain.reach();
   if (model.points.empty()) return kRounding * std::max(1.0, reach);
-  if (responses_by_metric()[response].dimension == Dimension::length) return kRounding * reach;
+  if (responses_of(model)[response].dimension == Dimension::length) return kRounding * reach;
   return kRounding * reach / radius_of(model.points);
 }
 

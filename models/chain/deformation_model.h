@@ -13,14 +13,21 @@
 
 namespace poesy::chain {
 
-/// Which entry of which fixed frame's error a factor is.
+/// Which entry of which fixed frame's error a factor adds to: entry += scale x error.
 struct ErrorSlot {
   std::size_t limb;       ///< counts from 0
   std::size_t frame;      ///< 0 .. joints of the limb
   std::size_t component;  ///< of [omega; v]: 0-2 angular, 3-5 linear
+  double scale = 1.0;     ///< without unit
 };
 
-/// A parallel chain as a model whose responses are its limbs' comprehensive deformations.
+/// What of the platform's own displacement is a response.
+struct PlatformReport {
+  std::optional<lie::Vector3<double>> tool = {};  ///< a point beside the origin, in the platform's frame (m)
+};
+
+/// A parallel chain as a model whose responses are its limbs' comprehensive deformations, the displacement of its
+/// platform, or both.
 struct DeformationModel {
   ParallelChain chain;           ///< perfect limbs
   std::vector<ErrorSlot> slots;  ///< [F], one per factor
@@ -28,7 +35,10 @@ struct DeformationModel {
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
   /// Points of the platform, in its frame (m), by whose displacement mismatch is judged; none: as published.
   std::vector<lie::Vector3<double>> points = {};
+  std::optional<PlatformReport> platform = {};  ///< none: only its deformation is a response
 
+  /// What is reported of the platform there; none: only the deformation.
+  std::optional<PlatformPoints> platform_points(std::span<const double> displacements) const;
   /// At nominal displacements [all joints]; none: as published.
   std::optional<Metric> metric(std::span<const double> displacements) const;
 };
@@ -43,6 +53,13 @@ std::vector<Response> deformation_responses();
 /// |omega|, linear_deformation of |v + omega x o| with o the platform's nominal origin. Each is the norm of something
 /// that is linear in small errors, so that their mean squares add.
 std::vector<Response> responses_by_metric();
+
+/// The platform's displacement D under errors, in the base frame and in the order of platform_rows(): x, y, z and
+/// position of its origin, theta_x, theta_y, theta_z and rotation, tip_x, tip_y, tip_z and tip_position of the tool.
+std::vector<Response> platform_responses(const PlatformReport& report);
+
+/// All responses of a model: of its deformation, then of its platform.
+std::vector<Response> responses_of(const DeformationModel& model);
 
 /// deformation_max or, by a metric, the gap; and the rounding of its solves (see rounding_level()).
 DeformationMeasure deformation_measure(const DeformationModel& model);

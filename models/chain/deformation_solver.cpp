@@ -59,6 +59,7 @@ Deformation DeformationSolver::solve(std::span<const lie::Transform<double>> fra
   POESY_EXPECTS(displacements.size() == chain_->joints());
   POESY_EXPECTS(delta_mu.size() == previous_.size());
   evaluate(frames, displacements, delta_mu);
+  equations_.hold_idle(columns_, metric == nullptr ? nullptr : &metric->W);
   double smallest = std::numeric_limits<double>::infinity();
   int flat = 0;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {

@@ -8,6 +8,7 @@
 #include "models/chain/deformation_solver.h"
 #include "models/chain/first_order.h"
 #include "models/chain/passive_condition.h"
+#include "models/chain/platform_motion.h"
 
 namespace poesy::chain {
 namespace {
@@ -26,7 +27,7 @@ std::vector<lie::Transform<double>> frames_with(const DeformationModel& model, s
     std::vector<FrameError<double>> of_limb(limb.frames(), FrameError<double>::Zero());
     for (std::size_t f = 0; f < model.slots.size(); ++f) {
       const ErrorSlot& slot = model.slots[f];
-      if (slot.limb == i) of_limb[slot.frame][static_cast<Eigen::Index>(slot.component)] = errors[f];
+      if (slot.limb == i) of_limb[slot.frame][static_cast<Eigen::Index>(slot.component)] += slot.scale * errors[f];
     }
     for (std::size_t j = 0; j < limb.frames(); ++j) frames.push_back(frame_with_error(limb, j, of_limb[j]));
   }
@@ -83,6 +84,17 @@ std::vector<double> responses_of(std::span<const double> delta_mu) {
   return responses;
 }
 
+/// Those that the model has.
+std::vector<double> deformations(const DeformationModel& model, const Metric* metric,
+                                 std::span<const double> delta_mu) {
+  if (model.chain.meets) return {};
+  return metric == nullptr ? responses_of(delta_mu) : responses_by(*metric, delta_mu);
+}
+
+void append(const std::vector<double>& responses, SolveTrace& trace) {
+  trace.responses.insert(trace.responses.end(), responses.begin(), responses.end());
+}
+
 /// The position of the limb's first frame among all.
 std::size_t first_frame(const ParallelChain& chain, std::size_t limb) {
   std::size_t first = 0;
@@ -105,12 +117,19 @@ SolveTrace first_order_trace(const DeformationModel& model, std::span<const doub
   std::vector<double> delta_mu(6 * model.chain.pairs.size(), 0.0);
   std::vector<double> effect(delta_mu.size());
   std::vector<double> moved(model.chain.passive_joints());
+  lie::Screw<double> xi = lie::Screw<double>::Zero();
   for (std::size_t f = 0; f < errors.size() && trace.status == SolveStatus::converged; ++f) {
     const ErrorSlot& slot = model.slots[f];
-    first_order.effect({first_frame(model.chain, slot.limb) + slot.frame, slot.component}, effect, moved);
-    for (std::size_t n = 0; n < effect.size(); ++n) delta_mu[n] += errors[f] * effect[n];
+    const FrameEntry entry{first_frame(model.chain, slot.limb) + slot.frame, slot.component};
+    const double error = slot.scale * errors[f];
+    first_order.effect(entry, effect, moved);
+    for (std::size_t n = 0; n < effect.size(); ++n) delta_mu[n] += error * effect[n];
+    lie::Screw<double> sum = first_order.motion(entry);
+    for (std::size_t a = 0; a < moved.size(); ++a) sum += moved[a] * first_order.column(a);
+    xi += error / static_cast<double>(model.chain.limbs.size()) * sum;
   }
-  trace.responses = metric ? responses_by(*metric, delta_mu) : responses_of(delta_mu);
+  trace.responses = deformations(model, metric ? &*metric : nullptr, delta_mu);
+  if (const auto points = model.platform_points(displacements)) append(platform_displacement(xi, *points, true), trace);
   return trace;
 }
 
@@ -137,10 +156,16 @@ SolveTrace deformation_trace(const DeformationModel& model, std::span<const doub
          largest_step(types, JointType::prismatic, iteration.step), condition(model.chain, displacements, metric)});
   };
   DeformationSolver solver(model.chain, options);
-  const Deformation end = solver.solve(frames_with(model, errors), displacements, delta_mu, metric, observe);
+  const std::optional<PlatformPoints> points = model.platform_points(displacements);
+  const std::vector<lie::Transform<double>> frames = frames_with(model, errors);
+  const Deformation end = solver.solve(frames, displacements, delta_mu, metric, observe);
   trace.status = end.status;
   trace.iterations = end.iterations;
-  trace.responses = metric ? responses_by(*metric, delta_mu) : responses_of(delta_mu);
+  trace.responses = deformations(model, metric, delta_mu);
+  if (points) {
+    const lie::Screw<double> xi = mean_motion(model.chain, frames, displacements, points->platform);
+    append(platform_displacement(xi, *points, false), trace);
+  }
   return trace;
 }
 

@@ -30,13 +30,14 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
     for (std::size_t j = 0; j < limb.joints.size(); ++j, ++joint) {
       from_error_[frame++] = lie::adjoint(g);
       g = g * limb.home[j];
-      if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j].type, g);
-      move_joint(limb.joints[j].type, displacements[joint], g);
+      if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j], g);
+      move_joint(limb.joints[j], displacements[joint], g);
     }
     // The last frame's error is inverted and multiplies from the right.
     from_error_[frame++] = -lie::adjoint(g * limb.home.back());
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;
+  equations_.hold_idle(columns_, W);
   return equations_.solve(columns_, no_mismatch_, W);
 }
 

@@ -35,6 +35,9 @@ class FirstOrder {
   std::size_t limb_of_joint(std::size_t joint) const { return limb_of_joint_[joint]; }
   /// @}
 
+  /// See NormalEquations::idle().
+  std::span<const double> idle() const { return equations_.idle(); }
+
   /// (J^T W J)^-1 and the diagonal of J^T W J: [passive joints x passive joints] and [passive joints]. Precondition:
   /// prepare() returned true.
   void matrix(std::span<double> inverse, std::span<double> diagonal);

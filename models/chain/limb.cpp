@@ -14,6 +14,16 @@ std::size_t sum_over(const std::vector<Limb>& limbs, Count count) {
 
 }  // namespace
 
+std::vector<LimbPair> pairs_of(std::size_t limbs) {
+  if (limbs == 2) return {{1, 0}};
+  if (limbs == 3) return {{1, 0}, {2, 1}, {0, 2}};
+  std::vector<LimbPair> pairs;
+  for (std::size_t k = 1; k < limbs; ++k) {
+    for (std::size_t i = 0; i < k; ++i) pairs.push_back({k, i});
+  }
+  return pairs;
+}
+
 std::size_t Limb::passive_joints() const {
   return static_cast<std::size_t>(
       std::count_if(joints.begin(), joints.end(), [](const Joint& joint) { return !joint.actuated; }));

@@ -15,8 +15,9 @@ enum class JointType {
 
 /// A joint with one degree of freedom.
 struct Joint {
-  JointType type;  ///< how it moves
-  bool actuated;   ///< else passive: it gives way to errors
+  JointType type;        ///< how it moves
+  bool actuated;         ///< else passive: it gives way to errors
+  double advance = 0.0;  ///< of a revolute joint: m per rad along its axis; not zero in a helical joint
 };
 
 /// A serial limb in local product-of-exponentials form (Du et al. 2022, Eq. 13): n joints between n + 1 fixed
@@ -38,10 +39,19 @@ struct LimbPair {
   std::size_t i;  ///< the limb it is compared with, g_i
 };
 
+/// Which limbs are compared: those in turn, (2,1), (3,2), (1,3), of two or three limbs, as published; every two of
+/// more, so that the order of the limbs does not matter.
+std::vector<LimbPair> pairs_of(std::size_t limbs);
+
 /// Limbs that hold one platform, and the pairs in which their poses are compared.
 struct ParallelChain {
   std::vector<Limb> limbs;      ///< in the order in which displacements stand
   std::vector<LimbPair> pairs;  ///< in the order in which residuals stand
+  /// Freedoms of passive joints that move no platform, as the spin of a leg between two spherical joints.
+  std::size_t idle = 0;
+  /// Whether errors move the platform and deform nothing: as many passive joints, but for idle freedoms, as the limbs
+  /// have ways to disagree.
+  bool meets = false;
 
   /// Of all limbs together.
   /// @{
@@ -61,6 +71,9 @@ using FrameError = lie::Screw<T>;
 struct FrameEntry {
   std::size_t frame;      ///< among all frames, limb by limb
   std::size_t component;  ///< of [omega; v]
+
+  /// Whether they are the same entry.
+  bool operator==(const FrameEntry&) const = default;
 };
 
 /// Delta g of Eq. 26: rotation exp(omega) and translation v as they stand, which is not the exponential of a screw.
@@ -81,10 +94,11 @@ lie::Transform<T> frame_with_error(const Limb& limb, std::size_t j, const FrameE
 
 /// g * exp(zeta q) for a joint about or along z (Eq. 14): touches two columns of R, or p.
 template <class T>
-void move_joint(JointType type, T displacement, lie::Transform<T>& g) {
+void move_joint(const Joint& joint, T displacement, lie::Transform<T>& g) {
   using std::cos;
   using std::sin;
-  if (type == JointType::prismatic) {
+  if (joint.advance != 0.0) g.p += T(joint.advance) * displacement * g.R.col(2);
+  if (joint.type == JointType::prismatic) {
     g.p += displacement * g.R.col(2);
     return;
   }
@@ -98,13 +112,13 @@ void move_joint(JointType type, T displacement, lie::Transform<T>& g) {
 /// The joint's screw in the base frame when g is its own frame: Ad(g) zeta (Eqs. 35-39), a column of the spatial
 /// Jacobian.
 template <class T>
-lie::Screw<T> spatial_column(JointType type, const lie::Transform<T>& g) {
+lie::Screw<T> spatial_column(const Joint& joint, const lie::Transform<T>& g) {
   const lie::Vector3<T> axis = g.R.col(2);
   lie::Screw<T> column;
-  if (type == JointType::prismatic) {
+  if (joint.type == JointType::prismatic) {
     column << lie::Vector3<T>::Zero(), axis;
   } else {
-    column << axis, g.p.cross(axis);
+    column << axis, g.p.cross(axis) + T(joint.advance) * axis;
   }
   return column;
 }
@@ -118,8 +132,8 @@ lie::Transform<T> forward_kinematics(const Limb& limb, std::span<const lie::Tran
   std::size_t passive = 0;
   for (std::size_t j = 0; j < limb.joints.size(); ++j) {
     const Joint& joint = limb.joints[j];
-    if (!joint.actuated) on_passive(passive++, spatial_column(joint.type, g));
-    move_joint(joint.type, displacements[j], g);
+    if (!joint.actuated) on_passive(passive++, spatial_column(joint, g));
+    move_joint(joint, displacements[j], g);
     g = g * frames[j + 1];
   }
   return g;

@@ -1,11 +1,17 @@
 #include "models/chain/normal_equations.h"
 
+#include <Eigen/SVD>
+#include <cmath>
 #include <limits>
 
 namespace poesy::chain {
 
 NormalEquations::NormalEquations(const ParallelChain& chain)
-    : pairs_(chain.pairs), limbs_(chain.limbs.size()), size_(chain.passive_joints()) {
+    : pairs_(chain.pairs),
+      limbs_(chain.limbs.size()),
+      size_(chain.passive_joints()),
+      idle_freedoms_(chain.idle),
+      reach_(chain.reach()) {
   coupling_.assign(limbs_ * limbs_, 0.0);
   for (const LimbPair& pair : pairs_) {
     coupling_[pair.i * limbs_ + pair.i] += 1.0;
@@ -52,7 +58,35 @@ void NormalEquations::assemble_matrix(std::span<const lie::Screw<double>> column
     const double* coupling = coupling_.data() + limb_of_[row] * limbs_;
     for (std::size_t column = 0; column <= row; ++column) {
       matrix_[row * size_ + column] = coupling[limb_of_[column]] * weighted_[row].dot(columns[column]);
+      for (std::size_t n = 0; n < idle_.size(); n += size_) {
+        matrix_[row * size_ + column] += idle_[n + row] * idle_[n + column];
+      }
     }
+  }
+}
+
+void NormalEquations::hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W) {
+  idle_.clear();
+  if (idle_freedoms_ == 0) return;
+  // Of the loops, each limb against the first; lengths in units of the reach.
+  const auto size = static_cast<Eigen::Index>(size_);
+  Eigen::MatrixXd loops = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(limbs_ - 1), size);
+  for (Eigen::Index column = 0; column < size; ++column) {
+    const auto at = static_cast<std::size_t>(column);
+    lie::Screw<double> screw = columns[at];
+    if (!screw.head<3>().isZero(0.0)) screw.tail<3>() /= reach_;
+    for (std::size_t limb = 1; limb < limbs_; ++limb) {
+      const auto row = 6 * static_cast<Eigen::Index>(limb - 1);
+      if (limb_of_[at] == limb) loops.block<6, 1>(row, column) = screw;
+      if (limb_of_[at] == 0) loops.block<6, 1>(row, column) = -screw;
+    }
+  }
+  weigh(columns, W);
+  double diagonal = 0.0;
+  for (std::size_t a = 0; a < size_; ++a) diagonal += weighted_[a].dot(columns[a]) / static_cast<double>(size_);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(loops, Eigen::ComputeFullV);
+  for (Eigen::Index n = size - static_cast<Eigen::Index>(idle_freedoms_); n < size; ++n) {
+    for (Eigen::Index a = 0; a < size; ++a) idle_.push_back(std::sqrt(diagonal) * svd.matrixV()(a, n));
   }
 }
 

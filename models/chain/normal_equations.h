@@ -21,6 +21,12 @@ class NormalEquations {
   bool solve(std::span<const lie::Screw<double>> columns, std::span<const double> delta_mu,
              const lie::Matrix6<double>* W = nullptr);
 
+  /// Keeps idle freedoms where they are from now on: those directions of these columns [passive joints] that move no
+  /// platform, as many as the chain has, are added to J^T W J.
+  void hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
+  /// What is added is the sum over these rows r of r^T r, [idle x passive joints].
+  std::span<const double> idle() const { return idle_; }
+
   /// Solves once more for another delta_mu, after a solve that returned true.
   void solve_again(std::span<const double> delta_mu);
 
@@ -42,6 +48,9 @@ class NormalEquations {
   std::vector<double> coupling_;      ///< [limbs x limbs]: how often, and with which sign, two limbs meet in a pair
   std::size_t limbs_;
   std::size_t size_;
+  std::size_t idle_freedoms_;
+  double reach_;
+  std::vector<double> idle_;    ///< [idle x size]
   std::vector<double> matrix_;  ///< [size x size], lower triangle; after factor(): L below, 1 / D on the diagonal
   std::vector<lie::Screw<double>> pull_;      ///< per limb, the signed sum of the residuals it takes part in
   std::vector<lie::Screw<double>> weighted_;  ///< W times each column

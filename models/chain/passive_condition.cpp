@@ -70,7 +70,7 @@ double passive_condition(const ParallelChain& chain, std::span<const double> dis
   const auto& values = svd.singularValues();
   const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
   const double largest = values[0];
-  const double smallest = values[values.size() - 1];
+  const double smallest = values[values.size() - 1 - static_cast<Eigen::Index>(chain.idle)];
   return smallest > rounding * largest ? largest / smallest : std::numeric_limits<double>::infinity();
 }
 

@@ -33,6 +33,9 @@ inline constexpr double kSincSeries[] = {1.0,           -1.0 / 6.0,        1.0 /
 inline constexpr double kCoscSeries[] = {
     1.0 / 2.0,       -1.0 / 24.0,        1.0 / 720.0,         -1.0 / 40320.0,
     1.0 / 3628800.0, -1.0 / 479001600.0, 1.0 / 87178291200.0, -1.0 / 20922789888000.0};
+inline constexpr double kCubeSeries[] = {
+    1.0 / 6.0,        -1.0 / 120.0,        1.0 / 5040.0,          -1.0 / 362880.0,
+    1.0 / 39916800.0, -1.0 / 6227020800.0, 1.0 / 1307674368000.0, -1.0 / 355687428096000.0};
 /// (1 - theta/2 cot(theta/2)) / theta^2 below 0.75 rad.
 inline constexpr double kCotSeries[] = {1.0 / 12.0,
                                         1.0 / 720.0,
@@ -74,6 +77,29 @@ inline ExpCoefficients<T> exp_coefficients(T theta_squared) {
     c.b = select(large, (T(1.0) - cosine) / safe, c.b);
   }
   return c;
+}
+
+/// left_jacobian(w) = I + b hat(w) + c hat(w)^2: b = (1 - cos(theta)) / theta^2, c = (theta - sin(theta)) / theta^3.
+template <class T>
+struct LeftJacobianCoefficients {
+  T b;  ///< (1 - cos(theta)) / theta^2
+  T c;  ///< (theta - sin(theta)) / theta^3
+};
+
+/// At this theta^2, for theta < 100.
+template <class T>
+inline LeftJacobianCoefficients<T> left_jacobian_coefficients(T theta_squared) {
+  const T x = theta_squared;
+  LeftJacobianCoefficients<T> coefficients{polynomial(x, kCoscSeries), polynomial(x, kCubeSeries)};
+  const auto large = x > T(0.25);
+  if (any(large)) {
+    const T safe = select(large, x, T(1.0));
+    const T theta = sqrt(safe);
+    const auto [sine, cosine] = sin_cos(theta);
+    coefficients.b = select(large, (T(1.0) - cosine) / safe, coefficients.b);
+    coefficients.c = select(large, (theta - sine) / (safe * theta), coefficients.c);
+  }
+  return coefficients;
 }
 
 /// r = exp(w), with theta_squared = |w|^2; its inverse where `c.a` has the other sign.

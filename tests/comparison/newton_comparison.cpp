@@ -318,7 +318,7 @@ const CatalogEntry& entry_by(const std::string& metric) {
   const CatalogEntry& published = *find(registry(), "2upr-rpu");
   if (metric == "published") return published;
   if (metric != "platform") throw std::invalid_argument("METRIC must be published or platform");
-  return *published.by_platform;
+  return *published.other_metric;
 }
 
 int run(std::size_t pairs, std::uint64_t seed, std::size_t threads, const std::string& metric) {

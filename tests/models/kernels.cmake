@@ -22,5 +22,5 @@ poesy_test(simd_test LABELS property SOURCES models/simd/isa_test.cpp models/sim
 set_source_files_properties(models/simd/math_test.cpp PROPERTIES COMPILE_OPTIONS -ffp-contract=off)
 
 poesy_test(kernel_test LABELS property SOURCES models/chain/block_lanes_test.cpp models/chain/block_solver_test.cpp
-           models/chain/metric_test.cpp
+           models/chain/metric_test.cpp models/chain/platform_motion_test.cpp
            LINKS poesy_models)

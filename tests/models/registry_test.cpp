@@ -34,7 +34,7 @@ std::vector<Choice> choices() {
   std::vector<Choice> list;
   for (const CatalogEntry& entry : registry()) {
     add_fidelities(entry, list);
-    if (entry.by_platform) add_fidelities(*entry.by_platform, list);
+    if (entry.other_metric) add_fidelities(*entry.other_metric, list);
   }
   return list;
 }

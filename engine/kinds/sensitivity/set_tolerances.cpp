@@ -26,6 +26,7 @@ namespace poesy {
 namespace {
 
 constexpr const char* kPoses = "confirm_poses";
+constexpr const char* kMechanism = "confirm_mechanism.toml";
 constexpr const char* kEqualEffect = "confirm_equal_effect";
 constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
 /// Four standard deviations of a normal error reach as far as its part is large.
@@ -46,12 +47,14 @@ void write_poses(const std::string& folder, const StoredResult& result) {
 /// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
 Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   // The file of poses, if there is one, is known by a path relative to a study that may be gone; the result has them.
-  Study study = study_of_text(result.study_text, "the study in the result", catalog, StudyUse::evaluate);
+  Study study =
+      study_of_text(result.study_text, "the study in the result", catalog, StudyUse::evaluate, &result.mechanism_text);
   if (study.analysis.factors.size() != result.factors.size()) {
     throw FileError("the study in the result", "does not fit the result's factors", "run the study again");
   }
   study.analysis.kind = &find_kind("monte-carlo")->study;
   study.analysis.asked.reset();
+  if (study.mechanism.file) study.mechanism.file->name = kMechanism;
   const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
   if (along_file) study.poses.select = PoseSelection::Select::file;
   study.mechanism.compared.reset();
@@ -90,6 +93,8 @@ std::string write_study(const std::string& folder, const std::string& name, cons
   if (!caveat.empty()) writer.write("# " + caveat + "\n");
   writer.write(resolved_text(study));
   writer.commit();
+  if (study.mechanism.file)
+    write_text((std::filesystem::path(folder) / kMechanism).string(), study.mechanism.file->text);
   return path;
 }
 

@@ -14,11 +14,6 @@ using Select = PoseSelection::Select;
 
 constexpr std::size_t kCurvePoints = 201;
 
-/// A file named by the study, relative to the study's folder.
-std::string beside_study(const StudySection& section, const std::string& file) {
-  return (std::filesystem::path(section.place().file).parent_path() / file).string();
-}
-
 /// Two ends, the lower one first: of a range of values, or when a part of a curve starts and ends.
 Range read_range(const StudyValue& value, Dimension dimension) {
   const bool is_time = dimension == Dimension::time;
@@ -357,6 +352,10 @@ std::vector<StudyRow> poses_rows() {
 }
 
 }  // namespace
+
+std::string beside_study(const StudySection& section, const std::string& file) {
+  return (std::filesystem::path(section.place().file).parent_path() / file).string();
+}
 
 const StudyRows& poses_keys() {
   static const StudyRows keys{

@@ -35,7 +35,7 @@ Catalog catalog() {
   by_platform.build = [](auto, auto) { return std::make_unique<FakeByPlatform>(); };
   by_platform.build_with_points = [](auto, auto, auto) { return std::make_unique<FakeByPlatform>(); };
   two.front().description.metric = "published";
-  two.front().by_platform = std::make_shared<const CatalogEntry>(std::move(by_platform));
+  two.front().other_metric = std::make_shared<const CatalogEntry>(std::move(by_platform));
   return two;
 }
 

@@ -1,0 +1,267 @@
+#include "engine/report/mechanism_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "engine/report/html/page.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kPanel = 320.0;  // pixels
+constexpr double kMargin = 34.0;  // around a panel's drawing
+constexpr double kGlyph = 6.0;    // half of a joint's glyph
+constexpr double kTick = 15.0;    // half of an axis
+constexpr double kHead = 26.0;    // for the title
+constexpr double kLegend = 44.0;  // below the panels
+constexpr std::array<std::string_view, 6> kColours{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
+
+struct Pixel {
+  double x;  ///< to the right
+  double y;  ///< downwards
+};
+
+/// A direction from which one looks.
+struct SketchView {
+  std::string_view name;
+  SketchVector right;  ///< what goes to the right, in the base frame
+  SketchVector up;     ///< what goes upwards
+};
+
+const std::array<SketchView, 4>& views() {
+  static const double third = std::sqrt(1.0 / 6.0);
+  static const std::array<SketchView, 4> all{
+      SketchView{"front: x to the right, z up", {1, 0, 0}, {0, 0, 1}},
+      SketchView{"side: y to the right, z up", {0, 1, 0}, {0, 0, 1}},
+      SketchView{"above: x to the right, y up", {1, 0, 0}, {0, 1, 0}},
+      SketchView{"in space", {std::sqrt(0.5), std::sqrt(0.5), 0}, {third, -third, 2 * third}}};
+  return all;
+}
+
+double dot(const SketchVector& a, const SketchVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+std::vector<SketchVector> all_points(const Sketch& sketch) {
+  std::vector<SketchVector> points{sketch.platform, {0, 0, 0}};
+  points.insert(points.end(), sketch.tool.begin(), sketch.tool.end());
+  for (const auto& limb : sketch.limbs) {
+    for (const SketchedJoint& joint : limb) points.push_back(joint.point);
+  }
+  return points;
+}
+
+/// Middle of the points in a view, and the larger of their extents.
+struct ViewExtent {
+  Pixel middle;
+  double size;
+};
+
+ViewExtent extent(std::span<const SketchVector> points, const SketchView& view) {
+  Pixel least{HUGE_VAL, HUGE_VAL};
+  Pixel most{-HUGE_VAL, -HUGE_VAL};
+  for (const SketchVector& point : points) {
+    least = {std::min(least.x, dot(point, view.right)), std::min(least.y, dot(point, view.up))};
+    most = {std::max(most.x, dot(point, view.right)), std::max(most.y, dot(point, view.up))};
+  }
+  return {{(least.x + most.x) / 2, (least.y + most.y) / 2}, std::max(most.x - least.x, most.y - least.y)};
+}
+
+std::string line(Pixel a, Pixel b, std::string_view style) {
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", a.x, a.y, b.x, b.y, style);
+}
+
+std::string circle(Pixel at, double radius, std::string_view style) {
+  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>\n", at.x, at.y, radius, style);
+}
+
+std::string path(std::span<const Pixel> points, std::string_view style) {
+  std::string text = "<path d=\"";
+  for (const Pixel& point : points)
+    text += fmt::format("{}{:.1f} {:.1f}", text.back() == '"' ? "M" : "L", point.x, point.y);
+  return text + fmt::format("Z\" {}/>\n", style);
+}
+
+std::string words(Pixel at, std::string_view text, std::string_view attributes = {}) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", at.x, at.y, attributes, escaped(text));
+}
+
+std::string square(Pixel at, double half, std::string_view style) {
+  const std::array<Pixel, 4> corners{Pixel{at.x - half, at.y - half},
+                                     {at.x + half, at.y - half},
+                                     {at.x + half, at.y + half},
+                                     {at.x - half, at.y + half}};
+  return path(corners, style);
+}
+
+std::string diamond(Pixel at, double half, std::string_view style) {
+  const std::array<Pixel, 4> corners{
+      Pixel{at.x - half, at.y}, {at.x, at.y - half}, {at.x + half, at.y}, {at.x, at.y + half}};
+  return path(corners, style);
+}
+
+/// R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in a circle; F: a dot.
+std::string glyph(char type, bool actuated, Pixel at, std::string_view colour) {
+  const std::string style =
+      fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.6\"", actuated ? colour : "#ffffff", colour);
+  const std::string inner =
+      fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"", actuated ? "#ffffff" : colour);
+  constexpr double kArm = 0.7 * kGlyph;
+  switch (type) {
+    case 'P':
+      return square(at, kGlyph, style);
+    case 'H':
+      return diamond(at, 1.3 * kGlyph, style);
+    case 'C':
+      return square(at, kGlyph, style) + circle(at, 0.65 * kGlyph, inner);
+    case 'U':
+      return circle(at, kGlyph, style) + line({at.x - kArm, at.y - kArm}, {at.x + kArm, at.y + kArm}, inner) +
+             line({at.x - kArm, at.y + kArm}, {at.x + kArm, at.y - kArm}, inner);
+    case 'S':
+      return circle(at, kGlyph, style) + circle(at, kGlyph / 2, inner);
+    case 'F':
+      return circle(at, kGlyph / 3, style);
+    default:
+      return circle(at, kGlyph, style);
+  }
+}
+
+/// A view with its place on the page.
+class ViewPanel {
+ public:
+  /// scale: pixels for a metre.
+  ViewPanel(const SketchView& view, const ViewExtent& extent, double scale, Pixel corner)
+      : view_(&view), extent_(extent), scale_(scale), corner_(corner) {}
+
+  Pixel at(const SketchVector& point) const {
+    return {corner_.x + kPanel / 2 + scale_ * (dot(point, view_->right) - extent_.middle.x),
+            corner_.y + kPanel / 2 - scale_ * (dot(point, view_->up) - extent_.middle.y)};
+  }
+
+  std::string drawing(const Sketch& sketch) const {
+    std::string text = words({corner_.x + 8, corner_.y + 16}, view_->name, "fill=\"#5a6270\"");
+    text += base_axes() + ground(sketch) + platform(sketch);
+    for (std::size_t i = 0; i < sketch.limbs.size(); ++i) text += limb(sketch.limbs[i], i);
+    return text;
+  }
+
+ private:
+  std::string base_axes() const {
+    constexpr double kLength = 22.0;
+    std::string text;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      SketchVector end{};
+      end[axis] = kLength / scale_;
+      const Pixel from = at({});
+      const Pixel to = at(end);
+      if (std::hypot(to.x - from.x, to.y - from.y) < 2.0) continue;
+      text += line(from, to, "stroke=\"#8b93a1\" stroke-width=\"1\"");
+      text += words({to.x + 2, to.y - 2}, std::string(1, "xyz"[axis]), "fill=\"#8b93a1\"");
+    }
+    return text;
+  }
+
+  /// The bodies: lines around the first and the last joints, the platform's with its origin.
+  std::string ground(const Sketch& sketch) const {
+    std::vector<Pixel> points;
+    for (const auto& limb : sketch.limbs) points.push_back(at(limb.front().point));
+    return path(points, "fill=\"#8b93a1\" fill-opacity=\"0.10\" stroke=\"#8b93a1\" stroke-dasharray=\"4 3\"");
+  }
+
+  std::string platform(const Sketch& sketch) const {
+    std::vector<Pixel> points;
+    for (const auto& limb : sketch.limbs) points.push_back(at(limb.back().point));
+    std::string text = path(points, "fill=\"#2563a8\" fill-opacity=\"0.10\" stroke=\"#5a6270\" stroke-width=\"1.5\"");
+    for (const SketchVector& tip : sketch.tool) {
+      text += line(at(sketch.platform), at(tip), "stroke=\"#5a6270\" stroke-width=\"1.5\"");
+      text += words({at(tip).x + 5, at(tip).y + 4}, "tool", "fill=\"#5a6270\"");
+    }
+    return text + circle(at(sketch.platform), 2.5, "fill=\"#1d222b\"") +
+           words({at(sketch.platform).x + 5, at(sketch.platform).y - 5}, "P", "fill=\"#1d222b\"");
+  }
+
+  std::string limb(std::span<const SketchedJoint> joints, std::size_t number) const {
+    const std::string_view colour = kColours[number % kColours.size()];
+    std::string text;
+    for (std::size_t j = 1; j < joints.size(); ++j) {
+      text +=
+          line(at(joints[j - 1].point), at(joints[j].point), fmt::format("stroke=\"{}\" stroke-width=\"2.2\"", colour));
+    }
+    for (const SketchedJoint& joint : joints) text += tick(joint, colour);
+    for (const SketchedJoint& joint : joints) text += joint_glyph(joint, colour);
+    const Pixel first = at(joints.front().point);
+    return text + words({first.x - 4, first.y + 20}, std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
+  }
+
+  std::string tick(const SketchedJoint& joint, std::string_view colour) const {
+    if (joint.type == 'S' || joint.type == 'F') return {};
+    const Pixel middle = at(joint.point);
+    const Pixel along{dot(joint.axis, view_->right), -dot(joint.axis, view_->up)};
+    return line({middle.x - kTick * along.x, middle.y - kTick * along.y},
+                {middle.x + kTick * along.x, middle.y + kTick * along.y},
+                fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"6 2 1 2\"", colour));
+  }
+
+  std::string joint_glyph(const SketchedJoint& joint, std::string_view colour) const {
+    const Pixel middle = at(joint.point);
+    std::string text = fmt::format("<g><title>{}</title>\n", escaped(joint.name));
+    if (joint.has_errors) text += circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
+    return text + glyph(joint.type, joint.actuated, middle, colour) + "</g>\n";
+  }
+
+  const SketchView* view_;
+  ViewExtent extent_;
+  double scale_;
+  Pixel corner_;
+};
+
+/// A round length of about a fifth of this one: 1, 2 or 5 times a power of ten.
+double round_length(double size) {
+  const double fifth = size / 5;
+  const double power = std::pow(10.0, std::floor(std::log10(fifth)));
+  const double share = fifth / power;
+  return power * (share < 2 ? 1 : share < 5 ? 2 : 5);
+}
+
+std::string legend(Pixel at, double scale, double size) {
+  const double length = round_length(size);
+  std::string text = line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");
+  text += words({at.x + scale * length + 6, at.y + 4}, fmt::format("{:g} mm", 1e3 * length));
+  double x = at.x + 170;
+  constexpr std::array<std::string_view, 6> kNames{"R", "P", "H", "C", "U", "S"};
+  for (const std::string_view name : kNames) {
+    text += glyph(name.front(), false, {x, at.y}, "#1d222b") + words({x + 11, at.y + 4}, name);
+    x += 40;
+  }
+  text += glyph('P', true, {x, at.y}, "#1d222b") + words({x + 11, at.y + 4}, "actuated");
+  return text + circle({x + 84, at.y}, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"") +
+         words({x + 98, at.y + 4}, "frames with errors");
+}
+
+}  // namespace
+
+std::string mechanism_picture(const Sketch& sketch, std::string_view title) {
+  const std::vector<SketchVector> points = all_points(sketch);
+  double size = 0.0;
+  for (const SketchView& view : views()) size = std::max(size, extent(points, view).size);
+  if (!(size > 0.0)) size = 1.0;
+  const double scale = (kPanel - 2 * kMargin) / size;
+  const double width = 2 * kPanel;
+  const double height = kHead + 2 * kPanel + kLegend;
+  std::string text = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
+      "role=\"img\" "
+      "font-family=\"sans-serif\" font-size=\"12\">\n{3}\n<title>{2}</title>\n<rect width=\"{0:g}\" height=\"{1:g}\" "
+      "fill=\"#ffffff\"/>\n",
+      width, height, escaped(title), kPictureMark);
+  text += words({8, 18}, title, "font-weight=\"bold\" font-size=\"14\"");
+  for (std::size_t v = 0; v < views().size(); ++v) {
+    const SketchView& view = views()[v];
+    const Pixel corner{kPanel * static_cast<double>(v % 2), kHead + kPanel * static_cast<double>(v / 2)};
+    text += ViewPanel(view, extent(points, view), scale, corner).drawing(sketch);
+  }
+  return text + legend({16, height - kLegend / 2}, scale, size) + "</svg>\n";
+}
+
+}  // namespace poesy

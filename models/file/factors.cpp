@@ -1,0 +1,177 @@
+#include "models/file/factors.h"
+
+#include <algorithm>
+
+#include "engine/base/text.h"
+
+namespace poesy::file {
+namespace {
+
+/// Whether a name fits a pattern in which * stands for any characters and ? for one.
+bool fits(std::string_view pattern, std::string_view name) {
+  std::size_t p = 0, n = 0, star = std::string_view::npos, resumed = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      resumed = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p;
+      ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++resumed;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+char axis_of(std::size_t component) { return "xyz"[component % 3]; }
+
+/// "joint S (2 of 3)".
+std::string joint_text(const std::vector<Joint>& joints, std::size_t j) {
+  std::size_t before = 0, all = 0;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (joints[k].name != joints[j].name) continue;
+    ++all;
+    if (k < j) ++before;
+  }
+  const std::string part = all == 1 ? "" : " (" + std::to_string(before + 1) + " of " + std::to_string(all) + ")";
+  return "joint " + joints[j].name + part;
+}
+
+std::string description(const Limb& limb, const ErrorSlot& slot) {
+  const std::size_t last = limb.joints.size();
+  const std::string one = slot.frame == last ? "platform" : joint_text(limb.joints, slot.frame);
+  const std::string other = slot.frame == 0 ? "base" : joint_text(limb.joints, slot.frame - 1);
+  const std::string axes = slot.frame == 0      ? "the base"
+                           : slot.frame == last ? "the platform"
+                                                : "frame " + std::to_string(slot.frame);
+  const std::string kind = slot.component < 3 ? "angular error about " : "linear error along ";
+  return "limb " + std::to_string(slot.limb + 1) + ", " + one + " against " + other + ": " + kind +
+         axis_of(slot.component) + " of " + axes;
+}
+
+/// The error of one entry of a fixed frame. axis: empty for a scalar.
+Factor factor(const Mechanism& mechanism, const ErrorSlot& slot, std::string name, std::string axis) {
+  return {std::move(name),
+          slot.component < 3 ? Dimension::angle : Dimension::length,
+          slot.limb + 1,
+          slot.frame,
+          description(mechanism.limbs[slot.limb], slot),
+          std::move(axis)};
+}
+
+/// All entries of all fixed frames.
+struct FrameErrors {
+  std::vector<Factor> factors;
+  std::vector<ErrorSlot> slots;
+};
+
+FrameErrors frame_errors(const Mechanism& mechanism) {
+  FrameErrors all;
+  for (std::size_t i = 0; i < mechanism.limbs.size(); ++i) {
+    for (std::size_t j = 0; j < mechanism.limbs[i].home.size(); ++j) {
+      for (std::size_t component = 0; component < 6; ++component) {
+        const std::string axis(1, axis_of(component));
+        const std::string name =
+            (component < 3 ? "epsilon_" : "delta_") + std::to_string(i + 1) + "_" + std::to_string(j) + "_" + axis;
+        all.slots.push_back({i, j, component, 1.0});
+        all.factors.push_back(factor(mechanism, all.slots.back(), name, axis));
+      }
+    }
+  }
+  return all;
+}
+
+/// Positions of the factors whose names fit, ascending. Throws where there are none.
+std::vector<std::size_t> fitting(const Reference& pattern, const std::vector<Factor>& factors) {
+  std::vector<std::size_t> found;
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (fits(pattern.name, factors[f].name)) found.push_back(f);
+  }
+  if (!found.empty()) return found;
+  const std::vector<std::string_view> known = names(factors);
+  const std::string_view near = nearest(pattern.name, known);
+  const std::string example = known.empty() ? "there are none" : "they have names like " + std::string(known.front());
+  throw InputError(pattern.place, pattern.key + " '" + printable(pattern.name) + "' fits no error",
+                   near.empty() ? example : "did you mean '" + std::string(near) + "'?");
+}
+
+void add_listed(const std::vector<Reference>& patterns, const FrameErrors& all, Mechanism& mechanism) {
+  std::vector<bool> taken(all.factors.size(), false);
+  for (const Reference& pattern : patterns) {
+    for (const std::size_t f : fitting(pattern, all.factors)) {
+      if (taken[f]) {
+        throw InputError(pattern.place,
+                         pattern.key + " '" + pattern.name + "' names " + all.factors[f].name + " a second time",
+                         "remove it, or write a narrower pattern");
+      }
+      taken[f] = true;
+      mechanism.factors.push_back(all.factors[f]);
+      mechanism.slots.push_back(all.slots[f]);
+    }
+  }
+}
+
+void add_named(const ErrorLines& error, double scale, Mechanism& mechanism) {
+  const std::size_t first = error.limb.value_or(0);
+  const std::size_t last = error.limb.value_or(mechanism.limbs.size() - 1);
+  const bool vector = error.components.size() > 1;
+  for (std::size_t i = first; i <= last; ++i) {
+    for (const std::size_t component : error.components) {
+      const std::string axis = vector ? std::string(1, axis_of(component)) : "";
+      const std::string name =
+          error.name.name + (vector ? "_" + axis : "") + (error.limb ? "" : "_" + std::to_string(i + 1));
+      const ErrorSlot slot{i, error.frame, component, scale};
+      Factor made = factor(mechanism, slot, name, axis);
+      if (!error.description.empty()) made.description = error.description;
+      if (std::ranges::find(mechanism.factors, name, &Factor::name) != mechanism.factors.end()) {
+        throw InputError(error.name.place,
+                         error.name.key + " '" + error.name.name + "' makes a second error '" + name + "'",
+                         "give it a name of its own");
+      }
+      mechanism.factors.push_back(std::move(made));
+      mechanism.slots.push_back(slot);
+    }
+  }
+}
+
+FactorSet set_of(const SetLines& lines, const std::vector<Factor>& factors) {
+  std::vector<bool> in(factors.size(), false);
+  for (const Reference& pattern : lines.patterns) {
+    for (const std::size_t f : fitting(pattern, factors)) in[f] = true;
+  }
+  FactorSet set{lines.name.name, "as the mechanism's file has it", {}};
+  for (std::size_t f = 0; f < in.size(); ++f) {
+    if (in[f]) set.factors.emplace_back(f);
+  }
+  if (!set.factors.empty()) return set;
+  throw InputError(lines.name.place, lines.name.key + " is empty", "name its errors, or remove it");
+}
+
+}  // namespace
+
+void add_factors(const MechanismFile& file, std::span<const double> geometry, Mechanism& mechanism) {
+  FrameErrors all = frame_errors(mechanism);
+  if (file.all_frames()) {
+    mechanism.factors = std::move(all.factors);
+    mechanism.slots = std::move(all.slots);
+  } else if (file.frames) {
+    add_listed(*file.frames, all, mechanism);
+  }
+  for (const ErrorLines& error : file.errors) {
+    const double scale = evaluate(error.scale, Dimension::number, file.geometry, geometry);
+    if (scale == 0.0) {
+      throw InputError(error.scale.place, error.scale.key + " is zero, so the error has no effect", "write its scale");
+    }
+    add_named(error, scale, mechanism);
+  }
+  FactorSet every{"all", "all errors", {}};
+  for (std::size_t f = 0; f < mechanism.factors.size(); ++f) every.factors.emplace_back(f);
+  mechanism.sets.push_back(std::move(every));
+  for (const SetLines& set : file.sets) mechanism.sets.push_back(set_of(set, mechanism.factors));
+}
+
+}  // namespace poesy::file

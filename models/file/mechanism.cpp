@@ -1,0 +1,453 @@
+#include "models/file/mechanism.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/contract.h"
+#include "engine/base/text.h"
+#include "models/chain/limb.h"
+#include "models/chain/metric.h"
+#include "models/file/factors.h"
+
+namespace poesy::file {
+namespace {
+
+constexpr double kSamePoint = 1e-9;  ///< of the reach
+constexpr double kParallel = 1e-6;   ///< rad
+
+/// What a limb's joint is before frames are known.
+struct Element {
+  const JointLines* lines;
+  std::size_t position;  ///< among the elementary joints of its joint
+  Motion motion;
+  Vector3 point;
+  Vector3 z = Vector3::Zero();  ///< of S it follows from the joints before
+};
+
+/// The frame's rotation from perpendicular unit vectors.
+lie::Matrix3<double> frame_of(const Vector3& x, const Vector3& z) {
+  lie::Matrix3<double> R;
+  R << x, z.cross(x), z;
+  return R;
+}
+
+bool parallel(const Vector3& a, const Vector3& b) { return a.cross(b).norm() <= kParallel; }
+
+Vector3 perpendicular(const Vector3& direction, const Vector3& z) {
+  return (direction - direction.dot(z) * z).normalized();
+}
+
+Motion motion_of(JointKind kind, std::size_t position) {
+  switch (kind) {
+    case JointKind::fixed:
+      return Motion::fixed;
+    case JointKind::prismatic:
+      return Motion::prismatic;
+    case JointKind::helical:
+      return Motion::helical;
+    case JointKind::cylindrical:
+      return position == 0 ? Motion::revolute : Motion::prismatic;
+    default:
+      return Motion::revolute;
+  }
+}
+
+class Builder {
+ public:
+  Builder(const MechanismFile& file, std::span<const double> values) : file_(file), values_(values) {}
+
+  Mechanism whole() {
+    const PlatformLines& lines = file_.platform;
+    Mechanism made{.name = file_.name,
+                   .title = file_.title,
+                   .platform = {lie::Matrix3<double>::Identity(), point(*lines.origin)},
+                   .rotation = lines.rotation,
+                   .coordinates_place = lines.coordinates_place,
+                   .reach = 0.0};
+    platform_point_ = made.platform.p;
+    std::vector<std::vector<Vector3>> points;
+    for (const LimbLines& limb : file_.limbs) points.push_back(joint_points(limb));
+    made.reach = reach_ = reach_of(points);
+    if (lines.x) made.platform.R = platform_axes(*lines.x, *lines.z);
+    for (std::size_t n = 0; n < file_.limbs.size(); ++n) add_limbs(file_.limbs[n], points[n], made);
+    for (const CoordinateLines& coordinate : lines.coordinates) made.coordinates.push_back(coordinate_of(coordinate));
+    if (lines.tool) made.tool = point(*lines.tool);
+    add_metric_points(made);
+    add_factors(file_, values_, made);
+    return made;
+  }
+
+ private:
+  double length(const Expression& expression) const {
+    return evaluate(expression, Dimension::length, file_.geometry, values_);
+  }
+
+  Vector3 point(const Triple& triple) const {
+    return {length(triple.entries[0]), length(triple.entries[1]), length(triple.entries[2])};
+  }
+
+  /// Of unit length. Throws where the entries have several dimensions or are all zero.
+  Vector3 direction(const Triple& triple) const {
+    Vector3 vector;
+    Value first{.any = true};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Value value = evaluate(triple.entries[k], file_.geometry, values_);
+      if (!value.like(first)) {
+        throw InputError(triple.entries[k].place,
+                         triple.key + " mixes " + dimension_text(first) + " and " + dimension_text(value),
+                         "the entries of a direction must have one dimension");
+      }
+      if (first.any) first = value;
+      vector[static_cast<Eigen::Index>(k)] = value.si;
+    }
+    const double smallest = kSamePoint * (first.length == 1 ? reach_ : 1.0);
+    if (vector.norm() > smallest) return vector.stableNormalized();
+    throw InputError(triple.place, triple.key + " is zero and has no direction", "give it a length, e.g. [0, 0, 1]");
+  }
+
+  // ---- points
+
+  /// Null where the limb and the file have no point of this name.
+  const NamedPoint* named_point(const LimbLines& limb, const std::string& name) const {
+    for (const std::vector<NamedPoint>* list : {&limb.points, &file_.points}) {
+      const auto found = std::ranges::find(*list, name, &NamedPoint::name);
+      if (found != list->end()) return &*found;
+    }
+    return nullptr;
+  }
+
+  Vector3 place_of(const LimbLines& limb, const Reference& reference, std::size_t depth) const {
+    const auto joint = std::ranges::find(limb.joints, reference.name, &JointLines::name);
+    if (joint != limb.joints.end()) return joint_point(limb, *joint, depth + 1);
+    if (const NamedPoint* named = named_point(limb, reference.name)) return point(named->point);
+    std::vector<std::string_view> known = names(limb.joints);
+    for (const NamedPoint& named : limb.points) known.push_back(named.name);
+    for (const NamedPoint& named : file_.points) known.push_back(named.name);
+    throw InputError(reference.place,
+                     reference.key + " '" + printable(reference.name) + "' is no joint of this limb and no point",
+                     suggestion(reference.name, known));
+  }
+
+  /// `at`, or for P, H and C `from`. depth: of references that stand on references.
+  Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
+    if (depth > limb.joints.size()) {
+      throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",
+                       "write at = [x, y, z] for one of them");
+    }
+    if (joint.at) return point(*joint.at);
+    if (joint.at_point) return place_of(limb, *joint.at_point, depth);
+    const bool slides =
+        joint.kind == JointKind::prismatic || joint.kind == JointKind::helical || joint.kind == JointKind::cylindrical;
+    if (slides && joint.from) return place_of(limb, *joint.from, depth);
+    throw InputError(joint.place, joint.key + " '" + joint.name + "' has no point",
+                     slides ? "write at = [x, y, z], or from = and to =" : "write at = [x, y, z]");
+  }
+
+  std::vector<Vector3> joint_points(const LimbLines& limb) const {
+    std::vector<Vector3> points;
+    for (const JointLines& joint : limb.joints) points.push_back(joint_point(limb, joint));
+    return points;
+  }
+
+  double reach_of(const std::vector<std::vector<Vector3>>& limbs) const {
+    std::vector<Vector3> all{platform_point_};
+    for (const std::vector<Vector3>& points : limbs) all.insert(all.end(), points.begin(), points.end());
+    double reach = 0.0;
+    for (const Vector3& a : all) {
+      for (const Vector3& b : all) reach = std::max(reach, (a - b).norm());
+    }
+    if (reach > 0.0) return reach;
+    throw InputError(file_.platform.place, "all joints and the platform's origin are one point",
+                     "write where they are at home");
+  }
+
+  bool same(const Vector3& a, const Vector3& b) const { return (a - b).norm() <= kSamePoint * reach_; }
+
+  // ---- axes and frames
+
+  /// The axis of a joint that is not S: as written, or from one point to another.
+  Vector3 axis_of(const LimbLines& limb, const JointLines& joint) const {
+    if (joint.axis && joint.to) {
+      throw InputError(joint.axis->place, joint.axis->key + " is given besides `to`", "remove one of them");
+    }
+    if (joint.axis) return direction(*joint.axis);
+    if (!joint.from || !joint.to) {
+      throw InputError(joint.place, joint.key + " '" + joint.name + "' has no direction",
+                       "write axis = \"z\", or from = and to = with names of joints or points");
+    }
+    const Vector3 from = place_of(limb, *joint.from, 0);
+    const Vector3 to = place_of(limb, *joint.to, 0);
+    if (!same(from, to)) return (to - from).stableNormalized();
+    throw InputError(joint.to->place,
+                     joint.to->key + " '" + joint.to->name + "' and '" + joint.from->name +
+                         "' are one point at home, so no direction goes from one to the other",
+                     "write axis = instead, or move one of them");
+  }
+
+  std::vector<Element> elements_of(const LimbLines& limb, const std::vector<Vector3>& points) const {
+    std::vector<Element> list;
+    for (std::size_t n = 0; n < limb.joints.size(); ++n) {
+      const JointLines& joint = limb.joints[n];
+      const Vector3 axis = joint.kind == JointKind::spherical ? Vector3::Zero() : axis_of(limb, joint);
+      for (std::size_t k = 0; k < elements(joint.kind); ++k) {
+        list.push_back({&joint, k, motion_of(joint.kind, k), points[n], axis});
+      }
+      if (joint.kind != JointKind::universal) continue;
+      list.back().z = direction(*joint.axis2);
+      if (!parallel(axis, list.back().z)) continue;
+      throw InputError(joint.axis2->place, joint.axis2->key + " is parallel to the first axis",
+                       "a universal joint has two axes; one alone is a revolute joint, type = \"R\"");
+    }
+    return list;
+  }
+
+  /// The first axis of S: along the line from the last other point before it, or to the first one after it.
+  Vector3 first_axis_of_s(const std::vector<Element>& elements, std::size_t e) const {
+    const Vector3& own = elements[e].point;
+    for (std::size_t k = e; k-- > 0;) {
+      if (!same(elements[k].point, own)) return (own - elements[k].point).stableNormalized();
+    }
+    for (std::size_t k = e + 1; k < elements.size(); ++k) {
+      if (!same(elements[k].point, own)) return (elements[k].point - own).stableNormalized();
+    }
+    if (!same(platform_point_, own)) return (platform_point_ - own).stableNormalized();
+    const JointLines& joint = *elements[e].lines;
+    throw InputError(joint.place, joint.key + " '" + joint.name + "' has no other joint to point to",
+                     "its first axis is along the line to another joint; write three R instead");
+  }
+
+  /// As given, or towards the next point, or the first base axis that is not parallel to z.
+  Vector3 x_of(const Element& element, const Vector3& z, const Vector3& next) const {
+    const JointLines& joint = *element.lines;
+    if (joint.x && element.position == 0) {
+      const Vector3 x = direction(*joint.x);
+      if (!parallel(x, z)) return perpendicular(x, z);
+      throw InputError(joint.x->place, joint.x->key + " is parallel to the joint's axis", "give another direction");
+    }
+    if (!same(next, element.point)) {
+      const Vector3 towards = (next - element.point).stableNormalized();
+      if (!parallel(towards, z)) return perpendicular(towards, z);
+    }
+    for (const Vector3& axis : {Vector3(1.0, 0.0, 0.0), Vector3(0.0, 1.0, 0.0)}) {
+      if (!parallel(axis, z)) return perpendicular(axis, z);
+    }
+    return perpendicular(Vector3::UnitZ(), z);
+  }
+
+  std::vector<Joint> joints_of(const LimbLines& limb, const std::vector<Vector3>& points) const {
+    std::vector<Element> elements = elements_of(limb, points);
+    std::vector<Joint> joints;
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      Element& element = elements[e];
+      const JointLines& lines = *element.lines;
+      if (lines.kind == JointKind::spherical) {
+        const std::size_t k = element.position;  // the second axis is the first frame's x, the third its y = z cross x
+        element.z = k == 0 ? first_axis_of_s(elements, e) : Vector3(joints[e - k].at_home.R.col(k == 1 ? 0 : 1));
+      }
+      const Vector3 next = e + 1 < elements.size() ? elements[e + 1].point : platform_point_;
+      const Vector3 x = x_of(element, element.z, next);
+      const bool actuated =
+          element.motion != Motion::fixed && lines.kind != JointKind::spherical && lines.actuated[element.position];
+      joints.push_back({lines.name,
+                        lines.place,
+                        element.motion,
+                        actuated,
+                        pitch_of(lines),
+                        {frame_of(x, element.z), element.point}});
+    }
+    return joints;
+  }
+
+  /// M/rad.
+  double pitch_of(const JointLines& joint) const {
+    if (!joint.pitch) return 0.0;
+    const double pitch = length(*joint.pitch);
+    if (pitch != 0.0) return pitch / (2.0 * std::numbers::pi);
+    throw InputError(joint.pitch->place, joint.pitch->key + " is zero, so the joint does not slide",
+                     "write type = \"R\", or its pitch");
+  }
+
+  void add_limbs(const LimbLines& lines, const std::vector<Vector3>& points, Mechanism& made) const {
+    const std::vector<Joint> first = joints_of(lines, points);
+    if (std::ranges::none_of(first, &Joint::moves)) {
+      throw InputError(lines.joints.front().place, lines.joints.front().key + ": no joint of this limb moves",
+                       "add one");
+    }
+    for (std::size_t copy = 0; copy < lines.copies; ++copy) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(copy) / static_cast<double>(lines.copies);
+      const Transform turn = lie::rotation<double>(static_cast<lie::Axis>(lines.about), angle);
+      Limb limb{first, {}};
+      Transform before;
+      for (Joint& joint : limb.joints) {
+        if (copy > 0) joint.at_home = turn * joint.at_home;
+        limb.home.push_back(before.inverse() * joint.at_home);
+        before = joint.at_home;
+      }
+      limb.home.push_back(before.inverse() * made.platform);
+      made.limbs.push_back(std::move(limb));
+    }
+  }
+
+  // ---- platform
+
+  lie::Matrix3<double> platform_axes(const Triple& x_lines, const Triple& z_lines) const {
+    const Vector3 x = direction(x_lines);
+    const Vector3 z = direction(z_lines);
+    if (!parallel(x, z)) return frame_of(perpendicular(x, z), z);
+    throw InputError(x_lines.place, x_lines.key + " is parallel to platform.z", "give another direction");
+  }
+
+  Coordinate coordinate_of(const CoordinateLines& lines) const {
+    constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
+    const auto component = static_cast<std::size_t>(std::ranges::find(kNames, lines.component) - kNames.begin());
+    Coordinate made{lines.name, component, 0.0, 0.0};
+    made.lower = evaluate(lines.lower, made.dimension(), file_.geometry, values_);
+    made.upper = evaluate(lines.upper, made.dimension(), file_.geometry, values_);
+    if (made.lower < made.upper) return made;
+    throw InputError(lines.lower.place,
+                     lines.lower.key + " '" + lines.lower.text + "' is not below '" + lines.upper.text + "'",
+                     "write the lowest value first");
+  }
+
+  void add_metric_points(Mechanism& made) const {
+    for (const Triple& triple : file_.platform.points) made.points.push_back(point(triple));
+    if (made.points.empty()) {
+      for (const Limb& limb : made.limbs) {
+        const auto last =
+            std::find_if(limb.joints.rbegin(), limb.joints.rend(), [](const Joint& j) { return j.moves(); });
+        made.points.push_back(made.platform.R.transpose() * (last->at_home.p - made.platform.p));
+      }
+    }
+    const std::string why = chain::why_no_metric(made.points, made.reach);
+    if (why.empty()) return;
+    throw InputError(file_.platform.place, "the metric has no meaning: " + why,
+                     "write points = [...] in [platform], three or more that are on no line");
+  }
+
+  const MechanismFile& file_;
+  std::span<const double> values_;
+  Vector3 platform_point_ = Vector3::Zero();
+  double reach_ = 1.0;
+};
+
+/// Axes of the three rotations, in the order of their product. Precondition: not "vector".
+std::array<int, 3> axes_of(Rotation rotation) {
+  const std::string_view letters = name(rotation);
+  return {letters[0] - 'x', letters[1] - 'x', letters[2] - 'x'};
+}
+
+}  // namespace
+
+std::size_t Limb::moving() const { return static_cast<std::size_t>(std::ranges::count_if(joints, &Joint::moves)); }
+
+std::size_t Mechanism::moving() const {
+  std::size_t sum = 0;
+  for (const Limb& limb : limbs) sum += limb.moving();
+  return sum;
+}
+
+std::vector<double> default_geometry(const MechanismFile& file) {
+  std::vector<double> values;
+  for (const GeometryParameter& parameter : file.geometry) values.push_back(parameter.published);
+  return values;
+}
+
+Mechanism mechanism(const MechanismFile& file, std::span<const double> geometry) {
+  POESY_EXPECTS(geometry.size() == file.geometry.size());
+  return Builder(file, geometry).whole();
+}
+
+Mechanism in_reaches(Mechanism mechanism) {
+  const double unit = mechanism.reach;
+  for (Limb& limb : mechanism.limbs) {
+    for (Transform& home : limb.home) home.p /= unit;
+    for (Joint& joint : limb.joints) {
+      joint.at_home.p /= unit;
+      joint.pitch /= unit;
+    }
+  }
+  for (Coordinate& coordinate : mechanism.coordinates) {
+    if (coordinate.component >= 3) continue;
+    coordinate.lower /= unit;
+    coordinate.upper /= unit;
+  }
+  for (Vector3& point : mechanism.points) point /= unit;
+  if (mechanism.tool) *mechanism.tool /= unit;
+  mechanism.platform.p /= unit;
+  mechanism.reach = 1.0;
+  return mechanism;
+}
+
+std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism) {
+  std::vector<JointDisplacement> list;
+  for (std::size_t i = 0; i < mechanism.limbs.size(); ++i) {
+    const std::vector<Joint>& joints = mechanism.limbs[i].joints;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (!joints[j].moves()) continue;
+      list.push_back({"q_" + std::to_string(i + 1) + "_" + std::to_string(j + 1),
+                      joints[j].motion == Motion::prismatic ? Dimension::length : Dimension::angle});
+    }
+  }
+  return list;
+}
+
+PlatformPose home_pose(const Mechanism& mechanism) {
+  const Vector3& p = mechanism.platform.p;
+  return {p.x(), p.y(), p.z(), 0.0, 0.0, 0.0};
+}
+
+Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pose) {
+  Transform made{mechanism.platform.R, {pose[0], pose[1], pose[2]}};
+  if (mechanism.rotation == Rotation::vector) {
+    made.R = lie::exp<double>(Vector3(pose[3], pose[4], pose[5])) * made.R;
+    return made;
+  }
+  const std::array<int, 3> axes = axes_of(mechanism.rotation);
+  for (std::size_t k = 3; k-- > 0;) {
+    const auto axis = static_cast<std::size_t>(axes[k]);
+    made.R = lie::rotation<double>(static_cast<lie::Axis>(axis), pose[3 + axis]).R * made.R;
+  }
+  return made;
+}
+
+lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose) {
+  lie::Matrix6<double> columns = lie::Matrix6<double>::Zero();
+  columns.bottomLeftCorner<3, 3>().setIdentity();
+  lie::Matrix3<double> turns;
+  if (mechanism.rotation == Rotation::vector) {
+    turns = lie::left_jacobian<double>(Vector3(pose[3], pose[4], pose[5]));
+  } else {
+    lie::Matrix3<double> before = lie::Matrix3<double>::Identity();
+    for (const int axis : axes_of(mechanism.rotation)) {
+      turns.col(axis) = before.col(axis);
+      before = before * lie::rotation<double>(static_cast<lie::Axis>(axis), pose[3 + static_cast<std::size_t>(axis)]).R;
+    }
+  }
+  const Vector3 p(pose[0], pose[1], pose[2]);
+  columns.topRightCorner<3, 3>() = turns;
+  columns.bottomRightCorner<3, 3>() = lie::hat<double>(p) * turns;
+  return columns;
+}
+
+Transform limb_transform(const Limb& limb, std::span<const double> displacements,
+                         Eigen::Matrix<double, 6, Eigen::Dynamic>* columns) {
+  POESY_EXPECTS(displacements.size() == limb.moving());
+  Transform g = limb.home.front();
+  std::size_t k = 0;
+  for (std::size_t j = 0; j < limb.joints.size(); ++j) {
+    const Joint& joint = limb.joints[j];
+    if (joint.moves()) {
+      const bool turns = joint.motion != Motion::prismatic;
+      const chain::Joint moving{turns ? chain::JointType::revolute : chain::JointType::prismatic, joint.actuated,
+                                turns ? joint.pitch : 0.0};
+      if (columns != nullptr) columns->col(static_cast<Eigen::Index>(k)) = chain::spatial_column(moving, g);
+      chain::move_joint(moving, displacements[k], g);
+      ++k;
+    }
+    g = g * limb.home[j + 1];
+  }
+  return g;
+}
+
+}  // namespace poesy::file

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "models/file/mechanism_file.h"
+#include "models/lie/se3.h"
+
+/// A mechanism of a file in numbers: SI, in the base frame, at home.
+namespace poesy::file {
+
+/// A point or a direction.
+using Vector3 = lie::Vector3<double>;
+/// A rigid motion.
+using Transform = lie::Transform<double>;
+
+/// What an elementary joint does, about or along its own z axis.
+enum class Motion { fixed, revolute, prismatic, helical };
+
+/// An elementary joint, or a fixed frame.
+struct Joint {
+  std::string name;   ///< of the joint that it belongs to
+  Place place;        ///< of that joint in the file
+  Motion motion;      ///< fixed: it has a frame and errors, and no displacement
+  bool actuated;      ///< a drive holds it
+  double pitch;       ///< of a helical one, m/rad; positive is right-handed
+  Transform at_home;  ///< base_T_joint at home
+
+  /// Whether it has a displacement.
+  bool moves() const { return motion != Motion::fixed; }
+};
+
+/// A limb in local product-of-exponentials form, as chain::Limb has it.
+struct Limb {
+  std::vector<Joint> joints;    ///< [n], base to platform
+  std::vector<Transform> home;  ///< [n + 1]: base to first joint, joint to joint, last joint to platform, at home
+
+  /// That have a displacement.
+  std::size_t moving() const;
+};
+
+/// x, y, z of P in the base frame (m), and rx, ry, rz from home (rad).
+using PlatformPose = std::array<double, 6>;
+
+/// A coordinate of a pose.
+struct Coordinate {
+  std::string name;       ///< as the file has it
+  std::size_t component;  ///< of PlatformPose
+  double lower;           ///< of the workspace
+  double upper;           ///< likewise
+
+  /// Length or angle.
+  Dimension dimension() const { return component < 3 ? Dimension::length : Dimension::angle; }
+};
+
+/// Which entry of which fixed frame's error a factor adds to: entry += scale * factor.
+struct ErrorSlot {
+  std::size_t limb;       ///< counts from 0
+  std::size_t frame;      ///< 0 .. joints of the limb
+  std::size_t component;  ///< of [epsilon; delta]
+  double scale;           ///< without unit
+};
+
+/// Immutable. Everything that a model needs; solving is for others.
+struct Mechanism {
+  std::string name;                          ///< as the file has it
+  std::string title;                         ///< likewise
+  std::vector<Limb> limbs = {};              ///< copies included
+  Transform platform;                        ///< base_T_platform at home
+  Rotation rotation;                         ///< what rx, ry, rz mean
+  std::vector<Coordinate> coordinates = {};  ///< in the order of a pose's numbers
+  Place coordinates_place;                   ///< in the file
+  std::optional<Vector3> tool = {};          ///< in the platform's frame
+  std::vector<Vector3> points = {};          ///< of the metric, in the platform's frame; on no line
+  std::vector<Factor> factors = {};          ///< [F]
+  std::vector<ErrorSlot> slots = {};         ///< [F]
+  std::vector<FactorSet> sets = {};          ///< "all" first
+  double reach;                              ///< m: the largest distance between joints' points, before copies, and P
+
+  /// That have a displacement, of all limbs.
+  std::size_t moving() const;
+};
+
+/// The parameters' defaults, in the order of the file.
+std::vector<double> default_geometry(const MechanismFile& file);
+
+/// The mechanism with these values of file.geometry, SI. Throws InputError with the place in the file where they make
+/// no mechanism: wrong dimensions, directions without length, axes that are parallel where they must not be, metric
+/// points on a line.
+Mechanism mechanism(const MechanismFile& file, std::span<const double> geometry);
+
+/// The same mechanism with lengths in units of its reach, whose reach is 1.
+Mechanism in_reaches(Mechanism mechanism);
+
+/// The displacements q_i_j of all joints that move, limb by limb: limbs count from 1, j is the joint's place among all
+/// joints and fixed frames of the limb.
+std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism);
+
+/// base_T_platform for R = Rot(rx, ry, rz) R_home and P = (x, y, z).
+Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pose);
+
+/// The pose at home: P, and no rotation.
+PlatformPose home_pose(const Mechanism& mechanism);
+
+/// Twist [omega; v] of the platform, at the base's origin, by each component of its pose: [6 x 6].
+lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose);
+
+/// Platform pose by the limb's moving joints [moving]. columns: null, or [6 x moving], set to the twists of the
+/// platform, at the base's origin, by each of them.
+Transform limb_transform(const Limb& limb, std::span<const double> displacements,
+                         Eigen::Matrix<double, 6, Eigen::Dynamic>* columns = nullptr);
+
+}  // namespace poesy::file

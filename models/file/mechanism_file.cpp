@@ -1,0 +1,612 @@
+#include "models/file/mechanism_file.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "engine/base/text.h"
+#include "models/file/mechanism.h"
+
+namespace poesy::file {
+namespace {
+
+constexpr std::size_t kLongestLine = 16384;  ///< bytes; bounds the depth to which dotted keys nest tables
+constexpr std::int64_t kMostCopies = 100;
+constexpr std::array<std::string_view, 6> kCoordinates{"x", "y", "z", "rx", "ry", "rz"};
+constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+constexpr std::array<std::string_view, 6> kComponents{"epsilon_x", "epsilon_y", "epsilon_z",
+                                                      "delta_x",   "delta_y",   "delta_z"};
+
+/// The scope of tables whose rows need the value alone.
+struct Nothing {};
+
+template <class Object>
+using Row = Key<Object, Nothing>;
+
+/// A value that `read` makes of a StudyValue, in the member at this path.
+template <class Read, class... Path>
+auto kept(std::string type, Read read, Path... path) {
+  using Object = OwnerOf<Path...>;
+  return KeyValue<Object>{.type = std::move(type), .read = [=](const StudyValue& value, Object& object) {
+                            detail::at(object, path...) = read(value);
+                          }};
+}
+
+/// A value that `read` makes of a StudyValue and of what the object has already.
+template <class Object>
+KeyValue<Object> read_by(std::string type, void (*read)(const StudyValue&, Object&)) {
+  return {.type = std::move(type), .read = read};
+}
+
+/// A row that must be there where it holds: for all words of the table's chooser, or for these.
+template <class Object>
+Row<Object> needed(std::string_view name, KeyValue<Object> value, std::string example, std::string_view meaning,
+                   std::vector<std::string_view> only_for = {}) {
+  Row<Object> row{.name = name, .value = std::move(value), .missing = "write {}", .meaning = meaning};
+  row.example = std::move(example);
+  row.only_for = std::move(only_for);
+  return row;
+}
+
+/// A row that may be left out. usual: what holds then.
+template <class Object>
+Row<Object> optional(std::string_view name, KeyValue<Object> value, std::string usual, std::string_view meaning,
+                     std::vector<std::string_view> only_for = {}) {
+  Row<Object> row{.name = name, .value = std::move(value), .usual = std::move(usual), .meaning = meaning};
+  row.only_for = std::move(only_for);
+  return row;
+}
+
+Expression expression(const StudyValue& value) {
+  if (value.is_text()) return {value.text(), value.full_name(), value.place(), true};
+  return {shortest(value.number()), value.full_name(), value.place(), false};
+}
+
+Triple point(const StudyValue& value) {
+  const std::vector<StudyValue> list = value.list();
+  if (list.size() != 3) {
+    value.fail("has " + std::to_string(list.size()) + " values", "write three, e.g. [\"60 mm\", 0, 0]");
+  }
+  return {{expression(list[0]), expression(list[1]), expression(list[2])}, value.full_name(), value.place()};
+}
+
+/// "x", "-z", or three numbers or expressions.
+Triple direction(const StudyValue& value) {
+  if (!value.is_text()) return point(value);
+  std::string word = value.text();
+  const bool back = word.starts_with('-');
+  if (back) word.erase(0, 1);
+  const auto axis = std::ranges::find(kAxes, word);
+  if (axis == kAxes.end()) {
+    value.fail("is '" + printable(value.text()) + "'",
+               "write \"x\", \"y\", \"z\", a minus before it, or [x, y, z] for a direction");
+  }
+  Triple triple{{}, value.full_name(), value.place()};
+  triple.entries.fill({"0", value.full_name(), value.place(), false});
+  triple.entries[static_cast<std::size_t>(axis - kAxes.begin())].text = back ? "-1" : "1";
+  return triple;
+}
+
+Reference reference(const StudyValue& value) { return {value.text(), value.full_name(), value.place()}; }
+
+std::vector<Reference> references(const StudyValue& value) {
+  if (value.is_text()) return {reference(value)};
+  std::vector<Reference> list;
+  for (const StudyValue& element : value.list()) list.push_back(reference(element));
+  return list;
+}
+
+void check_name(const Reference& reference) {
+  const auto allowed = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-'); };
+  if (!reference.name.empty() && std::ranges::all_of(reference.name, allowed)) return;
+  throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is no name",
+                   "write letters, digits, _ and -");
+}
+
+/// Throws where the name is taken already.
+template <class Named>
+void check_new(const Reference& reference, const std::vector<Named>& taken, std::string_view whose) {
+  check_name(reference);
+  const auto same = [&](const Named& other) { return other.name == reference.name; };
+  if (std::ranges::none_of(taken, same)) return;
+  throw InputError(reference.place,
+                   reference.key + " '" + reference.name + "' is the name of another " + std::string(whose),
+                   "give it a name of its own");
+}
+
+std::string read_name(const StudyValue& value) {
+  check_name(reference(value));
+  return value.text();
+}
+
+/// The keys of a table whose names the file chooses, in the order of the file.
+std::vector<Reference> keys_in_order(const StudySection& section) {
+  std::vector<Reference> list;
+  for (const std::string& key : section.keys()) {
+    const StudyValue value = *section.find(key);
+    list.push_back({key, value.full_name(), value.place()});
+    check_name(list.back());
+  }
+  std::ranges::sort(list, {}, [](const Reference& at) { return std::tuple(at.place.line, at.place.column); });
+  return list;
+}
+
+std::vector<NamedPoint> points(const StudyValue& value) {
+  const StudySection section = value.section();
+  std::vector<NamedPoint> list;
+  for (const Reference& name : keys_in_order(section)) list.push_back({name.name, point(*section.find(name.name))});
+  return list;
+}
+
+// ---- joints and limbs
+
+void read_at(const StudyValue& value, JointLines& joint) {
+  if (value.is_text()) {
+    joint.at_point = reference(value);
+  } else {
+    joint.at = point(value);
+  }
+}
+
+/// true for joints with one axis and for both of C; 1 or 2 for one of C or U.
+void read_actuated(const StudyValue& value, JointLines& joint) {
+  const std::size_t axes = elements(joint.kind);
+  if (const std::optional<bool> all = value.boolean()) {
+    if (*all && joint.kind == JointKind::universal) value.fail("is true", "write 1 or 2, for its first or second axis");
+    joint.actuated = {*all, *all && axes == 2};
+    return;
+  }
+  if (axes == 1) value.fail("is no truth value", "write true or false");
+  joint.actuated[static_cast<std::size_t>(value.whole_number(1, 2) - 1)] = true;
+}
+
+const Keys<JointLines, Nothing>& joint_keys() {
+  using J = JointLines;
+  const std::vector<std::string_view> directed{"R", "P", "H", "C", "U", "fixed"};
+  const auto kinds = word_at<JointKind>({{JointKind::revolute, "revolute"},
+                                         {JointKind::prismatic, "prismatic"},
+                                         {JointKind::helical, "helical: slides as it turns"},
+                                         {JointKind::cylindrical, "cylindrical: R, then P on the same axis"},
+                                         {JointKind::universal, "universal: two axes through one point"},
+                                         {JointKind::spherical,
+                                          "spherical: three revolutes, the first along the line "
+                                          "from the joint before"},
+                                         {JointKind::fixed, "no motion: a frame that has errors"}},
+                                        &J::kind);
+  static const Keys<J, Nothing> keys{
+      .paths = {"limb.joints"},
+      .meaning =
+          "A joint, at home and in the base frame. Inside, every joint becomes revolute, prismatic and helical "
+          "ones about or along their own z axes.",
+      .chooser = "type",
+      .rows = {
+          needed("type", kinds, "\"R\"", "What the joint does."),
+          needed("name", kept("text", read_name, &J::name), "\"A\"", "Its name, once in a limb."),
+          optional("at", read_by("point", read_at), "the point `from` of P, H and C",
+                   "Where it stands: [x, y, z], or the name of a point."),
+          optional("from", kept("text", reference, &J::from), "", "With `to`, its direction: from this joint or point.",
+                   directed),
+          optional("to", kept("text", reference, &J::to), "", "With `from`, its direction: to this joint or point.",
+                   directed),
+          optional("axis", kept("direction", direction, &J::axis), "",
+                   "Its direction, without `from` and `to`: \"x\", \"-z\", or [x, y, z] of any length.", directed),
+          needed("axis2", kept("direction", direction, &J::axis2), "\"y\"",
+                 "Its second axis, in the order from the base.", {"U"}),
+          optional("x", kept("direction", direction, &J::x), "towards the next joint's point",
+                   "The x axis of its first frame, made perpendicular to z."),
+          needed("pitch", kept("length", expression, &J::pitch), "\"5 mm\"",
+                 "By how much it slides in one turn; positive for a right-handed thread.", {"H"}),
+          optional(
+              "actuated", read_by("true, 1 or 2", read_actuated), "`false`",
+              "Whether a drive holds it; of U the axis that is held, of C the turn (1), the slide (2) or both (true).",
+              {"R", "P", "H", "C", "U"})}};
+  return keys;
+}
+
+std::vector<JointLines> joints(const StudyValue& value) {
+  std::vector<JointLines> list;
+  for (const StudyValue& element : value.list()) {
+    JointLines joint;
+    joint.key = element.full_name();
+    joint.place = element.place();
+    const StudySection section = element.section();
+    read_keys(joint_keys(), section, joint, Nothing{});
+    check_new({joint.name, section.require("name").full_name(), section.require("name").place()}, list,
+              "joint of this limb");
+    list.push_back(std::move(joint));
+  }
+  if (list.empty()) value.fail("is empty", "write its joints from base to platform");
+  return list;
+}
+
+const Keys<LimbLines, Nothing>& copies_keys() {
+  const auto axis = [](const StudyValue& value) { return value.word(kAxes); };
+  static const Keys<LimbLines, Nothing> keys{
+      .paths = {"limb.copies"},
+      .meaning = "Limbs alike: limb k of them is the first turned by (k - 1) 360 deg / count.",
+      .rows = {needed("count", whole_at(1, kMostCopies, &LimbLines::copies), "3", "How many there are."),
+               needed("about", kept("text", axis, &LimbLines::about), "\"z\"",
+                      "About which axis of the base they are turned: x, y or z.")}};
+  return keys;
+}
+
+void read_copies(const StudyValue& value, LimbLines& limb) {
+  read_keys(copies_keys(), value.section(), limb, Nothing{});
+}
+
+const Keys<LimbLines, Nothing>& limb_keys() {
+  static const Keys<LimbLines, Nothing> keys{
+      .paths = {"limb"},
+      .meaning = "A limb, [[limb]], between base and platform.",
+      .rows = {
+          optional("copies", read_by("table", read_copies), "one", "Limbs alike, turned about an axis of the base."),
+          optional("points", kept("table", points, &LimbLines::points), "none",
+                   "Points of this limb alone, as in [points]."),
+          needed("joints", kept("list of tables", joints, &LimbLines::joints),
+                 "[ { name = \"A\", type = \"R\", at = [0, 0, 0], axis = \"y\" } ]",
+                 "Its joints, from base to platform.")}};
+  return keys;
+}
+
+std::vector<StudyValue> tables(const StudyValue& value) {
+  if (value.is_section()) value.fail("is one table", "write double brackets: [[" + value.full_name() + "]]");
+  return value.list();
+}
+
+std::vector<LimbLines> limbs(const StudyValue& value) {
+  std::vector<LimbLines> list;
+  std::size_t count = 0;
+  for (const StudyValue& element : tables(value)) {
+    LimbLines limb;
+    read_keys(limb_keys(), element.section(), limb, Nothing{});
+    for (const NamedPoint& named : limb.points) {
+      check_new({named.name, named.point.key, named.point.place}, limb.joints, "joint of this limb");
+    }
+    count += limb.copies;
+    list.push_back(std::move(limb));
+  }
+  if (count < 2) value.fail("is alone, so nothing closes a loop", "write two limbs or more, or copies");
+  return list;
+}
+
+// ---- platform
+
+void read_coordinates(const StudyValue& value, PlatformLines& platform) {
+  platform.coordinates_place = value.place();
+  for (const StudyValue& element : value.list()) {
+    CoordinateLines line;
+    line.key = element.full_name();
+    line.place = element.place();
+    if (element.is_section()) {
+      const StudySection section = element.section();
+      const std::vector<std::string> keys = section.keys();
+      if (keys.size() != 1) element.fail("has " + std::to_string(keys.size()) + " names", "write { alpha = \"rx\" }");
+      line.name = keys.front();
+      line.component = kCoordinates[section.find(line.name)->word(kCoordinates)];
+    } else {
+      line.name = line.component = kCoordinates[element.word(kCoordinates)];
+    }
+    check_new({line.name, line.key, line.place}, platform.coordinates, "coordinate");
+    if (std::ranges::find(platform.coordinates, line.component, &CoordinateLines::component) !=
+        platform.coordinates.end()) {
+      element.fail("is " + line.component + " a second time", "remove it");
+    }
+    platform.coordinates.push_back(std::move(line));
+  }
+  if (platform.coordinates.empty()) value.fail("is empty", "name as many as the platform has freedoms");
+}
+
+void read_workspace(const StudyValue& value, PlatformLines& platform) {
+  const StudySection section = value.section();
+  section.allow(names(platform.coordinates), "coordinate");
+  for (CoordinateLines& coordinate : platform.coordinates) {
+    const StudyValue range = section.require(coordinate.name);
+    const std::vector<StudyValue> ends = range.list();
+    if (ends.size() != 2) range.fail("has " + std::to_string(ends.size()) + " values", "write [lowest, highest]");
+    coordinate.lower = expression(ends[0]);
+    coordinate.upper = expression(ends[1]);
+  }
+}
+
+void read_metric_points(const StudyValue& value, PlatformLines& platform) {
+  platform.place = value.place();
+  for (const StudyValue& element : value.list()) platform.points.push_back(point(element));
+  if (platform.points.size() < 3) value.fail("has fewer than three points", "give three that are on no line");
+}
+
+const Keys<PlatformLines, Nothing>& platform_keys() {
+  using P = PlatformLines;
+  std::vector<WordFor<Rotation>> rotations{{Rotation::vector, "the rotation vector"}};
+  for (const Rotation order :
+       {Rotation::xyz, Rotation::xzy, Rotation::yxz, Rotation::yzx, Rotation::zxy, Rotation::zyx}) {
+    rotations.push_back({order, "the product of rotations about these axes, in this order"});
+  }
+  static const Keys<P, Nothing> keys{
+      .paths = {"platform"},
+      .meaning = "What the limbs hold.",
+      .rows = {
+          needed("origin", kept("point", point, &P::origin), "[0, 0, \"600 mm\"]",
+                 "Its origin P at home, in the base frame."),
+          optional("x", kept("direction", direction, &P::x), "the base's",
+                   "Its x axis at home; with `z`, to which it is made perpendicular."),
+          optional("z", kept("direction", direction, &P::z), "the base's", "Its z axis at home; with `x`."),
+          optional("rotation", word_at(rotations, &P::rotation), "`\"vector\"`", "What rx, ry and rz mean."),
+          needed(
+              "coordinates", read_by("list", read_coordinates), "[\"x\", \"y\", \"z\"]",
+              "The independent ones among x, y, z (P in the base frame) and rx, ry, rz (from home), as many as it has "
+              "freedoms; { alpha = \"rx\" } renames one."),
+          needed("workspace", read_by("table", read_workspace), "{ z = [\"500 mm\", \"700 mm\"] }",
+                 "The default workspace, with every coordinate."),
+          optional("tool", kept("point", point, &P::tool), "none",
+                   "A point of the platform frame whose displacement is reported in addition."),
+          optional("points", read_by("list of points", read_metric_points),
+                   "the point of each limb's last joint that moves",
+                   "Points of the platform frame by which mismatch of limbs is weighed.")}};
+  return keys;
+}
+
+PlatformLines platform(const StudyValue& value) {
+  PlatformLines lines;
+  lines.place = value.place();
+  read_keys(platform_keys(), value.section(), lines, Nothing{});
+  if (lines.x.has_value() != lines.z.has_value()) value.fail("has one of x and z", "give both, or neither");
+  return lines;
+}
+
+// ---- errors
+
+std::vector<std::size_t> components(const StudyValue& value) {
+  std::vector<std::size_t> list;
+  for (const StudyValue& element : value.is_text() ? std::vector{value} : value.list()) {
+    const std::size_t component = element.word(kComponents);
+    if (std::ranges::find(list, component) != list.end()) element.fail("is a component a second time", "remove it");
+    if (!list.empty() && list.front() / 3 != component / 3) {
+      element.fail("mixes lengths and angles in one vector", "write two [[error]]");
+    }
+    list.push_back(component);
+  }
+  if (list.empty()) value.fail("is empty", "write \"delta_z\", for instance");
+  return list;
+}
+
+const Keys<ErrorLines, Nothing>& error_keys() {
+  using E = ErrorLines;
+  static const Keys<E, Nothing> keys{
+      .paths = {"error"},
+      .meaning = "An error with a name of its own, [[error]].",
+      .rows = {
+          needed("name", kept("text", reference, &E::name), "\"l\"",
+                 "Its name; components of a vector append _x, _y, _z, and \"each\" limb _1, _2, ... behind that."),
+          needed<E>("limb", {.type = "integer or text"}, "\"each\"", "The limb, counted from 1, or \"each\"."),
+          needed<E>("frame", {.type = "integer", .bounds = "at least 0"}, "0",
+                    "The fixed frame: 0 before the first joint, the last one to the platform."),
+          needed(
+              "component", kept("text or list", components, &E::components), "\"delta_z\"",
+              "delta_x, delta_y, delta_z (lengths) or epsilon_x, epsilon_y, epsilon_z (angles) of the frame; several "
+              "make a vector."),
+          optional("scale", kept("number", expression, &E::scale), "`1`", "The component is the error times this."),
+          optional("description", text_at(&E::description), "what the frame's own error says", "For people.")}};
+  return keys;
+}
+
+/// Which limb, and a frame that it has. frames: of each limb.
+void read_slot(const StudySection& section, const std::vector<std::size_t>& frames, ErrorLines& error) {
+  const StudyValue limb = section.require("limb");
+  if (!limb.is_text()) {
+    error.limb = static_cast<std::size_t>(limb.whole_number(1, static_cast<std::int64_t>(frames.size())) - 1);
+  } else if (limb.text() != "each") {
+    limb.fail("is '" + printable(limb.text()) + "'", "write a limb's number, or \"each\"");
+  }
+  const std::size_t count = error.limb ? frames[*error.limb] : std::ranges::min(frames);
+  const StudyValue frame = section.require("frame");
+  error.frame = static_cast<std::size_t>(frame.whole_number(0, static_cast<std::int64_t>(count) - 1));
+}
+
+void read_named_errors(const StudyValue& value, MechanismFile& file) {
+  const std::vector<std::size_t> frames = frame_counts(file);
+  for (const StudyValue& element : tables(value)) {
+    ErrorLines error;
+    read_keys(error_keys(), element.section(), error, Nothing{});
+    check_name(error.name);
+    read_slot(element.section(), frames, error);
+    file.errors.push_back(std::move(error));
+  }
+}
+
+void read_frames(const StudyValue& value, MechanismFile& file) {
+  file.all = value.is_text() && value.text() == "all";
+  if (file.all) return;
+  if (value.is_text())
+    value.fail("is '" + printable(value.text()) + "'", "write \"all\", or a list of names and patterns");
+  file.frames = references(value);
+}
+
+const Keys<MechanismFile, Nothing>& errors_keys() {
+  static const Keys<MechanismFile, Nothing> keys{
+      .paths = {"errors"},
+      .meaning = "Errors of fixed frames: epsilon_i_j_x (an angle) and delta_i_j_x (a length) of frame j of limb i.",
+      .rows = {optional("frames", read_by("\"all\" or list", read_frames),
+                        "`\"all\"`, or none where there is an [[error]]",
+                        "All, or a list of names and patterns: \"delta_*_0_?\".")}};
+  return keys;
+}
+
+void read_errors(const StudyValue& value, MechanismFile& file) {
+  read_keys(errors_keys(), value.section(), file, Nothing{});
+}
+
+void read_sets(const StudyValue& value, MechanismFile& file) {
+  const StudySection section = value.section();
+  for (const Reference& name : keys_in_order(section)) {
+    const StudyValue patterns = *section.find(name.name);
+    if (name.name == "all") patterns.fail("exists in any case", "remove it");
+    file.sets.push_back({name, references(patterns)});
+  }
+}
+
+// ---- the file
+
+/// A parameter of the geometry as written.
+struct ParameterLines {
+  std::optional<Expression> value;
+  std::string description;
+};
+
+const Keys<ParameterLines, Nothing>& parameter_keys() {
+  using P = ParameterLines;
+  static const Keys<P, Nothing> keys{
+      .paths = {"geometry.PARAMETER"},
+      .meaning = "A parameter with a description.",
+      .rows = {needed("value", kept("length or angle", expression, &P::value), "\"250 mm\"", "Its default."),
+               optional("description", text_at(&P::description), "none", "For people.")}};
+  return keys;
+}
+
+GeometryParameter parameter(const std::string& name, const StudyValue& written) {
+  ParameterLines lines;
+  if (written.is_section()) {
+    read_keys(parameter_keys(), written.section(), lines, Nothing{});
+  } else {
+    lines.value = expression(written);
+  }
+  const Value found = evaluate(*lines.value, {}, {});
+  for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
+    if (found.any || !found.like(of_dimension(0.0, dimension))) continue;
+    return {name, dimension, found.si, lines.description};
+  }
+  written.fail("is " + dimension_text(found), "a parameter is a length or an angle: give it a unit, e.g. \"1 mm\"");
+}
+
+void read_geometry(const StudyValue& value, MechanismFile& file) {
+  const StudySection section = value.section();
+  for (const Reference& key : keys_in_order(section)) {
+    const StudyValue written = *section.find(key.name);
+    const std::string why = why_no_parameter(key.name);
+    if (!why.empty()) written.fail(why, "give the parameter another name");
+    file.geometry.push_back(parameter(key.name, written));
+  }
+}
+
+void read_format(const StudyValue& value, MechanismFile&) {
+  if (value.text() == "poesy-mechanism") return;
+  value.fail("is '" + printable(value.text()) + "'", "a mechanism has format = \"poesy-mechanism\"");
+}
+
+void read_version(const StudyValue& value, MechanismFile&) {
+  const std::int64_t number = value.whole_number(1);
+  if (number > 1)
+    value.fail("is " + std::to_string(number) + ", but this poesy knows version 1 only", "use a newer poesy");
+}
+
+const Keys<MechanismFile, Nothing>& file_keys() {
+  using F = MechanismFile;
+  static const Keys<F, Nothing> keys{
+      .paths = {""},
+      .meaning = "A mechanism: everything stands in one base frame, at the home pose, as on a drawing.",
+      .rows = {needed("format", read_by("text", read_format), "\"poesy-mechanism\"", "\"poesy-mechanism\"."),
+               needed("version", read_by("integer", read_version), "1", "1."),
+               needed("name", kept("text", read_name, &F::name), "\"rps3\"", "Its name: letters, digits, _ and -."),
+               optional("title", text_at(&F::title), "the name", "For people."),
+               optional("geometry", read_by("table", read_geometry), "none",
+                        "Lengths and angles that expressions name; a study may change each."),
+               optional("points", kept("table", points, &F::points), "none",
+                        "Points of the base frame, at home, that joints may name; those of a limb go before."),
+               needed("platform", kept("table", platform, &F::platform), "{ origin =, coordinates =, workspace = }",
+                      "What the limbs hold."),
+               needed("limb", kept("tables", limbs, &F::limbs), "[{ joints = }], or [[limb]] for each", "The limbs."),
+               optional("error", read_by("tables", read_named_errors), "none", "Errors with names of their own."),
+               optional("errors", read_by("table", read_errors), "`{}`", "Errors of fixed frames."),
+               optional("sets", read_by("table", read_sets), "none besides `all`",
+                        "Sets of errors that a study may name.")}};
+  return keys;
+}
+
+/// A table whose keys are names that the file chooses.
+StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, std::string type,
+                    std::string_view meaning, std::string missing = {}, std::string example = {}) {
+  return {.paths = std::move(paths),
+          .meaning = meaning,
+          .keys = {{.name = name,
+                    .type = std::move(type),
+                    .missing = std::move(missing),
+                    .example = std::move(example),
+                    .meaning = meaning}}};
+}
+
+toml::table parse(const std::string& text, const std::string& path) {
+  std::size_t line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > kLongestLine) {
+      throw InputError({path, line, 1}, "the line is longer than " + std::to_string(kLongestLine) + " bytes",
+                       "break it into several lines");
+    }
+    begin = end + 1;
+  }
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError({path, error.source().begin.line, error.source().begin.column},
+                     "this is not TOML: " + printable(error.description(), 120), "correct this line");
+  }
+}
+
+}  // namespace
+
+std::string_view name(JointKind kind) {
+  constexpr std::array<std::string_view, 7> kNames{"fixed", "R", "P", "H", "C", "U", "S"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::size_t elements(JointKind kind) {
+  constexpr std::array<std::size_t, 7> kElements{1, 1, 1, 1, 2, 2, 3};
+  return kElements[static_cast<std::size_t>(kind)];
+}
+
+std::string_view name(Rotation rotation) {
+  constexpr std::array<std::string_view, 7> kNames{"vector", "xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
+  return kNames[static_cast<std::size_t>(rotation)];
+}
+
+const StudyTables& mechanism_file_tables() {
+  static const StudyTables tables{
+      described(file_keys()),
+      of_names({"geometry"}, "PARAMETER", "length or angle, or table", "A parameter: its default, or a table with it."),
+      described(parameter_keys()),
+      of_names({"points", "limb.points"}, "POINT", "point", "A point: [x, y, z]."),
+      described(platform_keys()),
+      of_names({"platform.coordinates"}, "COORDINATE", "text", "A coordinate's name, and which it is: x, ..., rz."),
+      of_names({"platform.workspace"}, "COORDINATE", "list", "The lowest and the highest value of a coordinate.",
+               "write {}", "[\"-20 deg\", \"20 deg\"]"),
+      described(limb_keys()),
+      described(copies_keys()),
+      described(joint_keys()),
+      described(errors_keys()),
+      described(error_keys()),
+      of_names({"sets"}, "SET", "list", "A set: names or patterns of errors.")};
+  return tables;
+}
+
+std::vector<std::size_t> frame_counts(const MechanismFile& file) {
+  std::vector<std::size_t> counts;
+  for (const LimbLines& limb : file.limbs) {
+    std::size_t frames = 1;
+    for (const JointLines& joint : limb.joints) frames += elements(joint.kind);
+    counts.insert(counts.end(), limb.copies, frames);
+  }
+  return counts;
+}
+
+MechanismFile read_mechanism_file(const std::string& text, const std::string& path) {
+  const toml::table table = parse(text, path);
+  const StudySection root(table, "", {path, 1, 1}, mechanism_file_tables());
+  MechanismFile file;
+  file.path = path;
+  read_keys(file_keys(), root, file, Nothing{});
+  if (file.title.empty()) file.title = file.name;
+  static_cast<void>(mechanism(file, default_geometry(file)));
+  return file;
+}
+
+}  // namespace poesy::file

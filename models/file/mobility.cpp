@@ -1,0 +1,272 @@
+#include "models/file/mobility.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/units.h"
+#include "models/file/tracking.h"
+
+namespace poesy::file {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Eigen::Index;
+using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// A matrix's singular values, its rank, and an orthonormal base of what it maps to zero.
+struct Decomposed {
+  Eigen::VectorXd values;
+  Index rank;
+  Matrix null;  ///< [columns x (columns - rank)]
+  Matrix V;     ///< [columns x columns]
+};
+
+/// largest: what singular values are compared with; 0: the largest of them.
+Decomposed decomposed(const Matrix& matrix, double largest = 0.0) {
+  if (matrix.cols() == 0 || matrix.rows() == 0) {
+    const Matrix identity = Matrix::Identity(matrix.cols(), matrix.cols());
+    return {{}, 0, identity, identity};
+  }
+  const Eigen::JacobiSVD<Matrix> svd(matrix, Eigen::ComputeFullV);
+  const Eigen::VectorXd& values = svd.singularValues();
+  const double threshold = kRankThreshold * (largest > 0.0 ? largest : values[0]);
+  const Index rank = (values.array() > threshold).count();
+  return {values, rank, svd.matrixV().rightCols(matrix.cols() - rank), svd.matrixV()};
+}
+
+std::size_t size(Index count) { return static_cast<std::size_t>(count); }
+
+/// Loop Jacobian, and the platform's twists by limb 1, in units of the reach.
+struct Jacobians {
+  Matrix loops;
+  Columns platform;                  ///< [6 x joints]: zero but for limb 1
+  std::vector<const Joint*> joints;  ///< of the columns
+  std::vector<std::size_t> limbs;    ///< of the columns, counted from 1
+};
+
+Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
+  const auto joints = static_cast<Index>(unit.moving());
+  const auto loops = static_cast<Index>(unit.limbs.size()) - 1;
+  Jacobians made{Matrix::Zero(6 * loops, joints), Columns::Zero(6, joints), {}, {}};
+  Index column = 0;
+  for (std::size_t i = 0; i < unit.limbs.size(); ++i) {
+    const Limb& limb = unit.limbs[i];
+    const auto count = static_cast<Index>(limb.moving());
+    Columns columns(6, count);
+    limb_transform(limb, q.subspan(size(column), limb.moving()), &columns);
+    if (i == 0) {
+      made.platform.leftCols(count) = columns;
+      for (Index row = 0; row < loops; ++row) made.loops.block(6 * row, 0, 6, count) = -columns;
+    } else {
+      made.loops.block(6 * static_cast<Index>(i - 1), column, 6, count) = columns;
+    }
+    for (const Joint& joint : limb.joints) {
+      if (!joint.moves()) continue;
+      made.joints.push_back(&joint);
+      made.limbs.push_back(i + 1);
+    }
+    column += count;
+  }
+  return made;
+}
+
+/// The columns of joints that no drive holds.
+Matrix passive(const Matrix& matrix, const Jacobians& all) {
+  Matrix made(matrix.rows(), matrix.cols());
+  Index count = 0;
+  for (Index column = 0; column < matrix.cols(); ++column) {
+    if (!all.joints[size(column)]->actuated) made.col(count++) = matrix.col(column);
+  }
+  return made.leftCols(count);
+}
+
+/// "(0, 0.71, 0.71)".
+std::string vector_text(const Vector3& vector) {
+  const auto entry = [](double value) {
+    const double rounded = std::round(100.0 * value) / 100.0;
+    return shortest(rounded == 0.0 ? 0.0 : rounded);
+  };
+  return "(" + entry(vector.x()) + ", " + entry(vector.y()) + ", " + entry(vector.z()) + ")";
+}
+
+/// "limb 2: joint 'A' ..., so that the platform turns about (0, 0, 1)" for a motion of the passive joints.
+void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const lie::Screw<double>& twist,
+                    Mobility& found) {
+  Index largest = 0;
+  motion.cwiseAbs().maxCoeff(&largest);
+  Index column = 0;
+  for (Index passed = 0;; ++column) {
+    if (!all.joints[size(column)]->actuated && passed++ == largest) break;
+  }
+  const bool turns = twist.head<3>().norm() > 1e-3 * twist.norm();
+  found.loose_place = all.joints[size(column)]->place;
+  found.loose_text = "joint '" + all.joints[size(column)]->name + "' of limb " +
+                     std::to_string(all.limbs[size(column)]) + " is loose, and the platform " +
+                     (turns ? "turns about " + vector_text(twist.head<3>().normalized())
+                            : "slides along " + vector_text(twist.tail<3>().normalized()));
+}
+
+void find_loose(const Jacobians& all, Mobility& found) {
+  const Matrix loops = passive(all.loops, all);
+  const Decomposed locked = decomposed(loops, found.singular_values.empty() ? 0.0 : found.singular_values[0]);
+  found.passive_rank = size(locked.rank);
+  found.left_when_locked = size(locked.null.cols());
+  const Matrix moved = passive(all.platform, all) * locked.null;
+  const Decomposed platform = decomposed(moved, 1.0);
+  found.loose = size(platform.rank);
+  if (platform.rank == 0) return;
+  const Eigen::VectorXd freedom = platform.V.col(0);
+  describe_loose(all, locked.null * freedom, moved * freedom, found);
+}
+
+/// The first coordinate without which the others have the same rank.
+std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank) {
+  for (Index row = 0; row < rates.rows(); ++row) {
+    Matrix others = rates;
+    others.row(row).setZero();
+    if (decomposed(others, 1.0).rank == rank) return unit.coordinates[size(row)].name;
+  }
+  return {};
+}
+
+void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Matrix& twists, Mobility& found) {
+  const Matrix rates = platform_columns(unit, pose).fullPivLu().solve(twists);
+  Matrix chosen(static_cast<Index>(unit.coordinates.size()), rates.cols());
+  for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {
+    chosen.row(static_cast<Index>(c)) = rates.row(static_cast<Index>(unit.coordinates[c].component));
+  }
+  const Index rank = decomposed(chosen, 1.0).rank;
+  found.coordinates_rank = size(rank);
+  if (found.coordinates_rank < unit.coordinates.size()) found.dependent = dependent_of(unit, chosen, rank);
+}
+
+/// Lengths in units of the reach.
+Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const PlatformPose& pose) {
+  const Jacobians all = jacobians(unit, q);
+  const Decomposed loops = decomposed(all.loops);
+  const Matrix twists = all.platform * loops.null;
+  Mobility found{.joints = all.joints.size(), .loop_equations = size(all.loops.rows())};
+  found.actuated = size(std::ranges::count_if(all.joints, [](const Joint* joint) { return joint->actuated; }));
+  found.singular_values.assign(loops.values.begin(), loops.values.end());
+  found.rank = size(loops.rank);
+  found.freedoms = found.joints - found.rank;
+  found.over_constraints = found.loop_equations - found.rank;
+  found.platform_freedoms = size(decomposed(twists, 1.0).rank);
+  found.platform_rotates = size(decomposed(twists.topRows(3), 1.0).rank);
+  found.idle = found.freedoms - found.platform_freedoms;
+  find_loose(all, found);
+  find_coordinates(unit, pose, twists, found);
+  return found;
+}
+
+/// The k-th point of Roberts' sequence in the unit cube: multiples of powers of 1/phi, phi^(n+1) = phi + 1.
+std::vector<double> even_point(std::size_t k, std::size_t dimensions) {
+  double phi = 2.0;
+  for (int n = 0; n < 60; ++n) phi = std::pow(1.0 + phi, 1.0 / (static_cast<double>(dimensions) + 1.0));
+  std::vector<double> point;
+  double step = 1.0;
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    step /= phi;
+    const double along = 0.5 + step * static_cast<double>(k + 1);
+    point.push_back(along - std::floor(along));
+  }
+  return point;
+}
+
+std::string count_text(std::size_t count, const std::string& one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::optional<double> Mobility::below_gap() const {
+  return rank < singular_values.size() ? std::optional(singular_values[rank]) : std::nullopt;
+}
+
+Mobility mobility(const Mechanism& mechanism, std::span<const double> displacements, const PlatformPose& pose) {
+  const std::vector<double> q = scaled_displacements(mechanism, displacements, 1.0 / mechanism.reach);
+  PlatformPose unit_pose = pose;
+  for (std::size_t k = 0; k < 3; ++k) unit_pose[k] /= mechanism.reach;
+  return mobility_of(in_reaches(mechanism), q, unit_pose);
+}
+
+Mobility home_mobility(const Mechanism& mechanism) {
+  return mobility(mechanism, std::vector<double>(mechanism.moving(), 0.0), home_pose(mechanism));
+}
+
+std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::size_t count) {
+  const Tracker tracker(mechanism);
+  std::vector<PoseMobility> list;
+  for (std::size_t k = 0; k < count; ++k) {
+    PoseMobility found{even_point(k, mechanism.coordinates.size()), {}, {}};
+    for (std::size_t c = 0; c < found.pose.size(); ++c) {
+      const Coordinate& coordinate = mechanism.coordinates[c];
+      found.pose[c] = coordinate.lower + found.pose[c] * (coordinate.upper - coordinate.lower);
+    }
+    const Tracked tracked = tracker.track(found.pose);
+    found.unreachable = tracked.unreachable;
+    if (found.unreachable.empty()) found.mobility = mobility(mechanism, tracked.displacements, tracked.pose);
+    list.push_back(std::move(found));
+  }
+  return list;
+}
+
+namespace {
+
+/// Throws where the platform moves although all drives are held. where: "" at home, or " at some poses".
+void check_held(const Mobility& found, const std::string& where) {
+  if (found.loose == 0) return;
+  throw InputError(found.loose_place,
+                   "the drives do not hold the platform" + where + ", which has " +
+                       count_text(found.platform_freedoms, "freedom") + " and " + count_text(found.actuated, "drive") +
+                       ": " + found.loose_text,
+                   found.actuated < found.platform_freedoms
+                       ? "write actuated = true at one more joint, or correct the axes"
+                       : "correct the axes, drive another joint, or draw it at a pose that is not singular");
+}
+
+}  // namespace
+
+void check_mobility(const Mechanism& mechanism, const Mobility& home) {
+  const auto fail = [&](const std::string& problem, const std::string& remedy) {
+    throw InputError(mechanism.coordinates_place, problem, remedy);
+  };
+  if (home.platform_freedoms == 0) fail("the platform cannot move", "look at the axes of the joints at home");
+  check_held(home, "");
+  const std::size_t named = mechanism.coordinates.size();
+  if (home.coordinates_rank < named) {
+    fail("platform.coordinates are not independent: " + home.dependent +
+             " follows from the others, and the platform has " + count_text(home.platform_freedoms, "freedom"),
+         "remove it, or take another");
+  }
+  if (named < home.platform_freedoms) {
+    fail("platform.coordinates has " + std::to_string(named) + ", but the platform has " +
+             count_text(home.platform_freedoms, "freedom"),
+         "name as many as it has freedoms");
+  }
+}
+
+void check_mobility(const Mechanism& mechanism, const Mobility& home, std::span<const PoseMobility> poses) {
+  const auto fail = [&](const std::string& problem, const std::string& remedy) {
+    throw InputError(mechanism.coordinates_place, problem, remedy);
+  };
+  const auto reached = [](const PoseMobility& pose) { return pose.unreachable.empty(); };
+  if (poses.empty()) return;
+  if (std::ranges::none_of(poses, reached)) {
+    fail("no pose that was tried in the workspace is reached from home: " + poses.front().unreachable,
+         "correct the workspace, or the home pose if the mechanism moves there by an instant only");
+  }
+  for (const PoseMobility& pose : poses) {
+    if (!reached(pose)) continue;
+    if (pose.mobility.rank != home.rank) {
+      fail("home is a singular pose: the mechanism has " + count_text(home.freedoms, "freedom") + " there, and " +
+               std::to_string(pose.mobility.freedoms) + " elsewhere",
+           "draw it at another pose");
+    }
+    check_held(pose.mobility, " at some poses");
+  }
+}
+
+}  // namespace poesy::file

@@ -1,0 +1,265 @@
+#include "models/file/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "engine/base/contract.h"
+#include "engine/schema/keys.h"
+#include "models/chain/deformation_model.h"
+#include "models/chain/deformation_trace.h"
+#include "models/chain/metric.h"
+#include "models/chain/passive_condition.h"
+#include "models/file/mobility.h"
+#include "models/file/structure.h"
+#include "models/file/tracking.h"
+
+namespace poesy::file {
+namespace {
+
+/// Joints that move as they are; a fixed frame is a joint that a drive holds where it is.
+chain::Limb chain_limb(const Limb& limb) {
+  chain::Limb of_chain;
+  for (const Joint& joint : limb.joints) {
+    const bool turns = joint.motion == Motion::revolute || joint.motion == Motion::helical;
+    of_chain.joints.push_back({turns ? chain::JointType::revolute : chain::JointType::prismatic,
+                               joint.actuated || !joint.moves(), joint.motion == Motion::helical ? joint.pitch : 0.0});
+  }
+  of_chain.home = limb.home;
+  return of_chain;
+}
+
+/// A displacement for each joint and fixed frame, from those of the joints that move.
+std::vector<double> with_fixed(const Mechanism& mechanism, std::span<const double> moving) {
+  std::vector<double> all;
+  for (const Limb& limb : mechanism.limbs) {
+    for (const Joint& joint : limb.joints) {
+      all.push_back(joint.moves() ? moving.front() : 0.0);
+      if (joint.moves()) moving = moving.subspan(1);
+    }
+  }
+  return all;
+}
+
+chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
+                                    const Mobility& home, std::vector<Vector3> points) {
+  chain::DeformationModel model;
+  for (const Limb& limb : mechanism.limbs) model.chain.limbs.push_back(chain_limb(limb));
+  model.chain.pairs = chain::pairs_of(mechanism.limbs.size());
+  model.chain.idle = home.idle;
+  model.chain.meets = home.passive_rank == home.loop_equations;
+  for (const ErrorSlot& slot : mechanism.slots) {
+    model.slots.push_back({slot.limb, slot.frame, slot.component, slot.scale});
+  }
+  model.joint_displacements = [mechanism, tracker = std::move(tracker)](std::span<const double> pose) {
+    return with_fixed(mechanism, tracker->track(pose).displacements);
+  };
+  model.points = std::move(points);
+  model.platform = chain::PlatformReport{mechanism.tool};
+  return model;
+}
+
+std::string coordinate_text(const Coordinate& coordinate) {
+  const std::string axis(1, "xyz"[coordinate.component % 3]);
+  if (coordinate.component < 3) return axis + " of the platform's origin in the base frame";
+  return "r" + axis + ", a rotation of the platform from home";
+}
+
+/// Positions of the responses with these names.
+std::vector<std::size_t> positions(const std::vector<Response>& responses, std::span<const std::string_view> names) {
+  std::vector<std::size_t> list;
+  for (const std::string_view name : names) {
+    const auto found = std::ranges::find(responses, name, &Response::name);
+    if (found != responses.end()) list.push_back(static_cast<std::size_t>(found - responses.begin()));
+  }
+  return list;
+}
+
+ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism, const chain::DeformationModel& model) {
+  ModelDescription description;
+  description.name = file.name;
+  description.title = file.title;
+  description.geometry = file.geometry;
+  for (const Coordinate& coordinate : mechanism.coordinates) {
+    description.pose_coordinates.push_back({coordinate.name, coordinate.dimension(), coordinate_text(coordinate)});
+    description.pose_lower.push_back(coordinate.lower);
+    description.pose_upper.push_back(coordinate.upper);
+  }
+  description.structure = structure_text(mechanism);
+  description.workspace_note = "This workspace is the mechanism file's.";
+  description.factors = mechanism.factors;
+  description.factor_sets = mechanism.sets;
+  description.responses = chain::responses_of(model);
+  description.joints = displacement_names(mechanism);
+  description.fidelities = {"exact", "first-order"};
+  description.tolerance = chain::kToleranceByMetric;
+  constexpr std::array<std::string_view, 5> kHeadline{"gap", "deformation_max", "position", "rotation", "tip_position"};
+  constexpr std::array<std::string_view, 6> kSigned{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
+  description.headline = positions(description.responses, kHeadline);
+  description.signed_headline = positions(description.responses, kSigned);
+  if (model.chain.meets) return description;
+  description.metric = model.points.empty() ? "published" : "platform";
+  if (model.points.empty()) description.tolerance = SolverOptions().tolerance;
+  description.deformation = chain::deformation_measure(model);
+  description.details = chain::deformation_details(model.chain);
+  return description;
+}
+
+class FileModel final : public Model {
+ public:
+  /// points: of the platform's metric; none: as published.
+  FileModel(const MechanismFile& file, Mechanism mechanism, const Mobility& home, std::vector<Vector3> points,
+            chain::Fidelity fidelity)
+      : mechanism_(std::move(mechanism)),
+        tracker_(std::make_shared<const Tracker>(mechanism_)),
+        model_(chain_model(mechanism_, tracker_, home, std::move(points))),
+        description_(describe(file, mechanism_, model_)),
+        fidelity_(fidelity) {}
+
+  const ModelDescription& description() const override { return description_; }
+
+  std::optional<std::string> unreachable(std::span<const double> pose) const override {
+    std::string why = tracker_->track(pose).unreachable;
+    return why.empty() ? std::nullopt : std::optional(std::move(why));
+  }
+
+  std::vector<double> joint_displacements(std::span<const double> pose) const override {
+    return tracker_->track(pose).displacements;
+  }
+
+  double condition(std::span<const double> pose) const override {
+    const std::vector<double> displacements = model_.joint_displacements(pose);
+    const std::optional<chain::Metric> metric = model_.metric(displacements);
+    return chain::passive_condition(model_.chain, displacements, metric ? &*metric : nullptr);
+  }
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
+    return chain::deformation_evaluator(model_, options, fidelity_);
+  }
+
+  std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
+                                  const SolverOptions& options) const override {
+    if (fidelity_ == chain::Fidelity::first_order) return chain::first_order_trace(model_, pose, errors);
+    return chain::deformation_trace(model_, pose, errors, options);
+  }
+
+  std::vector<std::string> mobility() const override {
+    return mobility_lines(home_mobility(mechanism_), workspace_mobility(mechanism_));
+  }
+
+  std::optional<Sketch> sketch() const override { return sketch_of(mechanism_); }
+
+  double rounding(std::size_t response) const override { return chain::effect_rounding(model_, response); }
+
+  std::vector<PlatformPoint> metric_points() const override {
+    if (model_.chain.meets) return {};
+    std::vector<PlatformPoint> points;
+    for (const Vector3& point : model_.points) points.push_back({point.x(), point.y(), point.z()});
+    return points;
+  }
+
+  /// The shortest link of the error's limb, or half a turn.
+  ErrorBound error_bound(FactorIndex factor) const override {
+    const Factor& error = description_.factors[factor.value];
+    if (error.dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
+    const Limb& limb = mechanism_.limbs[error.limb - 1];
+    ErrorBound bound;
+    for (std::size_t j = 1; j < limb.home.size(); ++j) {
+      const double length = limb.home[j].p.norm();
+      if (length < kShortestLink * mechanism_.reach || length >= bound.size) continue;
+      const std::string to = j < limb.joints.size() ? limb.joints[j].name : "the platform's origin";
+      bound = {length, "the distance from " + limb.joints[j - 1].name + " to " + to};
+    }
+    return bound;
+  }
+
+ private:
+  /// Of the reach; joints that are closer are one part.
+  static constexpr double kShortestLink = 1e-6;
+
+  Mechanism mechanism_;
+  std::shared_ptr<const Tracker> tracker_;
+  chain::DeformationModel model_;
+  ModelDescription description_;
+  chain::Fidelity fidelity_;
+};
+
+/// A mechanism whose drives hold it, and how it can move at home.
+struct Checked {
+  Mechanism mechanism;
+  Mobility home;
+};
+
+Checked checked(const MechanismFile& file, std::span<const double> geometry) {
+  Mechanism of_file = mechanism(file, geometry);
+  Mobility home = home_mobility(of_file);
+  check_mobility(of_file, home);
+  return {std::move(of_file), std::move(home)};
+}
+
+/// The mechanism with these values, by the metric of these points; none: the file's own, or published.
+struct Wanted {
+  bool by_platform = true;                          ///< or as published
+  std::optional<std::vector<Vector3>> points = {};  ///< instead of the file's
+};
+
+std::unique_ptr<Model> built(const MechanismFile& file, std::span<const double> values, std::size_t fidelity,
+                             const Wanted& wanted) {
+  Checked found = checked(file, values);
+  std::vector<Vector3> points;
+  if (wanted.by_platform) points = wanted.points.value_or(found.mechanism.points);
+  if (wanted.points) {
+    const std::string why = chain::why_no_metric(points, found.mechanism.reach);
+    if (!why.empty()) throw std::invalid_argument(why);
+  }
+  return std::make_unique<FileModel>(file, std::move(found.mechanism), found.home, std::move(points),
+                                     static_cast<chain::Fidelity>(fidelity));
+}
+
+CatalogEntry entry_by(const std::shared_ptr<const MechanismFile>& file, const std::string& path, bool by_platform) {
+  CatalogEntry entry;
+  entry.build = [file, by_platform](std::span<const double> values, std::size_t fidelity) {
+    return built(*file, values, fidelity, {.by_platform = by_platform});
+  };
+  entry.description = entry.build(default_geometry(*file), 0)->description();
+  entry.file = path;
+  return entry;
+}
+
+}  // namespace
+
+std::string reference() {
+  return "\n# Mechanism files\n\n"
+         "Every key of a mechanism's file, which `[mechanism] file` of a study names and which commands take in the "
+         "place "
+         "of a\nmodel's name: `poesy models FILE` shows what was understood of it. Everything stands in the base's "
+         "frame, "
+         "with the\nmechanism at home, as on a drawing.\n\n"
+         "- A number may be an expression of parameters: `\"a + 20 mm\"`, with `+ - * / ( )`, `sqrt sin cos tan atan2 "
+         "pi` and units\n  inside. Its dimension is checked. A bare 0 is any quantity; other bare numbers are "
+         "numbers.\n"
+         "- A point is `[x, y, z]`; a direction `\"x\"`, `\"-z\"`, or three entries of one dimension.\n" +
+         tables_reference(mechanism_file_tables());
+}
+
+CatalogEntry catalog_entry(const std::string& text, const std::string& path) {
+  const auto file = std::make_shared<const MechanismFile>(read_mechanism_file(text, path));
+  const Checked at_home = checked(*file, default_geometry(*file));
+  check_mobility(at_home.mechanism, at_home.home, workspace_mobility(at_home.mechanism));
+  CatalogEntry entry = entry_by(file, path, true);
+  if (at_home.home.passive_rank == at_home.home.loop_equations) return entry;
+  entry.other_metric = std::make_shared<const CatalogEntry>(entry_by(file, path, false));
+  entry.build_with_points = [file](std::span<const double> values, std::size_t fidelity,
+                                   std::span<const PlatformPoint> points) {
+    std::vector<Vector3> own;
+    for (const PlatformPoint& point : points) own.emplace_back(point[0], point[1], point[2]);
+    return built(*file, values, fidelity, {.points = std::move(own)});
+  };
+  return entry;
+}
+
+}  // namespace poesy::file

@@ -1,0 +1,145 @@
+#include "models/file/structure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace poesy::file {
+namespace {
+
+/// Smaller numbers are rounding of a direction or a place.
+constexpr double kNothing = 5e-7;
+
+std::string number_text(double value) { return fmt::format("{:.6g}", std::abs(value) < kNothing ? 0.0 : value); }
+
+std::string triple_text(const Vector3& value) {
+  return fmt::format("({}, {}, {})", number_text(value.x()), number_text(value.y()), number_text(value.z()));
+}
+
+std::string_view motion_text(const Joint& joint) {
+  switch (joint.motion) {
+    case Motion::fixed:
+      return "fixed";
+    case Motion::revolute:
+      return joint.actuated ? "R, actuated" : "R";
+    case Motion::prismatic:
+      return joint.actuated ? "P, actuated" : "P";
+    case Motion::helical:
+      return joint.actuated ? "H, actuated" : "H";
+  }
+  return {};
+}
+
+std::string frame_line(const std::string& place, const std::string& name, std::string_view motion,
+                       const Transform& frame) {
+  constexpr double kMillimetres = 1e3;
+  return fmt::format("  {:<8} {:<10} {:<12} {:<32} {:<32} {}\n", place, name, motion,
+                     triple_text(kMillimetres * frame.p), triple_text(frame.R.col(2)), triple_text(frame.R.col(0)));
+}
+
+std::string counted(std::size_t count, std::string_view one, std::string_view more) {
+  return fmt::format("{} {}", count, count == 1 ? one : more);
+}
+
+/// What a pose has that home has not; empty: nothing.
+std::string difference(const Mobility& home, const PoseMobility& at) {
+  if (!at.unreachable.empty()) return "out of reach: " + at.unreachable;
+  const Mobility& found = at.mobility;
+  if (found.rank != home.rank) return fmt::format("rank {}", found.rank);
+  if (found.platform_freedoms != home.platform_freedoms) {
+    return counted(found.platform_freedoms, "freedom of the platform", "freedoms of the platform");
+  }
+  return {};
+}
+
+std::string pose_text(std::span<const double> pose) {
+  std::string text;
+  for (const double value : pose) text += (text.empty() ? "" : ", ") + number_text(value);
+  return text;
+}
+
+SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+/// Of elementary joints that make one.
+char type_of(std::span<const Joint> joints) {
+  const auto count = [&](Motion motion) { return std::ranges::count(joints, motion, &Joint::motion); };
+  if (joints.front().motion == Motion::fixed) return 'F';
+  if (count(Motion::helical) > 0) return 'H';
+  if (count(Motion::prismatic) > 0) return joints.size() == 1 ? 'P' : 'C';
+  return joints.size() == 1 ? 'R' : joints.size() == 2 ? 'U' : 'S';
+}
+
+/// Whether the mechanism has errors of these frames of a limb.
+bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first, std::size_t last) {
+  return std::ranges::any_of(mechanism.slots, [&](const ErrorSlot& slot) {
+    return slot.limb == limb && slot.frame >= first && slot.frame <= last;
+  });
+}
+
+}  // namespace
+
+Sketch sketch_of(const Mechanism& mechanism) {
+  Sketch sketch{.limbs = {}, .platform = sketched(mechanism.platform.p), .tool = {}};
+  if (mechanism.tool) sketch.tool.push_back(sketched(mechanism.platform.p + mechanism.platform.R * *mechanism.tool));
+  for (std::size_t i = 0; i < mechanism.limbs.size(); ++i) {
+    std::span<const Joint> joints = mechanism.limbs[i].joints;
+    std::vector<SketchedJoint> limb;
+    for (std::size_t j = 0; j < joints.size();) {
+      std::size_t end = j + 1;
+      while (end < joints.size() && joints[end].name == joints[j].name) ++end;
+      const std::span<const Joint> one = joints.subspan(j, end - j);
+      const bool actuated = std::ranges::any_of(one, &Joint::actuated);
+      limb.push_back({one.front().name, type_of(one), actuated, sketched(one.front().at_home.p),
+                      sketched(one.front().at_home.R.col(2)), has_errors(mechanism, i, j == 0 ? 0 : end, end)});
+      j = end;
+    }
+    sketch.limbs.push_back(std::move(limb));
+  }
+  return sketch;
+}
+
+std::string structure_text(const Mechanism& mechanism) {
+  std::string text =
+      fmt::format("  {:<8} {:<10} {:<12} {:<32} {:<32} {}\n", "frame", "joint", "type", "point (mm)", "z", "x");
+  for (std::size_t i = 0; i < mechanism.limbs.size(); ++i) {
+    const std::vector<Joint>& joints = mechanism.limbs[i].joints;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      text += frame_line(fmt::format("{}_{}", i + 1, j + 1), joints[j].name, motion_text(joints[j]), joints[j].at_home);
+    }
+  }
+  text += frame_line("platform", "P", "", mechanism.platform);
+  return text +
+         "  Frame i_j is that of joint j of limb i, with z about or along the joint and x towards the next joint's\n"
+         "  point, made perpendicular to z; S is three R, of which the first lies along the line from the joint "
+         "before.\n"
+         "  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the platform, against frame i_j.\n";
+}
+
+std::vector<std::string> mobility_lines(const Mobility& home, std::span<const PoseMobility> poses) {
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("{} ({} actuated), rank {} of {} loop equations: {}, {}",
+                              counted(home.joints, "joint", "joints"), home.actuated, home.rank, home.loop_equations,
+                              counted(home.freedoms, "freedom", "freedoms"),
+                              counted(home.over_constraints, "over-constraint", "over-constraints")));
+  lines.push_back(
+      fmt::format("the platform has {}, of which {} rotate; {}; locking the drives leaves {}",
+                  counted(home.platform_freedoms, "freedom", "freedoms"), home.platform_rotates,
+                  counted(home.idle, "idle freedom", "idle freedoms"),
+                  home.left_when_locked == 0 ? std::string("none") : fmt::format("{} idle", home.left_when_locked)));
+  const std::optional<double> below = home.below_gap();
+  lines.push_back(fmt::format("singular values around the gap, lengths in units of the reach: {:.3g} | {}",
+                              home.above_gap(), below ? fmt::format("{:.1e}", *below) : "none"));
+  std::size_t different = 0;
+  for (const PoseMobility& at : poses) {
+    const std::string what = difference(home, at);
+    if (what.empty()) continue;
+    ++different;
+    lines.push_back(fmt::format("pose ({}): {}", pose_text(at.pose), what));
+  }
+  lines.push_back(
+      fmt::format("the same at {} of {} poses tried in the workspace", poses.size() - different, poses.size()));
+  return lines;
+}
+
+}  // namespace poesy::file

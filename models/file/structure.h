@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/model/sketch.h"
+#include "models/file/mobility.h"
+
+/// What was understood of a mechanism's file, for people.
+namespace poesy::file {
+
+/// Every elementary joint and fixed frame with its frame at home (mm, in the base frame), a line each, and the rule by
+/// which the frames were chosen.
+std::string structure_text(const Mechanism& mechanism);
+
+/// The joints as the file has them: elementary ones that make one joint are one.
+Sketch sketch_of(const Mechanism& mechanism);
+
+/// Joints, ranks and freedoms at home, the singular values around the gap, and what differs in the workspace.
+std::vector<std::string> mobility_lines(const Mobility& home, std::span<const PoseMobility> poses);
+
+}  // namespace poesy::file

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "models/file/mechanism.h"
+
+namespace poesy::file {
+
+/// The text of tests/data/mechanisms/NAME.toml.
+inline std::string text_of(const std::string& name) {
+  std::ifstream file(POESY_TEST_DATA "/mechanisms/" + name + ".toml");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// That file, with its default geometry.
+inline Mechanism from_file(const std::string& name) {
+  const MechanismFile file = read_mechanism_file(text_of(name), name + ".toml");
+  return mechanism(file, default_geometry(file));
+}
+
+}  // namespace poesy::file

@@ -1,0 +1,291 @@
+#include "models/file/mechanism_file.h"
+
+#include <gtest/gtest.h>
+
+#include "models/file/mobility.h"
+#include "tests/models/file/files.h"
+
+namespace poesy::file {
+namespace {
+
+/// A wrong file: a part of a right one, what is put in its place, and the message.
+struct Wrong {
+  const char* from;
+  const char* to;
+  const char* message;
+};
+
+/// What reading says of the text, and of its mobility at home.
+std::string problem_of(const std::string& text) {
+  try {
+    const MechanismFile file = read_mechanism_file(text, "m.toml");
+    const Mechanism made = mechanism(file, default_geometry(file));
+    check_mobility(made, home_mobility(made));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+std::string replaced(std::string text, const Wrong& wrong) {
+  const std::size_t at = text.find(wrong.from);
+  EXPECT_NE(at, std::string::npos) << wrong.from;
+  return text.replace(at, std::string(wrong.from).size(), wrong.to);
+}
+
+void expect_refused(const std::string& name, const std::vector<Wrong>& list) {
+  const std::string text = text_of(name);
+  EXPECT_EQ(problem_of(text), "read");
+  for (const Wrong& wrong : list) {
+    const std::string problem = problem_of(replaced(text, wrong));
+    EXPECT_EQ(problem, wrong.message) << wrong.to;
+    EXPECT_NE(problem.find("; "), std::string::npos) << "no remedy: " << problem;
+  }
+}
+
+TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
+  expect_refused(
+      "rps3",
+      {
+          {"poesy-mechanism", "poesy-study",
+           "m.toml:1:11: format is 'poesy-study'; a mechanism has format = \"poesy-mechanism\""},
+          {"version = 1", "version = 2",
+           "m.toml:2:11: version is 2, but this poesy knows version 1 only; use a newer poesy"},
+          {"version = 1", "version = \"1\"", "m.toml:2:11: version is the text '1'; write a whole number"},
+          {"version = 1", "versoin = 1", "m.toml:2:1: unknown key 'versoin'; did you mean 'version'?"},
+          {"name    = \"rps3\"", "name    = \"3 rps\"",
+           "m.toml:3:11: name '3 rps' is no name; write letters, digits, _ and -"},
+          {"name    = \"rps3\"", "", "m.toml:1:1: key 'name' is missing; write name = \"rps3\""},
+          {"[geometry]", "[geometri]", "m.toml:6:2: unknown key 'geometri'; did you mean 'geometry'?"},
+          {"\"250 mm\"", "250",
+           "m.toml:7:5: geometry.a is a number; a parameter is a length or an angle: give it a unit, e.g. \"1 mm\""},
+          {"\"250 mm\"", "0",
+           "m.toml:7:5: geometry.a is a number; a parameter is a length or an angle: give it a unit, e.g. \"1 mm\""},
+          {"\"250 mm\"", "\"250\"",
+           "m.toml:7:5: geometry.a is a number; a parameter is a length or an angle: give it a unit, e.g. \"1 mm\""},
+          {"\"250 mm\"", "\"250 mn\"",
+           "m.toml:7:20: geometry.a.value '250 mn' has an unknown unit 'mn'; known: m, cm, mm, um, rad, mrad, deg, "
+           "arcmin, arcsec; write * to multiply"},
+          {"\"250 mm\"", "\"250 mm^2\"",
+           "m.toml:7:22: geometry.a.value '250 mm^2' cannot be read at '^2'; write numbers with units, parameters, + - "
+           "* / ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\""},
+          {"\"250 mm\"", "\"h / 2\"",
+           "m.toml:7:16: geometry.a.value 'h / 2' has an unknown parameter 'h'; known: sqrt, sin, cos, tan, atan2, pi"},
+          {"c = {", "mm = {", "m.toml:8:6: geometry.mm is a unit; give the parameter another name"},
+          {"c = {", "sin = {",
+           "m.toml:8:7: geometry.sin has a meaning in expressions; give the parameter another name"},
+          {"origin      = [0, 0, \"h\"]", "origin      = [0, 0, \"h + 3 deg\"]",
+           "m.toml:12:25: platform.origin[2] 'h + 3 deg' adds a length and an angle; both must have one dimension; a "
+           "bare number other than 0 has none, so give it a unit"},
+          {"origin      = [0, 0, \"h\"]", "origin      = [0, 0, 600]",
+           "m.toml:12:22: platform.origin[2] '600' is a number, but must be a length; give it a unit, e.g. \"1 mm\""},
+          {"origin      = [0, 0, \"h\"]", "origin      = [0, \"h\"]",
+           "m.toml:12:15: platform.origin has 2 values; write three, e.g. [\"60 mm\", 0, 0]"},
+          {"origin      = [0, 0, \"h\"]", "orign      = [0, 0, \"h\"]",
+           "m.toml:12:1: unknown key 'orign' in [platform]; did you mean 'origin'?"},
+          {"\"vector\"", "\"xyx\"", "m.toml:13:15: platform.rotation is 'xyx', which is unknown; did you mean 'xyz'?"},
+          {"[\"rx\", \"ry\", \"z\"]", "[\"rx\", \"ry\", \"zz\"]",
+           "m.toml:14:28: platform.coordinates[2] is 'zz', which is unknown; did you mean 'z'?"},
+          {"[\"rx\", \"ry\", \"z\"]", "[\"rx\", \"rx\", \"z\"]",
+           "m.toml:14:22: platform.coordinates[1] 'rx' is the name of another coordinate; give it a name of its own"},
+          {"[\"rx\", \"ry\", \"z\"]", "[\"rx\", { rx = \"ry\" }, \"z\"]",
+           "m.toml:14:22: platform.coordinates[1] 'rx' is the name of another coordinate; give it a name of its own"},
+          {"[\"rx\", \"ry\", \"z\"]", "[\"rx\", { beta = \"ry\", g = \"z\" }]",
+           "m.toml:14:22: platform.coordinates[1] has 2 names; write { alpha = \"rx\" }"},
+          {"[\"rx\", \"ry\", \"z\"]", "[\"rx\", \"ry\"]",
+           "m.toml:15:73: unknown coordinate 'z' in [platform.workspace]; known: rx, ry"},
+          {"z = [\"500 mm\", \"700 mm\"] }", "z = [\"700 mm\", \"500 mm\"] }",
+           "m.toml:15:78: platform.workspace.z[0] '700 mm' is not below '500 mm'; write the lowest value first"},
+          {"z = [\"500 mm\", \"700 mm\"] }", "z = [\"500 mm\"] }",
+           "m.toml:15:77: platform.workspace.z has 1 values; write [lowest, highest]"},
+          {"z = [\"500 mm\", \"700 mm\"] }", "z = [\"5 deg\", \"7 deg\"] }",
+           "m.toml:15:78: platform.workspace.z[0] '5 deg' is an angle, but must be a length; correct the expression or "
+           "its unit"},
+          {", z = [\"500 mm\", \"700 mm\"] }", " }",
+           "m.toml:15:15: key 'z' is missing in [platform.workspace]; write z = [\"-20 deg\", \"20 deg\"]"},
+          {"workspace ", "workspac", "m.toml:15:1: unknown key 'workspac' in [platform]; did you mean 'workspace'?"},
+          {"tool        = [0, 0, \"100 mm\"]", "tool = [0, 0, \"100 mm\"]\nx = \"y\"",
+           "m.toml:11:1: platform has one of x and z; give both, or neither"},
+          {"tool        = [0, 0, \"100 mm\"]", "x = \"-z\"\nz = \"z\"",
+           "m.toml:16:5: platform.x is parallel to platform.z; give another direction"},
+          {"tool        = [0, 0, \"100 mm\"]", "points = [[0, 0, 0], [0, 0, \"h\"], [0, 0, \"a\"]]",
+           "m.toml:16:10: the metric has no meaning: the points are on one line, about which the platform may turn "
+           "unseen; write points = [...] in [platform], three or more that are on no line"},
+          {"tool        = [0, 0, \"100 mm\"]", "points = [[0, 0, 0], [0, 0, \"h\"]]",
+           "m.toml:16:10: platform.points has fewer than three points; give three that are on no line"},
+          {"[[limb]]", "[limb]", "m.toml:18:1: limb is one table; write double brackets: [[limb]]"},
+          {"count = 3", "count = 0", "m.toml:19:20: limb[0].copies.count is 0; it must be at least 1"},
+          {"count = 3", "count = 2.5", "m.toml:19:20: limb[0].copies.count is the number 2.5; write a whole number"},
+          {"count = 3", "count = 1",
+           "m.toml:18:1: limb is alone, so nothing closes a loop; write two limbs or more, or copies"},
+          {"about = \"z\"", "about = \"w\"",
+           "m.toml:19:31: limb[0].copies.about is 'w', which is unknown; known: x, y, z"},
+          {", about = \"z\"", "", "m.toml:19:10: key 'about' is missing in [limb[0].copies]; write about = \"z\""},
+          {"copies = { count = 3", "copies = { cuont = 3",
+           "m.toml:19:12: unknown key 'cuont' in [limb[0].copies]; did you mean 'count'?"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"Q\"",
+           "m.toml:21:24: limb[0].joints[0].type is 'Q', which is unknown; known: R, P, H, C, U, S, fixed"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", tpye = \"R\"",
+           "m.toml:21:17: unknown key 'tpye' in [limb[0].joints[0]]; did you mean 'type'?"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\"",
+           "m.toml:21:3: key 'type' is missing in [limb[0].joints[0]]; write type = \"R\""},
+          {"{ name = \"A\", type = \"R\"", "{ type = \"R\"",
+           "m.toml:21:3: key 'name' is missing in [limb[0].joints[0]]; write name = \"A\""},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"S\", type = \"R\"",
+           "m.toml:23:12: limb[0].joints[2].name 'S' is the name of another joint of this limb; give it a name of its "
+           "own"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", pitch = \"5 mm\"",
+           "m.toml:21:29: limb[0].joints[0].pitch does not belong to type = \"R\"; remove it"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", axis2 = \"x\"",
+           "m.toml:21:29: limb[0].joints[0].axis2 does not belong to type = \"R\"; remove it"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"H\"",
+           "m.toml:21:3: key 'pitch' is missing in [limb[0].joints[0]]; write pitch = \"5 mm\""},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"H\", pitch = 0",
+           "m.toml:21:37: limb[0].joints[0].pitch is zero, so the joint does not slide; write type = \"R\", or its "
+           "pitch"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"H\", pitch = 5",
+           "m.toml:21:37: limb[0].joints[0].pitch '5' is a number, but must be a length; give it a unit, e.g. \"1 "
+           "mm\""},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"U\", axis2 = [0, -2, 0]",
+           "m.toml:21:37: limb[0].joints[0].axis2 is parallel to the first axis; a universal joint has two axes; one "
+           "alone is a revolute joint, type = \"R\""},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", x = \"-y\"",
+           "m.toml:21:33: limb[0].joints[0].x is parallel to the joint's axis; give another direction"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", actuated = 2",
+           "m.toml:21:40: limb[0].joints[0].actuated is no truth value; write true or false"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"U\", axis2 = \"x\", actuated = true",
+           "m.toml:21:53: limb[0].joints[0].actuated is true; write 1 or 2, for its first or second axis"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "axis = \"y\"",
+           "m.toml:21:3: limb[0].joints[0] 'A' has no point; write at = [x, y, z]"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "at = [\"a\", 0, 0]",
+           "m.toml:21:3: limb[0].joints[0] 'A' has no direction; write axis = \"z\", or from = and to = with names of "
+           "joints or points"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "at = [\"a\", 0, 0], axis = \"q\"",
+           "m.toml:21:54: limb[0].joints[0].axis is 'q'; write \"x\", \"y\", \"z\", a minus before it, or [x, y, z] "
+           "for a direction"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "at = [\"a\", 0, 0], axis = [0, 0, 0]",
+           "m.toml:21:54: limb[0].joints[0].axis is zero and has no direction; give it a length, e.g. [0, 0, 1]"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "at = [\"a\", 0, 0], axis = [0, \"a\", 1]",
+           "m.toml:21:63: limb[0].joints[0].axis mixes a length and a number; the entries of a direction must have one "
+           "dimension"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "at = [\"b\", 0, 0], axis = \"y\"",
+           "m.toml:21:36: limb[0].joints[0].at[0] 'b' has an unknown parameter 'b'; known: a, c, h, sqrt, sin, cos, "
+           "tan, atan2, pi"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "at = \"corner\", axis = \"y\"",
+           "m.toml:21:34: limb[0].joints[0].at 'corner' is no joint of this limb and no point; known: A, q, S"},
+          {"at = [\"a\", 0, 0], axis = \"y\"", "at = \"A\", axis = \"y\"",
+           "m.toml:21:3: limb[0].joints[0] 'A' takes its point from itself; write at = [x, y, z] for one of them"},
+          {"from = \"A\"", "from = \"B\"",
+           "m.toml:22:36: limb[0].joints[1].from 'B' is no joint of this limb and no point; known: A, q, S"},
+          {"from = \"A\"", "from = \"S\"",
+           "m.toml:22:46: limb[0].joints[1].to 'S' and 'S' are one point at home, so no direction goes from one to the "
+           "other; write axis = instead, or move one of them"},
+          {"from = \"A\"", "from = \"q\"",
+           "m.toml:22:3: limb[0].joints[1] 'q' takes its point from itself; write at = [x, y, z] for one of them"},
+          {"to = \"S\"", "to = \"S\", axis = \"z\"",
+           "m.toml:22:58: limb[0].joints[1].axis is given besides `to`; remove one of them"},
+          {"to = \"S\", actuated", "to = \"S\", aktuated",
+           "m.toml:22:51: unknown key 'aktuated' in [limb[0].joints[1]]; did you mean 'actuated'?"},
+          {", actuated = true }", " }",
+           "m.toml:23:3: the drives do not hold the platform, which has 3 freedoms and 0 drives: joint 'S' of limb 1 "
+           "is loose, and the platform turns about (-0.35, -0.94, 0); write actuated = true at one more joint, or "
+           "correct the axes"},
+          {"actuated = true", "actuated = \"yes\"",
+           "m.toml:22:62: limb[0].joints[1].actuated is no truth value; write true or false"},
+          {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [\"c\", 0, \"h\"], axis = \"z\" }",
+           "m.toml:23:49: limb[0].joints[2].axis does not belong to type = \"S\"; remove it"},
+          {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [\"c\", 0, \"h\"], actuated = true }",
+           "m.toml:23:49: limb[0].joints[2].actuated does not belong to type = \"S\"; remove it"},
+          {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [0, 0, \"h\"] }",
+           "m.toml:11:1: the metric has no meaning: the points are on one line, about which the platform may turn "
+           "unseen; write points = [...] in [platform], three or more that are on no line"},
+          {"joints = [", "joints = []\nx = [",
+           "m.toml:21:1: unknown key 'x' in [limb[0]]; known: copies, points, joints"},
+          {"frames = \"all\"", "frames = \"none\"",
+           "m.toml:26:10: errors.frames is 'none'; write \"all\", or a list of names and patterns"},
+          {"frames = \"all\"", "frames = [\"epsilon_1_0_x\", \"epsilon_1_9_x\"]",
+           "m.toml:26:28: errors.frames[1] 'epsilon_1_9_x' fits no error; did you mean 'epsilon_1_0_x'?"},
+          {"frames = \"all\"", "frames = [\"epsilon_1_0_*\", \"epsilon_?_0_x\"]",
+           "m.toml:26:28: errors.frames[1] 'epsilon_?_0_x' names epsilon_1_0_x a second time; remove it, or write a "
+           "narrower pattern"},
+          {"frames = \"all\"", "frame = \"all\"",
+           "m.toml:26:1: unknown key 'frame' in [errors]; did you mean 'frames'?"},
+          {"frames = \"all\"", "frames = \"all\"\n[sets]\nall = [\"*\"]",
+           "m.toml:28:7: sets.all exists in any case; remove it"},
+          {"frames = \"all\"", "frames = \"all\"\n[sets]\nfew = []",
+           "m.toml:28:7: sets.few is empty; name its errors, or remove it"},
+          {"frames = \"all\"", "frames = \"all\"\n[sets]\nfew = [\"gamma_*\"]",
+           "m.toml:28:8: sets.few[0] 'gamma_*' fits no error; they have names like epsilon_1_0_x"},
+          {"frames = \"all\"", "frames = \"all\"\n[sets]\n\"a b\" = [\"*\"]",
+           "m.toml:28:9: sets.a b 'a b' is no name; write letters, digits, _ and -"},
+          {"frames = \"all\"", "frames = \"all\"\n[sets",
+           "m.toml:27:6: this is not TOML: Error while parsing table header: expected ']', saw '\\n'; correct this "
+           "line"},
+          {"[\"rx\", \"ry\", \"z\"]\nworkspace   = { ",
+           "[\"rx\", \"ry\", \"z\", \"x\"]\nworkspace   = { x = [0, \"1 mm\"], ",
+           "m.toml:14:15: platform.coordinates are not independent: x follows from the others, and the platform has 3 "
+           "freedoms; remove it, or take another"},
+          {"[\"rx\", \"ry\", \"z\"]\nworkspace   = { rx",
+           "[\"ry\", \"z\"]\nworkspace   = { z = [\"500 mm\", \"700 mm\"], ry = [0, \"9 deg\"] } # ",
+           "m.toml:14:15: platform.coordinates has 2, but the platform has 3 freedoms; name as many as it has "
+           "freedoms"},
+          {"[\"rx\", \"ry\", \"z\"]\nworkspace   = { rx",
+           "[\"rx\", \"ry\", \"rz\"]\nworkspace   = { rz = [0, \"1 deg\"], rx = [0, \"1 deg\"], ry = [0, \"9 deg\"] } "
+           "# ",
+           "m.toml:14:15: platform.coordinates are not independent: rz follows from the others, and the platform has 3 "
+           "freedoms; remove it, or take another"},
+      });
+}
+
+TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
+  expect_refused(
+      "rrr3",
+      {
+          {"{ phi = \"rz\" }", "{ phi = \"rw\" }",
+           "m.toml:13:34: platform.coordinates[2].phi is 'rw', which is unknown; did you mean 'rx'?"},
+          {"at = \"elbow\"", "at = \"ellbow\"",
+           "m.toml:23:34: limb[0].joints[1].at 'ellbow' is no joint of this limb and no point; did you mean 'elbow'?"},
+          {"elbow = [\"220 mm\"", "C = [\"220 mm\"",
+           "m.toml:23:34: limb[0].joints[1].at 'elbow' is no joint of this limb and no point; known: A, B, C, C"},
+          {"elbow = [\"220 mm\"", "elbow = [\"220 deg\"",
+           "m.toml:17:10: points.elbow[0] '220 deg' is an angle, but must be a length; correct the expression or its "
+           "unit"},
+          {"name = \"l\"", "name = \"l l\"",
+           "m.toml:27:8: error[0].name 'l l' is no name; write letters, digits, _ and -"},
+          {"name = \"l\"", "nmae = \"l\"", "m.toml:27:1: unknown key 'nmae' in [error[0]]; did you mean 'name'?"},
+          {"limb = \"each\"", "limb = \"all\"",
+           "m.toml:28:8: error[0].limb is 'all'; write a limb's number, or \"each\""},
+          {"limb = \"each\"", "limb = 4", "m.toml:28:8: error[0].limb is 4; it must be at most 3"},
+          {"limb = \"each\"", "limb = 0", "m.toml:28:8: error[0].limb is 0; it must be at least 1"},
+          {"frame = 1", "frame = 4", "m.toml:29:9: error[0].frame is 4; it must be at most 3"},
+          {"frame = 1", "frame = -1", "m.toml:29:9: error[0].frame is -1; it must be at least 0"},
+          {"frame = 1", "", "m.toml:26:1: key 'frame' is missing in [error[0]]; write frame = 0"},
+          {"component = \"delta_x\"", "component = \"delta_w\"",
+           "m.toml:30:13: error[0].component is 'delta_w', which is unknown; did you mean 'delta_x'?"},
+          {"component = \"delta_x\"", "component = []",
+           "m.toml:30:13: error[0].component is empty; write \"delta_z\", for instance"},
+          {"[\"delta_x\", \"delta_y\"]", "[\"delta_x\", \"epsilon_y\"]",
+           "m.toml:37:25: error[1].component[1] mixes lengths and angles in one vector; write two [[error]]"},
+          {"[\"delta_x\", \"delta_y\"]", "[\"delta_x\", \"delta_x\"]",
+           "m.toml:37:25: error[1].component[1] is a component a second time; remove it"},
+          {"name = \"pin\"", "name = \"l\"",
+           "m.toml:48:13: sets.all-pins[0] 'pin_?_1' fits no error; they have names like l_1"},
+          {"scale = 0.5", "scale = 0",
+           "m.toml:44:9: error[2].scale is zero, so the error has no effect; write its scale"},
+          {"scale = 0.5", "scale = \"2 mm\"",
+           "m.toml:44:9: error[2].scale '2 mm' is a length, but must be a number; correct the expression or its unit"},
+          {"name = \"encoder\"", "name = \"l_2\"",
+           "m.toml:40:8: error[2].name 'l_2' makes a second error 'l_2'; give it a name of its own"},
+          {"[\"l_*\"]", "[\"m_*\"]", "m.toml:47:12: sets.lengths[0] 'm_*' fits no error; they have names like l_1"},
+          {"[[error]]", "[error]",
+           "m.toml:33:1: this is not TOML: Error while parsing table header: cannot redefine existing table 'error' as "
+           "array-of-tables; correct this line"},
+          {"actuated = true", "actuated = false",
+           "m.toml:24:3: the drives do not hold the platform, which has 3 freedoms and 0 drives: joint 'C' of limb 1 "
+           "is loose, and the platform turns about (0, 0, 1); write actuated = true at one more joint, or correct the "
+           "axes"},
+      });
+}
+
+}  // namespace
+}  // namespace poesy::file
