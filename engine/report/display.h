@@ -12,7 +12,7 @@
 #include "engine/report/table.h"
 
 /// How values are shown: every table makes its columns and cells here. What a result says of its study: the resolved
-/// text (study/study_text.h), read setting by setting.
+/// text (study/study_file.h), read setting by setting.
 namespace poesy {
 
 /// Position of a response among the result's; it must have it.

@@ -15,6 +15,7 @@ from pathlib import Path
 TABLE = "engine/README.md"
 HEADING = "## Who may include whom"
 REGISTRY = "models/registry.cpp"
+READER = "file"  # the folder of models that reads mechanisms from files, and is none itself
 SCANNED = ("engine", "models", "bench", "tests")
 EVERYTHING = "everything"
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<(?P<angle>[^>]+)>|"(?P<quote>[^"]+)")')
@@ -186,7 +187,7 @@ def mechanism_pattern(root):
     """Matches the names of the registered mechanisms as words of code or of prose: two_upr_rpu, 2UPR-RPU."""
     digits = {"two": "2", "three": "3", "four": "4", "five": "5", "six": "6"}
     registry = (root / REGISTRY).read_text(encoding="utf-8")
-    folders = sorted(set(re.findall(r'#include "models/([^/"]+)/', registry)))
+    folders = sorted(set(re.findall(r'#include "models/([^/"]+)/', registry)) - {READER})
     if not folders:
         raise TableError(f"{REGISTRY} includes no mechanism, so the engine cannot be searched for their names")
     names = (("[-_ ]?").join(f"(?:{word}|{digits.get(word, word)})" for word in name.split("_")) for name in folders)
