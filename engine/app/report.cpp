@@ -8,7 +8,10 @@
 #include "engine/app/terminal.h"
 #include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
+#include "engine/kinds/study_file.h"
+#include "engine/report/mechanism_picture.h"
 #include "engine/report/report_kind.h"
+#include "models/registry.h"
 
 namespace poesy::app {
 namespace {
@@ -28,11 +31,21 @@ std::string default_path(const std::vector<std::string>& results) {
 
 bool may_be_replaced(const std::string& path) { return is_marked(path, kReportMark); }
 
+/// What a report needs of a result, read from its file.
+ReportedResult reported(const std::string& path) {
+  ReportedResult result{read_result_with_warning(path), path};
+  if (result.stored.mechanism_text.empty()) return result;
+  const std::optional<Study> study = study_in(result.stored, registry());
+  const std::optional<Sketch> sketch = study ? build_model(study->mechanism)->sketch() : std::nullopt;
+  if (sketch) result.picture = mechanism_picture(*sketch, study->model().title);
+  return result;
+}
+
 int report(const ReportOptions& options) {
   const std::string path = options.report.empty() ? default_path(options.results) : options.report;
   check_output_path(path, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
-  for (const std::string& result : options.results) results.push_back({read_result_with_warning(result), result});
+  for (const std::string& result : options.results) results.push_back(reported(result));
   write_text(path, html_report(kind_of(results.front().stored).report, results));
   std::puts(path.c_str());
   return kDone;

@@ -18,7 +18,7 @@
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
-/// What a kind of study promises. Each has a folder, with a row of this type in its kind.cpp.
+/// What a kind of study promises. Each has a folder, with a row of this type beside its run.
 namespace poesy {
 
 /// What a study found.

@@ -16,7 +16,8 @@ struct SketchedJoint {
   bool actuated;       ///< a drive holds it
   SketchVector point;  ///< where it stands
   SketchVector axis;   ///< its first axis
-  bool has_errors;     ///< whether there are errors of the frame to the next joint, or the platform; of the first also those of the base
+  bool has_errors;     ///< whether there are errors of the frame to the next joint, or the platform; of the first also
+                       ///< those of the base
 };
 
 /// A mechanism as a picture shows it, at home.

@@ -188,23 +188,33 @@ class ViewPanel {
       text +=
           line(at(joints[j - 1].point), at(joints[j].point), fmt::format("stroke=\"{}\" stroke-width=\"2.2\"", colour));
     }
-    for (const SketchedJoint& joint : joints) text += tick(joint, colour);
-    for (const SketchedJoint& joint : joints) text += joint_glyph(joint, colour);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const Pixel place = place_of(joints, j);
+      text += tick(joints[j], place, colour) + joint_glyph(joints[j], place, colour);
+    }
     const Pixel first = at(joints.front().point);
     return text + words({first.x - 4, first.y + 20}, std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
   }
 
-  std::string tick(const SketchedJoint& joint, std::string_view colour) const {
+  /// Where a joint's glyph stands: at its point, and of a slide that begins at another joint between the two that it
+  /// connects.
+  Pixel place_of(std::span<const SketchedJoint> joints, std::size_t j) const {
+    const Pixel here = at(joints[j].point);
+    if (joints[j].type != 'P' || j == 0 || j + 1 == joints.size() || joints[j].point != joints[j - 1].point)
+      return here;
+    const Pixel next = at(joints[j + 1].point);
+    return {(here.x + next.x) / 2, (here.y + next.y) / 2};
+  }
+
+  std::string tick(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
     if (joint.type == 'S' || joint.type == 'F') return {};
-    const Pixel middle = at(joint.point);
     const Pixel along{dot(joint.axis, view_->right), -dot(joint.axis, view_->up)};
     return line({middle.x - kTick * along.x, middle.y - kTick * along.y},
                 {middle.x + kTick * along.x, middle.y + kTick * along.y},
                 fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"6 2 1 2\"", colour));
   }
 
-  std::string joint_glyph(const SketchedJoint& joint, std::string_view colour) const {
-    const Pixel middle = at(joint.point);
+  std::string joint_glyph(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
     std::string text = fmt::format("<g><title>{}</title>\n", escaped(joint.name));
     if (joint.has_errors) text += circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
     return text + glyph(joint.type, joint.actuated, middle, colour) + "</g>\n";

@@ -13,7 +13,7 @@ namespace poesy {
 
 /// What a run keeps of itself now and then, so that another run may take it up. A run merges finished work in a fixed
 /// order, so between two merges its accumulators are all there is to keep. A study may consist of several runs one
-/// after another, its stages: each call of a run function (engine/run/runner.h) is one. A continued study goes through
+/// after another, its stages: each call of a run function (engine/run/fold.h) is one. A continued study goes through
 /// the same stages, and those that were finished have nothing left to solve.
 class Checkpoints {
  public:

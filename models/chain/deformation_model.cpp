@@ -183,7 +183,7 @@ std::optional<PlatformPoints> DeformationModel::platform_points(std::span<const 
   if (!platform) return std::nullopt;
   const Limb& limb = chain.limbs.front();
   PlatformPoints reported{forward_kinematics<double>(limb, limb.home, displacements.first(limb.joints.size()),
-                                                   [](std::size_t, const lie::Screw<double>&) {})};
+                                                     [](std::size_t, const lie::Screw<double>&) {})};
   if (platform->tool) reported.tool = reported.platform.R * *platform->tool + reported.platform.p;
   return reported;
 }

@@ -40,7 +40,7 @@ struct MonteCarloResult {
   std::vector<std::uint64_t> count;  ///< [R x M] samples behind these
   std::vector<double> quantiles;     ///< [R x M x Q]
   std::vector<double> rms;           ///< [R x M] root mean square
-  /// [R x M x Q] interval of the distribution's quantile (stats/quantile_interval.h), an end infinite where the samples
+  /// [R x M x Q] interval of the distribution's quantile (stats/buckets.h), an end infinite where the samples
   /// are too few for it; empty in files of older versions.
   std::vector<double> quantiles_ci_low;
   std::vector<double> quantiles_ci_high;  ///< likewise

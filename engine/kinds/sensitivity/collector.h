@@ -15,7 +15,7 @@
 namespace poesy {
 
 /// What the global indices of a sensitivity study were at its history points
-/// (engine/run/history_points.h), put together as units are merged. As soon as all poses of a slot have
+/// (engine/run/evaluate_unit.h), put together as units are merged. As soon as all poses of a slot have
 /// reached a point, its indices are computed and what the poses had is dropped: as cells are solved slot by slot, that
 /// of one slot is in memory at a time, 16 bytes for each response, pose and point. A continued run, and a shard, also
 /// holds that of the slots that it cuts.

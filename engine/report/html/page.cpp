@@ -153,6 +153,12 @@ Section& Section::figure(std::string_view key, std::string_view caption) {
   return *this;
 }
 
+Section& Section::picture(std::string_view svg, std::string_view caption) {
+  body_ += fmt::format("<div class=\"table-wrap\" tabindex=\"0\" role=\"group\" aria-label=\"{}\">{}</div>\n",
+                       escaped(caption), svg);
+  return *this;
+}
+
 Section& Section::table(const Table& table) {
   body_ += html_table(table);
   return *this;

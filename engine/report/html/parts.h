@@ -19,8 +19,9 @@ struct ReportKind;
 
 /// A result and the file where it was found, as the reader may name it.
 struct ReportedResult {
-  StoredResult stored;  ///< what it says
-  std::string path;     ///< where it was read from
+  StoredResult stored;       ///< what it says
+  std::string path;          ///< where it was read from
+  std::string picture = {};  ///< of the mechanism, as SVG (engine/report/mechanism_picture.h); empty: there is none
 };
 
 /// The names at these positions.

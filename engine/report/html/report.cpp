@@ -98,6 +98,14 @@ std::string subtitle(const StoredResult& result) {
   return result.metric.empty() ? text : text + "; metric: " + metric_text(result);
 }
 
+/// What a mechanism from a file looks like, and its file.
+void add_mechanism(const ReportedResult& result, Page& page) {
+  if (result.stored.mechanism_text.empty()) return;
+  Section& section = page.add_section("mechanism", "The mechanism");
+  if (!result.picture.empty()) section.picture(result.picture, "The mechanism at home");
+  section.folded_text("Its file", result.stored.mechanism_text);
+}
+
 /// Of one result.
 Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
@@ -105,6 +113,7 @@ Page page_of(const ReportKind& kind, const ReportedResult& result) {
   page.subtitle = subtitle(result.stored);
   page.warnings = warnings(kind, result);
   add_responses(result.stored, page);
+  add_mechanism(result, page);
   kind.page(result.stored, result_tables(kind, result.stored, {default_ranking(result.stored)}), page);
   add_glossary(result.stored, page);
   add_outcomes(kind, result, page);

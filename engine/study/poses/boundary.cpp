@@ -76,11 +76,12 @@ Line line_of(Vector uniforms, std::size_t coordinates) {
   // and such lines meet edges and corners.
   const auto fraction = [](double value) { return value - std::floor(value); };
   double step = 0.0;
+  double share = 0.5;  // of the first dimension: half of the sphere, for a line has no sign
   for (double& u : uniforms) {
     step = fraction(step + kGoldenRatio);
-    u = fraction(u + step);
+    u = share * fraction(u + step);
+    share = 1.0;
   }
-  uniforms[0] *= 0.5;  // half of the sphere: a line has no sign
   Line line{Vector(coordinates, 0.0), Vector(coordinates, 0.0)};
   unit_vector(uniforms, line.direction);
   const std::span<double> offset = std::span(line.point).first(coordinates - 1);
