@@ -27,7 +27,8 @@ CatalogEntry find_model(const std::string& name) {
   }
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : registry()) known.push_back(entry.description.name);
-  throw InputError({}, "no model '" + printable(name) + "'", suggestion(lower_case(name), known));
+  throw InputError({}, "no model '" + printable(name) + "'",
+                   suggestion(lower_case(name), known) + "; a mechanism's file is given with its ending, FILE.toml");
 }
 
 const StudyKind& kind_named(const std::string& word) {
@@ -58,6 +59,8 @@ int print_template(const TemplateOptions& options) {
 }
 
 void write_picture(const CatalogEntry& entry, const std::string& path) {
+  if (!path.ends_with(".svg"))
+    throw InputError({path}, "is no name of a picture", "pictures are SVG: name it PICTURE.svg");
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
   const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch();

@@ -41,7 +41,11 @@ std::string mechanism_text(const CatalogEntry& entry) {
   std::string text = "\njoints and frames at home, in the base frame\n" + model.structure + "\nmobility\n";
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : model.geometry) geometry.push_back(parameter.published);
-  for (const std::string& line : entry.build(geometry, 0)->mobility()) text += "  " + line + "\n";
+  const std::unique_ptr<Model> model_of_defaults = entry.build(geometry, 0);
+  for (const std::string& line : model_of_defaults->mobility()) text += "  " + line + "\n";
+  for (const std::string& unusual : model_of_defaults->unusual_geometry()) {
+    text += "  hint: " + unusual + "; is that meant?\n";
+  }
   return text;
 }
 
@@ -92,7 +96,7 @@ std::string model_text(const CatalogEntry& entry) {
   }
   text += responses_text(model, entry.other_metric != nullptr);
   if (entry.other_metric) text += responses_text(entry.other_metric->description, false);
-  text += "\ndetails (given by `poesy evaluate`)\n";
+  if (!model.details.empty()) text += "\ndetails (given by `poesy evaluate`)\n";
   for (const Detail& detail : model.details) {
     text += fmt::format("  {:<20} {:>4} {}\n", detail.name, detail.components.size(), detail.description);
   }

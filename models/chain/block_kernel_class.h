@@ -245,7 +245,7 @@ class BlockKernel {
   void vary_segments(std::size_t at);
   void limb_pose(std::size_t i, Motion& pose);
   void residuals();
-  static Screw log(const Motion& g);
+  [[gnu::always_inline]] static inline Screw log(const Motion& g);
 
   // block_kernel_equations.h: matrices and steps.
   void gradient();

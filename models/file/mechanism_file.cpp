@@ -191,8 +191,11 @@ const Keys<JointLines, Nothing>& joint_keys() {
                    directed),
           optional("axis", kept("direction", direction, &J::axis), "",
                    "Its direction, without `from` and `to`: \"x\", \"-z\", or [x, y, z] of any length.", directed),
-          needed("axis2", kept("direction", direction, &J::axis2), "\"y\"",
-                 "Its second axis, in the order from the base.", {"U"}),
+          needed("axis2", kept("direction", direction, &J::axis2), "\"z\"",
+                 "Its second axis, in the order from the base, not parallel to `axis`; on the platform's end of a leg "
+                 "the order "
+                 "is usually the other way round than on the base's.",
+                 {"U"}),
           optional("x", kept("direction", direction, &J::x), "towards the next joint's point",
                    "The x axis of its first frame, made perpendicular to z."),
           needed("pitch", kept("length", expression, &J::pitch), "\"5 mm\"",
@@ -301,7 +304,10 @@ void read_workspace(const StudyValue& value, PlatformLines& platform) {
   const StudySection section = value.section();
   section.allow(names(platform.coordinates), "coordinate");
   for (CoordinateLines& coordinate : platform.coordinates) {
-    const StudyValue range = section.require(coordinate.name);
+    const bool length = coordinate.component.size() == 1;
+    const StudyValue range =
+        section.require(coordinate.name, "write " + coordinate.name +
+                                             (length ? " = [\"500 mm\", \"600 mm\"]" : " = [\"-20 deg\", \"20 deg\"]"));
     const std::vector<StudyValue> ends = range.list();
     if (ends.size() != 2) range.fail("has " + std::to_string(ends.size()) + " values", "write [lowest, highest]");
     coordinate.lower = expression(ends[0]);

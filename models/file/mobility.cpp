@@ -196,18 +196,36 @@ Mobility home_mobility(const Mechanism& mechanism) {
   return mobility(mechanism, std::vector<double>(mechanism.moving(), 0.0), home_pose(mechanism));
 }
 
+namespace {
+
+/// What the platform does besides its coordinates, from home.
+void find_parasitic(const Mechanism& mechanism, const PlatformPose& pose, PoseMobility& found) {
+  const PlatformPose home = home_pose(mechanism);
+  for (std::size_t component = 0; component < pose.size(); ++component) {
+    if (std::ranges::find(mechanism.coordinates, component, &Coordinate::component) != mechanism.coordinates.end())
+      continue;
+    double& largest = component < 3 ? found.moved : found.turned;
+    largest = std::max(largest, std::abs(pose[component] - home[component]));
+  }
+}
+
+}  // namespace
+
 std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::size_t count) {
   const Tracker tracker(mechanism);
   std::vector<PoseMobility> list;
   for (std::size_t k = 0; k < count; ++k) {
-    PoseMobility found{even_point(k, mechanism.coordinates.size()), {}, {}};
+    PoseMobility found{even_point(k, mechanism.coordinates.size()), {}, {}, 0.0, 0.0};
     for (std::size_t c = 0; c < found.pose.size(); ++c) {
       const Coordinate& coordinate = mechanism.coordinates[c];
       found.pose[c] = coordinate.lower + found.pose[c] * (coordinate.upper - coordinate.lower);
     }
     const Tracked tracked = tracker.track(found.pose);
     found.unreachable = tracked.unreachable;
-    if (found.unreachable.empty()) found.mobility = mobility(mechanism, tracked.displacements, tracked.pose);
+    if (found.unreachable.empty()) {
+      found.mobility = mobility(mechanism, tracked.displacements, tracked.pose);
+      find_parasitic(mechanism, tracked.pose, found);
+    }
     list.push_back(std::move(found));
   }
   return list;

@@ -51,6 +51,8 @@ struct PoseMobility {
   std::vector<double> pose;  ///< [coordinates], SI
   std::string unreachable;   ///< why the pose is out of reach; empty: it is not
   Mobility mobility;         ///< where it is reached
+  double turned;             ///< rad: the largest rotation besides the coordinates; 0 where it is not reached
+  double moved;              ///< m: likewise of P's place
 };
 
 /// At `count` poses that fill the workspace evenly (Roberts' sequence), reached from home.

@@ -151,6 +151,8 @@ class FileModel final : public Model {
     return mobility_lines(home_mobility(mechanism_), workspace_mobility(mechanism_));
   }
 
+  std::vector<std::string> unusual_geometry() const override { return home_outside(mechanism_); }
+
   std::optional<Sketch> sketch() const override { return sketch_of(mechanism_); }
 
   double rounding(std::size_t response) const override { return chain::effect_rounding(model_, response); }

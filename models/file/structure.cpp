@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace poesy::file {
 namespace {
 
 /// Smaller numbers are rounding of a direction or a place.
 constexpr double kNothing = 5e-7;
+constexpr double kMillimetres = 1e3;
 
 std::string number_text(double value) { return fmt::format("{:.6g}", std::abs(value) < kNothing ? 0.0 : value); }
 
@@ -33,7 +35,6 @@ std::string_view motion_text(const Joint& joint) {
 
 std::string frame_line(const std::string& place, const std::string& name, std::string_view motion,
                        const Transform& frame) {
-  constexpr double kMillimetres = 1e3;
   return fmt::format("  {:<8} {:<10} {:<12} {:<32} {:<32} {}\n", place, name, motion,
                      triple_text(kMillimetres * frame.p), triple_text(frame.R.col(2)), triple_text(frame.R.col(0)));
 }
@@ -99,6 +100,19 @@ Sketch sketch_of(const Mechanism& mechanism) {
   return sketch;
 }
 
+std::vector<std::string> home_outside(const Mechanism& mechanism) {
+  const PlatformPose home = home_pose(mechanism);
+  std::vector<std::string> list;
+  for (const Coordinate& coordinate : mechanism.coordinates) {
+    const double value = home[coordinate.component];
+    if (value >= coordinate.lower && value <= coordinate.upper) continue;
+    const auto text = [&](double si) { return readable_text({si, coordinate.dimension()}); };
+    list.push_back(fmt::format("home has {} = {}, outside the workspace from {} to {} (coordinates are absolute)",
+                               coordinate.name, text(value), text(coordinate.lower), text(coordinate.upper)));
+  }
+  return list;
+}
+
 std::string structure_text(const Mechanism& mechanism) {
   std::string text =
       fmt::format("  {:<8} {:<10} {:<12} {:<32} {:<32} {}\n", "frame", "joint", "type", "point (mm)", "z", "x");
@@ -137,6 +151,15 @@ std::vector<std::string> mobility_lines(const Mobility& home, std::span<const Po
     ++different;
     lines.push_back(fmt::format("pose ({}): {}", pose_text(at.pose), what));
   }
+  double turned = 0.0;
+  double moved = 0.0;
+  for (const PoseMobility& at : poses) {
+    turned = std::max(turned, at.turned);
+    moved = std::max(moved, at.moved);
+  }
+  lines.push_back(
+      fmt::format("besides its coordinates the platform moves by up to {} mm and turns by up to {} deg there",
+                  number_text(kMillimetres * moved), number_text(turned * 180.0 / std::numbers::pi)));
   lines.push_back(
       fmt::format("the same at {} of {} poses tried in the workspace", poses.size() - different, poses.size()));
   return lines;
