@@ -245,6 +245,7 @@ class BlockKernel {
   void vary_segments(std::size_t at);
   void limb_pose(std::size_t i, Motion& pose);
   void residuals();
+  // In line, for the residuals are a tenth of a solve's time, and a call costs a third of that.
   [[gnu::always_inline]] static inline Screw log(const Motion& g);
 
   // block_kernel_equations.h: matrices and steps.

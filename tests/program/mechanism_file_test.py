@@ -134,6 +134,14 @@ class MechanismFile(ProgramTest):
         self.succeeds("merge", "s1.h5", "s2.h5", "-o", "all.h5")
         self.assertEqual(self.content_hash("all.h5"), self.content_hash("study.h5"))
 
+    def test_the_gallery_is_valid(self):
+        gallery = DATA.parent.parent / "results" / "gallery"
+        studies = sorted(gallery.glob("*/study.toml"))
+        self.assertGreaterEqual(len(studies), 6)
+        for study in studies:
+            self.assertIn("# valid:", self.succeeds("check", study))
+            self.assertIn("mobility", self.succeeds("models", study.parent / f"{study.parent.name}.toml"))
+
     def test_mistakes_name_their_place(self):
         self.take("rps3")
         self.study("rps3")
