@@ -385,8 +385,11 @@ const Keys<ErrorLines, Nothing>& error_keys() {
           needed("name", kept("text", reference, &E::name), "\"l\"",
                  "Its name; components of a vector append _x, _y, _z, and \"each\" limb _1, _2, ... behind that."),
           needed<E>("limb", {.type = "integer or text"}, "\"each\"", "The limb, counted from 1, or \"each\"."),
-          needed<E>("frame", {.type = "integer", .bounds = "at least 0"}, "0",
-                    "The fixed frame: 0 before the first joint, the last one to the platform."),
+          needed<E>(
+              "frame", {.type = "integer", .bounds = "at least 0"}, "0",
+              "The fixed frame: 0 before the first joint, the last one to the platform. An error acts in the axes of "
+              "the joint "
+              "before it; that of the last frame is the last joint's place on the platform, in the platform's axes."),
           needed(
               "component", kept("text or list", components, &E::components), "\"delta_z\"",
               "delta_x, delta_y, delta_z (lengths) or epsilon_x, epsilon_y, epsilon_z (angles) of the frame; several "
