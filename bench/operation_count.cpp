@@ -13,7 +13,7 @@ namespace poesy::chain {
 
 template <>
 Kernels kernels<simd::Isa::plain>() {
-  return {solve_block<bench::CountingNumber>, map_block<bench::CountingNumber>};
+  return {solve_block<bench::CountingNumber>, map_block<bench::CountingNumber>, move_platform<bench::CountingNumber>};
 }
 
 }  // namespace poesy::chain
