@@ -13,7 +13,8 @@ namespace poesy::chain {
 
 template <>
 Kernels kernels<simd::Isa::plain>() {
-  return {solve_block<bench::CountingNumber>, map_block<bench::CountingNumber>, move_platform<bench::CountingNumber>};
+  return {solve_block<bench::CountingNumber>, map_block<bench::CountingNumber>,
+          move_platform_block<bench::CountingNumber>};
 }
 
 }  // namespace poesy::chain
