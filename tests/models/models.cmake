@@ -18,7 +18,8 @@ poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coup
 # Of every mechanism in the registry, whatever it is.
 poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(file_model_test LABELS unit SOURCES models/file/model_test.cpp LINKS poesy_models nlohmann_json::nlohmann_json DATA)
-poesy_test(compiled_test LABELS regression SOURCES models/file/compiled_test.cpp LINKS poesy_models DATA)
+poesy_test(compiled_test LABELS regression SOURCES models/file/compiled_test.cpp models/file/nategh_agheli_test.cpp
+           LINKS poesy_models DATA)
 poesy_test(mechanism_file_test LABELS property
            SOURCES models/file/expression_test.cpp models/file/frames_test.cpp models/file/mechanism_file_test.cpp
                    models/file/mobility_test.cpp models/file/oracle_test.cpp models/file/tracking_test.cpp
