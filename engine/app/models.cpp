@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 
 #include "engine/app/command_line.h"
 #include "engine/app/terminal.h"
@@ -28,7 +29,8 @@ CatalogEntry find_model(const std::string& name) {
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : registry()) known.push_back(entry.description.name);
   throw InputError({}, "no model '" + printable(name) + "'",
-                   suggestion(lower_case(name), known) + "; a mechanism's file is given with its ending, FILE.toml");
+                   std::filesystem::exists(name + ".toml") ? "for the file of that name write '" + name + ".toml'"
+                                                           : suggestion(lower_case(name), known));
 }
 
 const StudyKind& kind_named(const std::string& word) {

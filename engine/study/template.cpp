@@ -38,7 +38,8 @@ std::string mechanism_section(const TemplateLines& lines, const Study& shown) {
   const ModelDescription& model = shown.model();
   const std::string& file = shown.mechanism.entry->file;
   std::string text = "\n[mechanism]\n" +
-                     (file.empty() ? lines.explained("mechanism", "model", "model = " + in_quotes(model.name))
+                     (file.empty() ? lines.explained("mechanism", "model", "model = " + in_quotes(model.name)) +
+                                         lines.explained("mechanism", "file", "# file = \"mechanism.toml\"")
                                    : lines.explained("mechanism", "file", "file = " + in_quotes(file))) +
                      fidelity_keys(lines, shown);
   if (model.geometry.empty()) return text;

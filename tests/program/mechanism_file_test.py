@@ -82,9 +82,13 @@ class MechanismFile(ProgramTest):
         self.assertIn("<svg", picture)
         self.assertIn("</svg>", picture)
         self.succeeds("models", "upr2-rpu.toml", "-o", "picture.svg")  # a picture may be replaced
-        done = self.poesy("models", "upr2-rpu.toml", "-o", "upr2-rpu.toml")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("input", done.stderr.decode())
+        self.write("drawing.svg", "<svg>somebody's own</svg>")
+        for name, wanted in (("drawing.svg", "would be lost"), ("picture.png", "PICTURE.svg")):
+            done = self.poesy("models", "upr2-rpu.toml", "-o", name)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(wanted, done.stderr.decode())
+        done = self.poesy("models", "upr2-rpu")
+        self.assertIn("write 'upr2-rpu.toml'", done.stderr.decode())
 
     def test_a_template_runs(self):
         for name in ("rps3", "upr2-rpu", "ups6"):

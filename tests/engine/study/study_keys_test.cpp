@@ -26,9 +26,16 @@ class FakeByPlatform final : public test::FakeModel {
   std::vector<PlatformPoint> metric_points() const override { return {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}; }
 };
 
-/// The fake mechanism with two fidelities and two metrics, which make no difference.
+extern const Catalog kCatalog;
+
+/// The fake mechanism with two fidelities and two metrics, which make no difference. Every file describes it.
 Catalog catalog() {
   Catalog two = test::fake_catalog();
+  two.from_text = [](const std::string&, const std::string& path) {
+    CatalogEntry entry = kCatalog.front();
+    entry.file = path;
+    return entry;
+  };
   two.front().description.fidelities = {"exact", "first-order"};
   CatalogEntry by_platform = two.front();
   by_platform.description.metric = "platform";
@@ -80,10 +87,13 @@ std::vector<std::string> studies() {
   by_platform.replace(by_platform.find("tolerance = 1e-12"), 17, "");
   by_platform.replace(by_platform.find("\"published\""), 11,
                       "\"platform\"\npoints = [[\"1 m\", 0, 0], [0, \"1 m\", 0], [0, 0, \"1 m\"]]");
+  std::string from_file = head;
+  from_file.replace(from_file.find("model = \"fake\""), 14, "file = \"mechanism.toml\"");
   const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
   return {head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
               "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" +
               background + "reference = { factor = \"delta_1\", tolerance = \"2 mm\" }\n",
+          from_file + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
           by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
           both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
           head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
@@ -217,6 +227,7 @@ std::string changed(const Use& use, std::string_view value) {
 std::string read(const std::string& text) {
   static const test::TempFolder folder;
   static const std::string poses = folder.write("poses.csv", "z,beta,gamma\n-0.2,0,0\n");
+  static const std::string mechanism = folder.write("mechanism.toml", "of no interest");
   static const std::string curve = folder.write("curve.csv", "t,z,beta,gamma\n0,-0.2,0,0\n1,-0.2,0.1,0\n");
   return resolved_text(read_study(folder.write("study.toml", text), kCatalog, StudyUse::run));
 }

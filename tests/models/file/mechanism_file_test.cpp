@@ -102,7 +102,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:15:78: platform.workspace.z[0] '5 deg' is an angle, but must be a length; correct the expression or "
            "its unit"},
           {", z = [\"500 mm\", \"700 mm\"] }", " }",
-           "m.toml:15:15: key 'z' is missing in [platform.workspace]; write z = [\"-20 deg\", \"20 deg\"]"},
+           "m.toml:15:15: key 'z' is missing in [platform.workspace]; write z = [\"500 mm\", \"600 mm\"]"},
           {"workspace ", "workspac", "m.toml:15:1: unknown key 'workspac' in [platform]; did you mean 'workspace'?"},
           {"tool        = [0, 0, \"100 mm\"]", "tool = [0, 0, \"100 mm\"]\nx = \"y\"",
            "m.toml:11:1: platform has one of x and z; give both, or neither"},

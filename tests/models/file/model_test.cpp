@@ -87,7 +87,7 @@ TEST_P(OfOracle, HasTheDisplacementsOfEveryCase) {
   }
 }
 
-TEST_P(OfOracle, HasTheDeformationsOfEveryCaseByBothMetrics) {
+TEST_P(OfOracle, HasTheDeformationsByBothMetrics) {
   const CatalogEntry entry = entry_of(GetParam());
   for (const nlohmann::json& one : cases()) {
     if (!one.contains("published")) continue;

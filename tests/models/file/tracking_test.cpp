@@ -41,7 +41,7 @@ class Everywhere : public testing::TestWithParam<const char*> {
   const Tracker tracker_{mechanism_};
 };
 
-TEST_P(Everywhere, LoopsAreClosedAndCoordinatesReached) {
+TEST_P(Everywhere, LoopsAreClosed) {
   for (const std::vector<double>& pose : random_poses(mechanism_, 20)) {
     const Tracked found = tracker_.track(pose);
     ASSERT_EQ(found.unreachable, "");
@@ -60,7 +60,7 @@ TEST_P(Everywhere, HomeIsZero) {
   for (const double q : tracker_.track(pose).displacements) EXPECT_NEAR(q, 0.0, 1e-12);
 }
 
-TEST_P(Everywhere, ResultsDoNotDependOnTheOrderOfPoses) {
+TEST_P(Everywhere, OrderOfPosesMakesNoDifference) {
   std::vector<std::vector<double>> poses = random_poses(mechanism_, 6);
   std::vector<std::vector<double>> first;
   for (const auto& pose : poses) first.push_back(tracker_.track(pose).displacements);
@@ -70,7 +70,7 @@ TEST_P(Everywhere, ResultsDoNotDependOnTheOrderOfPoses) {
 
 /// Between two poses displacements change in proportion to the distance: no jump to another working mode, whatever the
 /// ways from home were. So idle freedoms do not depend on them either.
-TEST_P(Everywhere, DisplacementsAreContinuousAlongLines) {
+TEST_P(Everywhere, IsContinuousAlongLines) {
   const std::vector<std::vector<double>> ends = random_poses(mechanism_, 4);
   constexpr std::size_t kParts = 20;
   for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
