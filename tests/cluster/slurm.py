@@ -14,6 +14,7 @@ import pathlib
 import pwd
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -133,7 +134,7 @@ class Slurm:
 
     def states(self, job):
         found = {}
-        for line in self._checked("scontrol", "--oneliner", "show", "job", str(job)).splitlines():
+        for line in self._show_job(job, "--oneliner").splitlines():
             facts = dict(re.findall(r"(\w+)=(\S+)", line))
             number = facts["JobId"] if "ArrayTaskId" not in facts else f"{facts['ArrayJobId']}_{facts['ArrayTaskId']}"
             found[number] = Ended(facts["JobState"], int(facts["ExitCode"].split(":")[0]))
@@ -144,7 +145,16 @@ class Slurm:
 
     def restarts(self, job):
         """How often the job was put back into the queue."""
-        return int(re.search(r"Restarts=(\d+)", self._checked("scontrol", "show", "job", str(job))).group(1))
+        return int(re.search(r"Restarts=(\d+)", self._show_job(job)).group(1))
+
+    def _show_job(self, job, *options):
+        """What scontrol says of a job. It dies of SIGPIPE where a busy controller hangs up on it; then it asks again."""
+        for _ in range(4):
+            try:
+                return self._checked("scontrol", *options, "show", "job", str(job))
+            except BrokenPipeError:
+                time.sleep(1)
+        return self._checked("scontrol", *options, "show", "job", str(job))
 
     def _configure(self):
         self.host = socket.gethostname().split(".")[0]
@@ -178,6 +188,8 @@ class Slurm:
 
     def _checked(self, *command, cwd=None):
         done = self._run(*command, cwd=cwd)
+        if done.returncode == -signal.SIGPIPE:
+            raise BrokenPipeError(" ".join(command))
         if done.returncode != 0:
             raise RuntimeError(f"{' '.join(command)}: exit code {done.returncode}\n{done.stderr}")
         return done.stdout
