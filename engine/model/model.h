@@ -265,6 +265,11 @@ class Model {
     return std::nullopt;
   }
 
+  /// Why no pose has these coordinates of a chart (SI), a clause; empty where it has one, or the model says no more.
+  virtual std::string no_pose_because(std::size_t /*chart*/, std::span<const double> /*coordinates*/) const {
+    return {};
+  }
+
   /// Precondition: the model separates its errors and reaches the pose.
   virtual Separation separation(std::span<const double> /*pose*/) const { return {}; }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <ranges>
 
 #include "engine/base/units.h"
 #include "engine/stats/indices.h"
@@ -178,8 +177,10 @@ std::vector<StudySetting> study_settings(std::string_view study_text) {
   std::vector<StudySetting> list;
   std::map<std::string, std::size_t> repeated;
   std::string section;
-  for (const auto part : std::views::split(study_text, '\n')) {
-    const std::string_view line(part.begin(), part.end());
+  while (!study_text.empty()) {
+    const std::size_t end = std::min(study_text.find('\n'), study_text.size());
+    const std::string_view line = study_text.substr(0, end);
+    study_text.remove_prefix(std::min(end + 1, study_text.size()));
     const std::size_t equals = line.find(" = ");
     if (line.starts_with("[[") && line.ends_with("]]")) {
       const std::string name(line.substr(2, line.size() - 4));

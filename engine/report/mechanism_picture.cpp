@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/base/text.h"
 #include "engine/report/html/page.h"
 
 namespace poesy {
@@ -15,8 +16,10 @@ constexpr double kPanel = 320.0;  // pixels
 constexpr double kMargin = 34.0;  // around a panel's drawing
 constexpr double kGlyph = 6.0;    // half of a joint's glyph
 constexpr double kTick = 15.0;    // half of an axis
-constexpr double kHead = 26.0;    // for the title
-constexpr double kLegend = 44.0;  // below the panels
+constexpr double kHead = 26.0;    // for a title of one line
+constexpr double kTitleLine = 18.0;
+constexpr std::size_t kTitleWidth = 70;  // characters of a line
+constexpr double kLegend = 44.0;         // below the panels
 constexpr std::array<std::string_view, 6> kColours{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
 
 struct Pixel {
@@ -127,6 +130,9 @@ std::string glyph(char type, bool actuated, Pixel at, std::string_view colour) {
   }
 }
 
+/// Half of the space that a glyph takes in a row.
+double half_space(const SketchedJoint& joint) { return joint.type == 'F' ? kGlyph / 3 + 2 : kGlyph + 1.5; }
+
 /// A view with its place on the page.
 class ViewPanel {
  public:
@@ -142,7 +148,7 @@ class ViewPanel {
   std::string drawing(const Sketch& sketch) const {
     std::string text = words({corner_.x + 8, corner_.y + 16}, view_->name, "fill=\"#5a6270\"");
     text += base_axes() + ground(sketch) + platform(sketch);
-    for (std::size_t i = 0; i < sketch.limbs.size(); ++i) text += limb(sketch.limbs[i], i);
+    for (std::size_t i = 0; i < sketch.limbs.size(); ++i) text += limb(sketch, i);
     return text;
   }
 
@@ -181,29 +187,72 @@ class ViewPanel {
            words({at(sketch.platform).x + 5, at(sketch.platform).y - 5}, "P", "fill=\"#1d222b\"");
   }
 
-  std::string limb(std::span<const SketchedJoint> joints, std::size_t number) const {
+  std::string limb(const Sketch& sketch, std::size_t number) const {
+    const std::span<const SketchedJoint> joints = sketch.limbs[number];
     const std::string_view colour = kColours[number % kColours.size()];
     std::string text;
     for (std::size_t j = 1; j < joints.size(); ++j) {
       text +=
           line(at(joints[j - 1].point), at(joints[j].point), fmt::format("stroke=\"{}\" stroke-width=\"2.2\"", colour));
     }
+    const std::vector<Pixel> places = places_of(joints, sketch.platform);
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      const Pixel place = place_of(joints, j);
-      text += tick(joints[j], place, colour) + joint_glyph(joints[j], place, colour);
+      text += tick(joints[j], places[j], colour) + joint_glyph(joints[j], places[j], colour);
     }
-    const Pixel first = at(joints.front().point);
-    return text + words({first.x - 4, first.y + 20}, std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
+    return text + words(number_place(sketch, number), std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
   }
 
-  /// Where a joint's glyph stands: at its point, and of a slide that begins at another joint between the two that it
-  /// connects.
-  Pixel place_of(std::span<const SketchedJoint> joints, std::size_t j) const {
-    const Pixel here = at(joints[j].point);
-    if (joints[j].type != 'P' || j == 0 || j + 1 == joints.size() || joints[j].point != joints[j - 1].point)
-      return here;
-    const Pixel next = at(joints[j + 1].point);
-    return {(here.x + next.x) / 2, (here.y + next.y) / 2};
+  /// Below the first joint, or above it where the limb goes downwards; to the right of the numbers of other limbs that
+  /// begin there.
+  Pixel number_place(const Sketch& sketch, std::size_t number) const {
+    constexpr double kWidth = 9.0;
+    const std::span<const SketchedJoint> joints = sketch.limbs[number];
+    const Pixel first = at(joints.front().point);
+    const auto second = std::ranges::find_if(
+        joints, [&](const SketchedJoint& joint) { return !is_at(joint.point, joints.front().point); });
+    const Pixel next = at(second == joints.end() ? sketch.platform : second->point);
+    const bool above = next.y - first.y > std::abs(next.x - first.x);
+    Pixel place{first.x - 4, above ? first.y - 13 : first.y + 20};
+    for (std::size_t i = 0; i < number; ++i) {
+      const Pixel other = at(sketch.limbs[i].front().point);
+      if (std::hypot(other.x - first.x, other.y - first.y) < kWidth) place.x += kWidth;
+    }
+    return place;
+  }
+
+  /// Where the joints' glyphs stand: at their points. Several at one point stand in a row from there towards the next
+  /// one, after the last joint towards the platform's origin; a slide that begins at another joint stands between the
+  /// two that it connects.
+  std::vector<Pixel> places_of(std::span<const SketchedJoint> joints, const SketchVector& platform) const {
+    std::vector<Pixel> places;
+    while (places.size() < joints.size()) {
+      const std::size_t begin = places.size();
+      std::size_t end = begin + 1;
+      while (end < joints.size() && is_at(joints[end].point, joints[begin].point)) ++end;
+      const Pixel next = at(end < joints.size() ? joints[end].point : platform);
+      const Pixel here = at(joints[begin].point);
+      const bool slides = end - begin > 1 && end < joints.size() && joints[end - 1].type == 'P';
+      add_row(joints.subspan(begin, end - begin - (slides ? 1 : 0)), here, next, places);
+      if (slides) places.push_back({(here.x + next.x) / 2, (here.y + next.y) / 2});
+    }
+    return places;
+  }
+
+  bool is_at(const SketchVector& a, const SketchVector& b) const {
+    return scale_ * std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) < 1.0;
+  }
+
+  /// Towards `next` where the row is not longer than the way there, else to the right.
+  static void add_row(std::span<const SketchedJoint> joints, Pixel here, Pixel next, std::vector<Pixel>& places) {
+    double length = 0.0;
+    for (std::size_t j = 1; j < joints.size(); ++j) length += half_space(joints[j - 1]) + half_space(joints[j]);
+    const double way = std::hypot(next.x - here.x, next.y - here.y);
+    const Pixel along = length < way ? Pixel{(next.x - here.x) / way, (next.y - here.y) / way} : Pixel{1.0, 0.0};
+    double from = 0.0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (j > 0) from += half_space(joints[j - 1]) + half_space(joints[j]);
+      places.push_back({here.x + from * along.x, here.y + from * along.y});
+    }
   }
 
   std::string tick(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
@@ -257,18 +306,23 @@ std::string mechanism_picture(const Sketch& sketch, std::string_view title) {
   for (const SketchView& view : views()) size = std::max(size, extent(points, view).size);
   if (!(size > 0.0)) size = 1.0;
   const double scale = (kPanel - 2 * kMargin) / size;
+  const std::vector<std::string> title_lines = wrapped(title, kTitleWidth);
+  const double head = kHead + kTitleLine * static_cast<double>(std::max<std::size_t>(title_lines.size(), 1) - 1);
   const double width = 2 * kPanel;
-  const double height = kHead + 2 * kPanel + kLegend;
+  const double height = head + 2 * kPanel + kLegend;
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
       "role=\"img\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n{3}\n<title>{2}</title>\n<rect width=\"{0:g}\" height=\"{1:g}\" "
       "fill=\"#ffffff\"/>\n",
       width, height, escaped(title), kPictureMark);
-  text += words({8, 18}, title, "font-weight=\"bold\" font-size=\"14\"");
+  for (std::size_t n = 0; n < title_lines.size(); ++n) {
+    text +=
+        words({8, 18 + kTitleLine * static_cast<double>(n)}, title_lines[n], "font-weight=\"bold\" font-size=\"14\"");
+  }
   for (std::size_t v = 0; v < views().size(); ++v) {
     const SketchView& view = views()[v];
-    const Pixel corner{kPanel * static_cast<double>(v % 2), kHead + kPanel * static_cast<double>(v / 2)};
+    const Pixel corner{kPanel * static_cast<double>(v % 2), head + kPanel * static_cast<double>(v / 2)};
     text += ViewPanel(view, extent(points, view), scale, corner).drawing(sketch);
   }
   return text + legend({16, height - kLegend / 2}, scale, size) + "</svg>\n";

@@ -69,6 +69,15 @@ double MeanSquare::growth(std::span<const double> tolerances) const {
   return sum;
 }
 
+MeanSquare MeanSquare::holding(std::span<const std::size_t> errors, std::span<const double> sizes) const {
+  MeanSquare others = *this;
+  for (const std::size_t p : errors) {
+    others.background += effects[p] * square(sizes[p]);
+    others.effects[p] = 0.0;
+  }
+  return others;
+}
+
 MeanSquare mean_square(const ResponseStudy& study) {
   const std::size_t poses = study.background.size();
   MeanSquare response{mean_of_squares(study.background), {}};

@@ -44,6 +44,8 @@ struct MeanSquare {
 
   /// sum of effects_p t_p^2. Errors without effect do not count, whatever their tolerance.
   double growth(std::span<const double> tolerances) const;
+  /// The same where these errors, by position, always have these sizes [P]: what they add is part of the background.
+  MeanSquare holding(std::span<const std::size_t> errors, std::span<const double> sizes) const;
   /// The mean square with these tolerances [P].
   double at(std::span<const double> tolerances) const { return background + growth(tolerances); }
 };

@@ -268,7 +268,7 @@ std::vector<StudyRow> shared_rows() {
 /// For which kinds each row holds, and what is said of `kind`. Kinds whose factors a study names come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
-  std::ranges::stable_partition(listed, [](const StudyKind* kind) { return kind->has_key("factors"); });
+  std::stable_partition(listed.begin(), listed.end(), [](const StudyKind* kind) { return kind->has_key("factors"); });
   for (StudyRow& row : table.rows) {
     for (const StudyKind* kind : listed) {
       if (kind->has_key(row.name)) row.only_for.push_back(kind->name);

@@ -20,6 +20,9 @@ void read_model(const StudyValue& value, Study& study, const Reading& reading) {
   std::vector<std::string_view> known;
   for (const CatalogEntry& entry : reading.catalog) known.push_back(entry.description.name);
   const CatalogEntry* const entry = find(reading.catalog, written);
+  if (entry == nullptr && written.ends_with(".toml")) {
+    value.fail("is '" + printable(written) + "', which is unknown", "write file = \"" + printable(written) + "\"");
+  }
   if (entry == nullptr) {
     value.fail("is '" + printable(written) + "', which is unknown", suggestion(lower_case(written), known));
   }
@@ -108,7 +111,7 @@ const StudyRows& mechanism_keys() {
                    .lines = file_line},
           StudyRow{.name = "geometry",
                    .value = {.type = "table"},
-                   .usual = "as published",
+                   .usual = "as published, or as in the file",
                    .meaning = "Parameters of the geometry that differ from the published ones; where they do, look at "
                               "the workspace too.",
                    .reader = read_geometry,

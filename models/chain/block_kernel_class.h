@@ -129,6 +129,7 @@ class BlockKernel {
   static constexpr std::uint32_t kFollowFactor = 8;
   static constexpr std::uint32_t kMatrixRounds = 4;
   static constexpr std::size_t kMapErrors = 8;
+  static constexpr std::size_t kStartJoints = 6;
 
   std::size_t limbs() const {
     if constexpr (Shape::kFixed) return Shape::kLimbs;
@@ -181,8 +182,8 @@ class BlockKernel {
   void judge(std::size_t at);
   template <KernelPass pass>
   std::size_t run(std::size_t count, std::uint32_t rounds);
-  void load_all(std::size_t first = 0);
-  void load_constant_segments();
+  void load_all();
+  T value(std::size_t v, std::size_t at) const;
   void map_rows(const KernelMap& map);
   template <std::size_t errors>
   void add_mapped(const KernelMap& map, std::size_t first, std::size_t v);
@@ -190,6 +191,8 @@ class BlockKernel {
   void finish_mapped(const KernelMap& map, std::size_t at);
   void begin(std::size_t count, bool predicted);
   void predict(std::size_t at);
+  template <std::size_t count>
+  void follow_slopes(std::size_t at, std::size_t first);
   void pad(std::size_t count);
   void evaluate(std::size_t at);
   typename T::MaskType finite_residual() const;
@@ -222,18 +225,21 @@ class BlockKernel {
 
   // block_kernel_meeting.h: solves of limbs that can meet.
   struct Meeting {
-    T matrix[6][6];  ///< lower triangle of the sum of P_i
-    T pull[6];       ///< sum of P_i xi_i
-    T margin{1.0};   ///< by how much the smallest pivot is above rounding
+    T matrix[6][6];  ///< lower triangle of the sum of P_i, then its factor
+    T pivot[6];      ///< 1 / diagonal of the factor
+    T margin;        ///< by how much the smallest pivot is above rounding
+    T length;        ///< of the last step
   };
   void solve_meeting();
-  Verdict meeting_round();
-  void project_limb(std::size_t i, Meeting& all);
-  T solve_platform(Meeting& all, T* motion) const;
-  void step_limb(std::size_t i, const T* motion, T& left2, T& length2);
-  void carry_residual_of_pairs();
-  Screw by_metric(const Screw& screw) const;
-  T weight(int row, int column) const;
+  template <bool is_new>
+  Verdict meeting_round(Meeting& meeting);
+  void project_limb(std::size_t i, Meeting& meeting);
+  T* limb_factor(std::size_t i) const;
+  void add_pull(std::size_t i, T* pull) const;
+  void factor_platform(Meeting& meeting) const;
+  void solve_platform(const Meeting& meeting, const T* pull, Screw& motion) const;
+  void step_limb(std::size_t i, const Screw& motion, T& left2, T& length2);
+  Screw measured(const Screw& screw) const;
 
   // block_kernel_platform.h: how the platform moves.
   Screw platform_motion(const KernelPlatform& platform, std::size_t at);
@@ -242,7 +248,14 @@ class BlockKernel {
 
   // block_kernel_geometry.h: residuals and columns.
   Motion error_motion(const KernelPiece& piece, std::size_t at) const;
-  void vary_segments(std::size_t at);
+  T varied(const KernelPiece& piece, int entry, std::size_t at) const;
+  void load_constant_segments();
+  static Motion constant_motion(const KernelPiece& piece);
+  bool is_constant(const KernelSegment& segment) const;
+  void vary_segment(const KernelSegment& segment, std::size_t at, Motion& product) const;
+  void vary_segments(std::size_t at, std::size_t end);
+  void set_column(const KernelJoint& joint, const T* axis, const T* point, Screw& column) const;
+  template <bool with_columns = true>
   void limb_pose(std::size_t i, Motion& pose);
   void residuals();
   // In line, for the residuals are a tenth of a solve's time, and a call costs a third of that.
@@ -268,7 +281,7 @@ class BlockKernel {
   const std::size_t capacity_;
 
   // Per sample, in rows of capacity_.
-  double* value_;
+  double* value_;  ///< of varied errors, but for the first in_place_ samples
   double* q_;
   double*
       memory_;  ///< published: residual of the last round; follow: displacements of an earlier one; map: coordinates
@@ -281,8 +294,8 @@ class BlockKernel {
   Motion* segment_;
   Motion* pose_;
   Screw* column_;
-  Screw* row_;   ///< W times each column, which as published is the column itself
-  Screw* rows_;  ///< of limbs that meet: L^-1 C^T W
+  Screw* row_;   ///< W times each column, which as published is the column itself; of limbs that meet: measured()
+  Screw* rows_;  ///< of limbs that meet: L^-1 C^T
   Screw* mu_;
   Screw* pull_;
   T* joint_;
@@ -292,7 +305,8 @@ class BlockKernel {
   T* n_;
   T* m_;
   T* work_;
-  T* pivot_;                 ///< 1 / pivot of Newton's matrix
+  T* pivot_;  ///< 1 / pivot of Newton's matrix
+  std::size_t in_place_ = 0;
   std::uint32_t spent_ = 0;  ///< iterations of earlier passes
 };
 

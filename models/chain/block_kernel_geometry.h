@@ -29,6 +29,23 @@ inline auto dot(const Screw& a, const Screw& b) {
   return sum;
 }
 
+/// rest -= share a
+template <class T, class Screw>
+inline void subtract(T share, const Screw& a, Screw& rest) {
+  for (int n = 0; n < 3; ++n) {
+    rest.w[n] = nmadd(share, a.w[n], rest.w[n]);
+    rest.v[n] = nmadd(share, a.v[n], rest.v[n]);
+  }
+}
+
+/// p += r shift
+template <class T>
+inline void add_turned(const T* r, const T* shift, T* p) {
+  for (int row = 0; row < 3; ++row) {
+    p[row] = madd(r[3 * row + 2], shift[2], madd(r[3 * row + 1], shift[1], madd(r[3 * row], shift[0], p[row])));
+  }
+}
+
 /// g = a b; g may be a.
 template <class Motion>
 inline void multiply(const Motion& a, const Motion& b, Motion& g) {
@@ -59,14 +76,18 @@ inline Motion divide(const Motion& a, const Motion& b) {
 
 }  // namespace kernel
 
+/// An entry of an error's [omega; v].
+template <class T, class Shape, class Measure>
+T BlockKernel<T, Shape, Measure>::varied(const KernelPiece& piece, int entry, std::size_t at) const {
+  const int row = piece.varied_row[entry];
+  return row < 0 ? T(piece.error[entry]) : value(static_cast<std::size_t>(row), at);
+}
+
 /// Delta g of Eq. 26, or its inverse.
 template <class T, class Shape, class Measure>
 auto BlockKernel<T, Shape, Measure>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
   T e[6];
-  for (int n = 0; n < 6; ++n) {
-    const int row = piece.varied_row[n];
-    e[n] = row < 0 ? T(piece.error[n]) : T::load(value_ + static_cast<std::size_t>(row) * capacity_ + at);
-  }
+  for (int n = 0; n < 6; ++n) e[n] = varied(piece, n, at);
   const T x = kernel::dot3(e, e);
   auto coefficients = simd::exp_coefficients(x);
   coefficients.a = (piece.inverted ? T(-1.0) : T(1.0)) * coefficients.a;
@@ -79,43 +100,91 @@ auto BlockKernel<T, Shape, Measure>::error_motion(const KernelPiece& piece, std:
 }
 
 template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::vary_segments(std::size_t at) {
-  for (std::size_t s = 0; s < chain_.segments; ++s) {
-    const KernelSegment& segment = chain_.segment[s];
-    if (segment.pieces == 1 && !chain_.piece[segment.first_piece].is_error) continue;
-    Motion product;
-    for (std::size_t n = 0; n < segment.pieces; ++n) {
-      const KernelPiece& piece = chain_.piece[segment.first_piece + n];
-      Motion factor;
-      if (piece.is_error) {
-        factor = error_motion(piece, at);
+auto BlockKernel<T, Shape, Measure>::constant_motion(const KernelPiece& piece) -> Motion {
+  Motion g;
+  for (int k = 0; k < 9; ++k) g.r[k] = T(piece.constant[k]);
+  for (int k = 0; k < 3; ++k) g.p[k] = T(piece.constant[9 + k]);
+  return g;
+}
+
+/// The product of its pieces. Errors that turn nothing only shift what stands before and behind them.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::vary_segment(const KernelSegment& segment, std::size_t at, Motion& product) const {
+  T shift[3] = {T(0.0), T(0.0), T(0.0)};
+  bool is_empty = true;
+  for (std::size_t n = 0; n < segment.pieces; ++n) {
+    const KernelPiece& piece = chain_.piece[segment.first_piece + n];
+    if (piece.is_error && !piece.turns) {
+      T e[3];
+      for (int k = 0; k < 3; ++k) e[k] = (piece.inverted ? T(-1.0) : T(1.0)) * varied(piece, k + 3, at);
+      if (is_empty) {
+        for (int k = 0; k < 3; ++k) shift[k] = shift[k] + e[k];
       } else {
-        for (int k = 0; k < 9; ++k) factor.r[k] = T(piece.constant[k]);
-        for (int k = 0; k < 3; ++k) factor.p[k] = T(piece.constant[9 + k]);
+        kernel::add_turned(product.r, e, product.p);
       }
-      if (n == 0) {
-        product = factor;
-      } else {
-        kernel::multiply(product, factor, product);
-      }
+      continue;
     }
-    segment_[s] = product;
+    const Motion factor = piece.is_error ? error_motion(piece, at) : constant_motion(piece);
+    if (is_empty) {
+      product = factor;
+      for (int k = 0; k < 3; ++k) product.p[k] = product.p[k] + shift[k];
+      is_empty = false;
+    } else {
+      kernel::multiply(product, factor, product);
+    }
   }
 }
 
-/// Eq. 28, with the spatial Jacobian columns of Eqs. 32-39 on the way. A joint touches two columns of R, or p.
+/// The segments before `end` that are not constant.
 template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::vary_segments(std::size_t at, std::size_t end) {
+  for (std::size_t s = 0; s < end; ++s) {
+    if (!is_constant(chain_.segment[s])) vary_segment(chain_.segment[s], at, segment_[s]);
+  }
+}
+
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::load_constant_segments() {
+  for (std::size_t s = 0; s < chain_.segments; ++s) {
+    const KernelSegment& segment = chain_.segment[s];
+    if (is_constant(segment)) segment_[s] = constant_motion(chain_.piece[segment.first_piece]);
+  }
+}
+
+template <class T, class Shape, class Measure>
+bool BlockKernel<T, Shape, Measure>::is_constant(const KernelSegment& segment) const {
+  return segment.pieces == 1 && !chain_.piece[segment.first_piece].is_error;
+}
+
+/// A spatial Jacobian column of Eqs. 32-39: the screw of a joint about or along this axis through this point.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::set_column(const KernelJoint& joint, const T* axis, const T* point,
+                                                Screw& column) const {
+  if (!joint.revolute) {
+    for (int k = 0; k < 3; ++k) {
+      column.w[k] = T(0.0);
+      column.v[k] = axis[k];
+    }
+    return;
+  }
+  for (int k = 0; k < 3; ++k) column.w[k] = axis[k];
+  kernel::cross(point, axis, column.v);
+  if (joint.advance == 0.0) return;
+  for (int k = 0; k < 3; ++k) column.v[k] = madd(T(joint.advance), axis[k], column.v[k]);
+}
+
+/// Eq. 28, with the spatial Jacobian columns on the way, if wanted. A joint touches two columns of R, or p.
+template <class T, class Shape, class Measure>
+template <bool with_columns>
 void BlockKernel<T, Shape, Measure>::limb_pose(std::size_t i, Motion& pose) {
   // Each limb before this one has a segment more than joints.
   const Motion* segment = segment_ + i;
   Motion g = segment[first_joint(i)];
   for (std::size_t j = first_joint(i); j < first_joint(i + 1); ++j) {
-    Screw& column = column_[j];
     const T axis[3] = {g.r[2], g.r[5], g.r[8]};
     const T q = joint_[j];
+    if constexpr (with_columns) set_column(chain_.joint[j], axis, g.p, column_[j]);
     if (chain_.joint[j].revolute) {
-      for (int k = 0; k < 3; ++k) column.w[k] = axis[k];
-      kernel::cross(g.p, axis, column.v);
       const auto [s, c] = simd::sin_cos(q);
       for (int row = 0; row < 3; ++row) {
         const T x = g.r[3 * row], y = g.r[3 * row + 1];
@@ -123,17 +192,10 @@ void BlockKernel<T, Shape, Measure>::limb_pose(std::size_t i, Motion& pose) {
         g.r[3 * row + 1] = nmadd(s, x, c * y);
       }
       if (const double advance = chain_.joint[j].advance; advance != 0.0) {
-        for (int k = 0; k < 3; ++k) {
-          column.v[k] = madd(T(advance), axis[k], column.v[k]);
-          g.p[k] = madd(T(advance) * q, axis[k], g.p[k]);
-        }
+        for (int k = 0; k < 3; ++k) g.p[k] = madd(T(advance) * q, axis[k], g.p[k]);
       }
     } else {
-      for (int k = 0; k < 3; ++k) {
-        column.w[k] = T(0.0);
-        column.v[k] = axis[k];
-        g.p[k] = madd(q, axis[k], g.p[k]);
-      }
+      for (int k = 0; k < 3; ++k) g.p[k] = madd(q, axis[k], g.p[k]);
     }
     kernel::multiply(g, segment[j + 1], g);
   }

@@ -74,9 +74,9 @@ void BlockKernel<T, Shape, Measure>::start(std::size_t at) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) flat_[at + lane] = 0.0;
     predict(at);
   } else {
-    for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T(chain_.joint[j].nominal);
+    for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T(chain_.joint[j].start);
   }
-  vary_segments(at);
+  vary_segments(at, chain_.segments);
 }
 
 /// Finishes the lanes whose fit is exact to rounding, and returns the others. One step with the matrix at nominal
@@ -160,7 +160,7 @@ auto BlockKernel<T, Shape, Measure>::careful_by_metric(std::size_t at) -> Verdic
     const T change = sqrt(change2 * T(1.0 / static_cast<double>(pairs()))) * T(1.0 / chain_.reach);
     verdict.stagnated = bits(regular & finite & !(change > T(options_.rounding_level)));
   } else {
-    for (std::size_t j = 0; j < joints(); ++j) f_[j] = joint_[j] - T(chain_.joint[j].nominal);
+    for (std::size_t j = 0; j < joints(); ++j) f_[j] = joint_[j] - T(chain_.joint[j].start);
     converged = converged & (step_length(f_, diagonal) < T(kSameBranch));
   }
   verdict.converged = bits(converged);

@@ -45,16 +45,6 @@ BlockKernel<T, Shape, Measure>::BlockKernel(const KernelChain& chain, const Kern
 }
 
 template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::load_constant_segments() {
-  for (std::size_t s = 0; s < chain_.segments; ++s) {
-    const KernelPiece& piece = chain_.piece[chain_.segment[s].first_piece];
-    if (chain_.segment[s].pieces != 1 || piece.is_error) continue;
-    for (int n = 0; n < 9; ++n) segment_[s].r[n] = T(piece.constant[n]);
-    for (int n = 0; n < 3; ++n) segment_[s].p[n] = T(piece.constant[9 + n]);
-  }
-}
-
-template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::solve() {
   load_constant_segments();
   for (std::size_t b = 0; b < samples_.count; ++b) left_[b] = static_cast<std::uint32_t>(b);
@@ -72,13 +62,13 @@ void BlockKernel<T, Shape, Measure>::solve() {
       run<KernelPass::rescue>(left, cap);
     }
   }
-  for (std::size_t at = 0; at < samples_.count; at += kLanes) judge(at);
+  for (std::size_t at = 0; !chain_.meets && at < samples_.count; at += kLanes) judge(at);
 }
 
 /// The rows of a map, of all samples, into memory_.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::map_rows(const KernelMap& map) {
-  load_all(samples_.count - samples_.count % kLanes);  // whole batches are read where they are
+  load_all();
   for (std::size_t first = 0; first < map.rows; first += kMapRows) {
     for (std::size_t row = first; row < first + kMapRows; ++row) {
       for (std::size_t at = 0; at < samples_.count; at += kLanes) {
@@ -218,21 +208,29 @@ std::size_t BlockKernel<T, Shape, Measure>::run(std::size_t count, std::uint32_t
   return left;
 }
 
-/// Takes the samples from `first` on, in order; the lanes behind the last one are copies of it.
+/// Takes all samples in their order: whole batches are read where they are; the last lanes are copies of the last one.
 template <class T, class Shape, class Measure>
-void BlockKernel<T, Shape, Measure>::load_all(std::size_t first) {
+void BlockKernel<T, Shape, Measure>::load_all() {
   const std::size_t count = samples_.count;
+  in_place_ = count - count % kLanes;
   for (std::size_t v = 0; v < samples_.varied; ++v) {
     const double* from = samples_.values + v * samples_.stride;
     double* to = value_ + v * capacity_;
-    for (std::size_t b = first; b < count; ++b) to[b] = from[b];
+    for (std::size_t b = in_place_; b < count; ++b) to[b] = from[b];
     for (std::size_t b = count; b % kLanes != 0; ++b) to[b] = from[count - 1];
   }
-  for (std::size_t b = first; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
+  for (std::size_t b = 0; b < count; ++b) index_[b] = static_cast<std::uint32_t>(b);
+}
+
+/// What these lanes have of the v-th error that varies.
+template <class T, class Shape, class Measure>
+T BlockKernel<T, Shape, Measure>::value(std::size_t v, std::size_t at) const {
+  return at < in_place_ ? T::load(samples_.values + v * samples_.stride + at) : T::load(value_ + v * capacity_ + at);
 }
 
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
+  in_place_ = 0;
   for (std::size_t b = 0; b < count; ++b) {
     index_[b] = left_[b];
     for (std::size_t v = 0; v < samples_.varied; ++v) {
@@ -247,24 +245,34 @@ void BlockKernel<T, Shape, Measure>::begin(std::size_t count, bool predicted) {
     return;
   }
   for (std::size_t j = 0; j < joints(); ++j) {
-    for (std::size_t b = 0; b < count; ++b) q_[j * capacity_ + b] = chain_.joint[j].nominal;
+    for (std::size_t b = 0; b < count; ++b) q_[j * capacity_ + b] = chain_.joint[j].start;
   }
+}
+
+/// Starts of some joints, from the first of these on, in proportion to the errors where slopes are known.
+template <class T, class Shape, class Measure>
+template <std::size_t count>
+void BlockKernel<T, Shape, Measure>::follow_slopes(std::size_t at, std::size_t first) {
+  T q[count];
+  for (std::size_t j = 0; j < count; ++j) q[j] = T(chain_.joint[first + j].start);
+  for (std::size_t v = 0; start_.slopes != nullptr && v < samples_.varied; ++v) {
+    const T own = value(v, at);
+    const double* slope = start_.slopes + v * joints() + first;
+    for (std::size_t j = 0; j < count; ++j) q[j] = madd(T(slope[j]), own, q[j]);
+  }
+  for (std::size_t j = 0; j < count; ++j) joint_[first + j] = q[j];
 }
 
 /// In proportion to the errors where slopes are known; the Chebyshev series of the fit that a sample lies in, summed by
 /// Clenshaw's recurrence.
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::predict(std::size_t at) {
-  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T(chain_.joint[j].nominal);
-  for (std::size_t v = 0; start_.slopes != nullptr && v < samples_.varied; ++v) {
-    const T own = T::load(value_ + v * capacity_ + at);
-    const double* slope = start_.slopes + v * joints();
-    for (std::size_t j = 0; j < joints(); ++j) joint_[j] = madd(T(slope[j]), own, joint_[j]);
-  }
-  const T value = T::load(value_ + at);
+  std::size_t done = 0;
+  for (; done + kStartJoints <= joints(); done += kStartJoints) follow_slopes<kStartJoints>(at, done);
+  for (; done < joints(); ++done) follow_slopes<1>(at, done);
   for (std::size_t n = 0; n < start_.fits; ++n) {
     const KernelFit& fit = start_.fit[n];
-    const T x = (value - T(fit.center)) * T(1.0 / fit.half_width);
+    const T x = (value(0, at) - T(fit.center)) * T(1.0 / fit.half_width);
     const auto inside = !(abs(x) > T(1.0));
     if (!any(inside)) continue;
     select(inside, T(-1.0), T::load(flat_ + at)).store(flat_ + at);
@@ -296,7 +304,7 @@ void BlockKernel<T, Shape, Measure>::pad(std::size_t count) {
 template <class T, class Shape, class Measure>
 void BlockKernel<T, Shape, Measure>::evaluate(std::size_t at) {
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(q_ + j * capacity_ + at);
-  vary_segments(at);
+  vary_segments(at, chain_.segments);
   residuals();
   gradient();
   gauss_newton_matrix();
@@ -387,7 +395,7 @@ auto BlockKernel<T, Shape, Measure>::newton_round(std::size_t at, std::uint32_t 
   auto converged = safe & (size < T(options_.last_step));
   if constexpr (pass == KernelPass::rescue) {
     T away(0.0);
-    for (std::size_t j = 0; j < joints(); ++j) away = max(away, abs(joint_[j] - T(chain_.joint[j].nominal)));
+    for (std::size_t j = 0; j < joints(); ++j) away = max(away, abs(joint_[j] - T(chain_.joint[j].start)));
     converged = converged & (away < T(kSameBranch));
   }
   verdict.converged = bits(converged);
@@ -426,7 +434,9 @@ void BlockKernel<T, Shape, Measure>::finish(std::size_t at, std::size_t lane, So
                                             std::uint32_t iterations) {
   const std::size_t sample = index_[at + lane];
   const double* mu = reinterpret_cast<const double*>(mu_);
-  for (std::size_t n = 0; n < 6 * pairs(); ++n) outcome_.delta_mu[n * outcome_.stride + sample] = mu[n * kLanes + lane];
+  for (std::size_t n = 0; !chain_.meets && n < 6 * pairs(); ++n) {
+    outcome_.delta_mu[n * outcome_.stride + sample] = mu[n * kLanes + lane];
+  }
   if (outcome_.displacements != nullptr) {
     for (std::size_t j = 0; j < joints(); ++j) {
       outcome_.displacements[j * outcome_.stride + sample] = q_[j * capacity_ + at + lane];

@@ -32,9 +32,11 @@ auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platf
   for (int k = 0; k < 9; ++k) nominal.r[k] = T(platform.nominal[k]);
   for (int k = 0; k < 3; ++k) nominal.p[k] = T(platform.nominal[9 + k]);
   for (std::size_t j = 0; j < joints(); ++j) joint_[j] = T::load(platform.displacements + j * outcome_.stride + at);
-  vary_segments(at);
+  // Limbs that meet move the platform as the first one does.
+  const std::size_t count = chain_.meets ? 1 : limbs();
+  vary_segments(at, first_joint(count) + count);
   for (int k = 0; k < 3; ++k) sum.w[k] = sum.v[k] = T(0.0);
-  for (std::size_t i = 0; i < limbs(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     limb_pose(i, pose_[i]);
     const Screw own = log(kernel::divide(pose_[i], nominal));
     for (int k = 0; k < 3; ++k) {
@@ -42,7 +44,7 @@ auto BlockKernel<T, Shape, Measure>::platform_motion(const KernelPlatform& platf
       sum.v[k] = sum.v[k] + own.v[k];
     }
   }
-  const T share(1.0 / static_cast<double>(limbs()));
+  const T share(1.0 / static_cast<double>(count));
   for (int k = 0; k < 3; ++k) {
     sum.w[k] = share * sum.w[k];
     sum.v[k] = share * sum.v[k];

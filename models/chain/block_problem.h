@@ -10,17 +10,19 @@
 
 namespace poesy::chain {
 
-/// A passive joint, in the order of the limbs, base to platform.
+/// A passive joint, in the order of the limbs, base to platform. Its displacement counts from where it is without
+/// errors; the segment before it takes it there.
 struct KernelJoint {
   bool revolute;   ///< else prismatic
   double advance;  ///< m per rad along the axis of a helical joint, which is revolute otherwise; else 0
-  double nominal;  ///< displacement from which a solve starts unless told otherwise (rad, m)
+  double start;    ///< displacement from which a solve starts unless told otherwise (rad, m)
 };
 
 /// A rigid motion between two passive joints, or before the first or behind the last one of a limb, as a product of
 /// pieces: constant motions and errors of frames that vary from sample to sample.
 struct KernelPiece {
   bool is_error;        ///< else a constant motion
+  bool turns;           ///< the error has a rotation
   bool inverted;        ///< the error's inverse is meant
   double constant[12];  ///< of a constant motion: R by rows, then p
   double error[6];      ///< of an error: its constant part, [omega; v]
@@ -61,6 +63,8 @@ struct KernelChain {
   std::size_t idle_freedoms;     ///< how many
   const double* metric;          ///< [36] W by rows, see Metric; null: as published
   double origin[3];              ///< of the platform (m), by a metric
+  double middle[3];              ///< of the metric's points (m)
+  double spread[6];              ///< U by rows, upper triangular: U^T U is the mean moment of the points about it (m)
   double reach;                  ///< m, by a metric, or where limbs meet
   bool meets;                    ///< whether all limbs can hold the platform in one place, whatever the errors
 };

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Cholesky>
+
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "models/chain/deformation_solver.h"
@@ -101,6 +103,7 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
     return;
   }
   find_segments(displacements, errors, varied);
+  if (metric != nullptr) find_spread(metric->W);
   options_.rounding_level = metric == nullptr ? rounding_level(*chain_) : kRelativeRounding;
   // The error that a Newton step leaves is about its square; rounding alone makes steps of about 1e-14. By a metric the
   // bound is lower, because near a singular pose a step may leave a thousand times its square.
@@ -114,7 +117,8 @@ void BlockSolver::prepare(std::span<const double> displacements, std::span<const
   }
 }
 
-/// The motions between the passive joints, and these with their nominal displacements.
+/// The motions between the passive joints, which are displaced from where they are without errors: by little, so that
+/// their sines and cosines are quick.
 void BlockSolver::find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                                 std::span<const FrameEntry> varied) {
   joints_.clear();
@@ -128,19 +132,25 @@ void BlockSolver::find_segments(std::span<const double> displacements, std::span
       add_frame(limb, j, frame, errors[frame], varied);
       if (j == limb.joints.size()) break;
       const Joint& next = limb.joints[j];
-      if (next.actuated) {
-        lie::Transform<double> motion;
-        move_joint(next, displacements[joint], motion);
-        add_piece(motion);
-      } else {
-        joints_.push_back({next.type == JointType::revolute, next.advance, displacements[joint]});
-        close_segment();
-      }
-      ++joint;
+      lie::Transform<double> motion;
+      move_joint(next, displacements[joint++], motion);
+      add_piece(motion);
+      if (next.actuated) continue;
+      joints_.push_back({next.type == JointType::revolute, next.advance, 0.0});
+      close_segment();
     }
     ++frame;
     close_segment();
   }
+}
+
+/// From W, whose blocks are the moment of the points about the base's origin and the cross product with their middle.
+void BlockSolver::find_spread(const lie::Matrix6<double>& W) {
+  const lie::Vector3<double> middle(W(2, 4), W(0, 5), W(1, 3));
+  const lie::Matrix3<double> cross = lie::hat<double>(middle);
+  const lie::Matrix3<double> U = Eigen::LLT<lie::Matrix3<double>>(W.topLeftCorner<3, 3>() + cross * cross).matrixU();
+  std::copy_n(middle.data(), 3, middle_.begin());
+  spread_ = {U(0, 0), U(0, 1), U(0, 2), U(1, 1), U(1, 2), U(2, 2)};
 }
 
 /// Constant motions that follow each other become one.
@@ -165,10 +175,12 @@ void BlockSolver::add_frame(const Limb& limb, std::size_t j, std::size_t frame, 
   for (std::size_t c = 0; c < 6; ++c) {
     piece.error[c] = error[static_cast<Eigen::Index>(c)];
     piece.varied_row[c] = -1;
+    piece.turns = piece.turns || (c < 3 && piece.error[c] != 0.0);
   }
   for (std::size_t v = 0; v < varied.size(); ++v) {
     if (varied[v].frame != frame) continue;
     piece.varied_row[varied[v].component] = static_cast<int>(v);
+    piece.turns = piece.turns || varied[v].component < 3;
     varies = true;
   }
   if (!varies) {
@@ -215,7 +227,7 @@ void BlockSolver::find_slopes(std::span<const FrameError<double>> errors, std::s
   }
   for_each_constant(errors, varied, [&](const FrameEntry& entry, double error) {
     first_order_.effect(entry, effect_, slope_);
-    for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].nominal += error * slope_[j];
+    for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].start += error * slope_[j];
   });
 }
 
@@ -408,11 +420,15 @@ KernelChain BlockSolver::kernel_chain() const {
                     chain_->idle,
                     nullptr,
                     {},
+                    {},
+                    {},
                     chain_->reach(),
                     chain_->meets};
   if (metric_ == nullptr) return chain;
   chain.metric = metric_->W.data();  // symmetric: by columns is by rows
   std::copy_n(metric_->origin.data(), 3, chain.origin);
+  std::ranges::copy(middle_, chain.middle);
+  std::ranges::copy(spread_, chain.spread);
   chain.reach = metric_->reach;
   return chain;
 }

@@ -60,6 +60,7 @@ class BlockSolver {
   void close_segment();
   void find_segments(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                      std::span<const FrameEntry> varied);
+  void find_spread(const lie::Matrix6<double>& W);
   void find_slopes(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
   void find_map(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied);
   void predict_starts(double center, double half_width, int splits_left);
@@ -80,12 +81,14 @@ class BlockSolver {
   FirstOrder first_order_;
   ResidualSpace residual_space_;
   const Metric* metric_ = nullptr;
-  bool is_singular_ = false;      ///< the first order does not exist
-  std::vector<double> slopes_;    ///< [varied x joints]
-  std::vector<double> inverse_;   ///< [joints x joints] of J^T W J at nominal displacements
-  std::vector<double> diagonal_;  ///< [joints], of J^T W J itself
-  std::vector<double> effect_;    ///< [6 pairs], of one error
-  std::vector<double> slope_;     ///< [joints], of one error
+  std::array<double, 3> middle_{};  ///< of the metric's points; see KernelChain
+  std::array<double, 6> spread_{};  ///< about it
+  bool is_singular_ = false;        ///< the first order does not exist
+  std::vector<double> slopes_;      ///< [varied x joints]
+  std::vector<double> inverse_;     ///< [joints x joints] of J^T W J at nominal displacements
+  std::vector<double> diagonal_;    ///< [joints], of J^T W J itself
+  std::vector<double> effect_;      ///< [6 pairs], of one error
+  std::vector<double> slope_;       ///< [joints], of one error
   const PlatformPoints* platform_ = nullptr;
   std::vector<double> platform_effects_;        ///< [varied x 6] to first order
   std::vector<double> platform_constant_;       ///< [6]

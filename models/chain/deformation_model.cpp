@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "models/chain/deformation_solver.h"
@@ -20,17 +21,21 @@ struct Nominal {
   std::optional<PlatformPoints> platform;  ///< there
 };
 
+/// What a solver was prepared for: many blocks of samples may be alike.
+struct Prepared {
+  const Nominal* nominal = nullptr;        ///< of the pose
+  std::vector<FrameError<double>> errors;  ///< [frames] that stay
+  std::vector<FrameEntry> varied;          ///< entries that vary
+  double range = 0.0;                      ///< of the one that varies
+
+  bool operator==(const Prepared&) const = default;
+};
+
 class DeformationEvaluator final : public Evaluator {
  public:
   DeformationEvaluator(const DeformationModel& model, const SolverOptions& options, Fidelity fidelity)
       : model_(&model), solver_(model.chain, options, fidelity), errors_(model.chain.frames()) {
-    std::vector<std::size_t> first_frame;
-    std::size_t frame = 0;
-    for (const Limb& limb : model.chain.limbs) {
-      first_frame.push_back(frame);
-      frame += limb.frames();
-    }
-    for (const ErrorSlot& slot : model.slots) entries_.push_back({first_frame[slot.limb] + slot.frame, slot.component});
+    for (const ErrorSlot& slot : model.slots) entries_.push_back(model.entry(slot));
   }
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
@@ -56,7 +61,10 @@ class DeformationEvaluator final : public Evaluator {
   static constexpr std::size_t kMostPoses = 1024;
 
   const Nominal& nominal_at(std::span<const double> pose) {
-    if (nominal_.size() > kMostPoses) nominal_.clear();
+    if (nominal_.size() > kMostPoses) {
+      nominal_.clear();
+      prepared_.nominal = nullptr;
+    }
     const auto [place, is_new] = nominal_.try_emplace(std::vector<double>(pose.begin(), pose.end()));
     if (!is_new) return place->second;
     const std::vector<double> displacements = model_->joint_displacements(pose);
@@ -87,29 +95,36 @@ class DeformationEvaluator final : public Evaluator {
     }
     const double scale = samples.varied.size() == 1 ? model_->slots[samples.varied[0].value].scale : 1.0;
     const auto values = is_plain ? samples.values : combined(samples);
-    solver_.prepare(nominal.displacements, errors_, varied_, samples.range * std::abs(scale),
-                    nominal.metric ? &*nominal.metric : nullptr, nominal.platform ? &*nominal.platform : nullptr);
+    Prepared wanted{&nominal, errors_, varied_, samples.range * std::abs(scale)};
+    if (wanted == prepared_) return values;
+    solver_.prepare(nominal.displacements, errors_, varied_, wanted.range, nominal.metric ? &*nominal.metric : nullptr,
+                    nominal.platform ? &*nominal.platform : nullptr);
+    prepared_ = std::move(wanted);
     return values;
   }
 
   /// Of each entry that varies: what is constant, and what every factor adds.
   std::span<const double> combined(const SampleBlock& samples) {
-    values_.clear();
-    for (const FrameEntry& entry : varied_) {
-      values_.resize(values_.size() + samples.count, errors_[entry.frame][static_cast<Eigen::Index>(entry.component)]);
-    }
+    values_.resize(varied_.size() * samples.count);
+    std::size_t begun = 0;  // rows come in the order in which factors ask for them
     for (std::size_t v = 0; v < samples.varied.size(); ++v) {
       const std::size_t factor = samples.varied[v].value;
       const auto row = static_cast<std::size_t>(std::ranges::find(varied_, entries_[factor]) - varied_.begin());
-      for (std::size_t b = 0; b < samples.count; ++b) {
-        values_[row * samples.count + b] += model_->slots[factor].scale * samples.values[v * samples.count + b];
+      const double scale = model_->slots[factor].scale;
+      const double* from = samples.values.data() + v * samples.count;
+      double* to = values_.data() + row * samples.count;
+      if (row == begun) {
+        std::fill_n(to, samples.count, entry_of(factor));
+        ++begun;
       }
+      for (std::size_t b = 0; b < samples.count; ++b) to[b] += scale * from[b];
     }
     return values_;
   }
 
   const DeformationModel* model_;
   BlockSolver solver_;
+  Prepared prepared_;
   std::map<std::vector<double>, Nominal> nominal_;  ///< by pose
   std::vector<FrameEntry> entries_;                 ///< [F] of each factor
   std::vector<bool> varies_;                        ///< [F]
@@ -177,6 +192,10 @@ std::vector<Response> responses_of(const DeformationModel& model) {
   if (!model.platform) return list;
   for (Response& response : platform_responses(*model.platform)) list.push_back(std::move(response));
   return list;
+}
+
+FrameEntry DeformationModel::entry(const ErrorSlot& slot) const {
+  return {chain.first_frame(slot.limb) + slot.frame, slot.component};
 }
 
 std::optional<PlatformPoints> DeformationModel::platform_points(std::span<const double> displacements) const {

@@ -24,6 +24,9 @@ struct ErrorSlot {
 /// What of the platform's own displacement is a response.
 struct PlatformReport {
   std::optional<lie::Vector3<double>> tool = {};  ///< a point beside the origin, in the platform's frame (m)
+  /// Points of the platform, in its frame (m), by whose displacement separation() measures its motion; none: there is
+  /// no separation.
+  std::vector<lie::Vector3<double>> points = {};
 };
 
 /// A parallel chain as a model whose responses are its limbs' comprehensive deformations, the displacement of its
@@ -37,6 +40,8 @@ struct DeformationModel {
   std::vector<lie::Vector3<double>> points = {};
   std::optional<PlatformReport> platform = {};  ///< none: only its deformation is a response
 
+  /// Where a factor's error is among all frames.
+  FrameEntry entry(const ErrorSlot& slot) const;
   /// What is reported of the platform there; none: only the deformation.
   std::optional<PlatformPoints> platform_points(std::span<const double> displacements) const;
   /// At nominal displacements [all joints]; none: as published.

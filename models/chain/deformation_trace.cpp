@@ -95,13 +95,6 @@ void append(const std::vector<double>& responses, SolveTrace& trace) {
   trace.responses.insert(trace.responses.end(), responses.begin(), responses.end());
 }
 
-/// The position of the limb's first frame among all.
-std::size_t first_frame(const ParallelChain& chain, std::size_t limb) {
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < limb; ++i) first += chain.limbs[i].frames();
-  return first;
-}
-
 }  // namespace
 
 SolveTrace first_order_trace(const DeformationModel& model, std::span<const double> pose,
@@ -120,13 +113,11 @@ SolveTrace first_order_trace(const DeformationModel& model, std::span<const doub
   lie::Screw<double> xi = lie::Screw<double>::Zero();
   for (std::size_t f = 0; f < errors.size() && trace.status == SolveStatus::converged; ++f) {
     const ErrorSlot& slot = model.slots[f];
-    const FrameEntry entry{first_frame(model.chain, slot.limb) + slot.frame, slot.component};
+    const FrameEntry entry = model.entry(slot);
     const double error = slot.scale * errors[f];
     first_order.effect(entry, effect, moved);
     for (std::size_t n = 0; n < effect.size(); ++n) delta_mu[n] += error * effect[n];
-    lie::Screw<double> sum = first_order.motion(entry);
-    for (std::size_t a = 0; a < moved.size(); ++a) sum += moved[a] * first_order.column(a);
-    xi += error / static_cast<double>(model.chain.limbs.size()) * sum;
+    xi += error / static_cast<double>(model.chain.limbs.size()) * first_order.sum_of_motions(entry, moved);
   }
   trace.responses = deformations(model, metric ? &*metric : nullptr, delta_mu);
   if (const auto points = model.platform_points(displacements)) append(platform_displacement(xi, *points, true), trace);

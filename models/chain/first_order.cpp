@@ -52,6 +52,13 @@ void FirstOrder::effect(const FrameEntry& entry, std::span<double> delta_mu, std
   }
 }
 
+lie::Screw<double> FirstOrder::sum_of_motions(const FrameEntry& entry, std::span<const double> displacements) const {
+  POESY_EXPECTS(displacements.size() == columns_.size());
+  lie::Screw<double> sum = motion(entry);
+  for (std::size_t a = 0; a < columns_.size(); ++a) sum += displacements[a] * columns_[a];
+  return sum;
+}
+
 void FirstOrder::matrix(std::span<double> inverse, std::span<double> diagonal) {
   const std::size_t size = columns_.size();
   POESY_EXPECTS(inverse.size() == size * size && diagonal.size() == size);

@@ -35,6 +35,10 @@ class FirstOrder {
   std::size_t limb_of_joint(std::size_t joint) const { return limb_of_joint_[joint]; }
   /// @}
 
+  /// The sum of the motions of all limbs' platforms, of a unit of that entry and of these displacements
+  /// [passive joints], as effect() gives them. Precondition: as above.
+  lie::Screw<double> sum_of_motions(const FrameEntry& entry, std::span<const double> displacements) const;
+
   /// See NormalEquations::idle().
   std::span<const double> idle() const { return equations_.idle(); }
 

@@ -41,6 +41,12 @@ std::size_t ParallelChain::frames() const {
   return sum_over(limbs, [](const Limb& limb) { return limb.frames(); });
 }
 
+std::size_t ParallelChain::first_frame(std::size_t limb) const {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < limb; ++i) first += limbs[i].frames();
+  return first;
+}
+
 double ParallelChain::reach() const {
   double longest = 0.0;
   for (const Limb& limb : limbs) {

@@ -18,6 +18,7 @@ struct Joint {
   JointType type;        ///< how it moves
   bool actuated;         ///< else passive: it gives way to errors
   double advance = 0.0;  ///< of a revolute joint: m per rad along its axis; not zero in a helical joint
+  bool fixed = false;    ///< actuated, but by no drive: a frame between parts that do not move against each other
 };
 
 /// A serial limb in local product-of-exponentials form (Du et al. 2022, Eq. 13): n joints between n + 1 fixed
@@ -59,6 +60,8 @@ struct ParallelChain {
   std::size_t passive_joints() const;
   std::size_t frames() const;
   /// @}
+  /// Where the limb's frames begin among those of all limbs.
+  std::size_t first_frame(std::size_t limb) const;
   /// The longest a limb is, in m, summed over its fixed frames.
   double reach() const;
 };

@@ -159,7 +159,9 @@ class Parser {
     for (const GeometryParameter& parameter : parameters_) known.push_back(parameter.name);
     known.insert(known.end(), kFunctions.begin(), kFunctions.end());
     known.push_back("pi");
-    fail(at, "has an unknown parameter '" + printable(name) + "'", suggestion(name, known));
+    fail(at, "has an unknown parameter '" + printable(name) + "'",
+         parameters_.empty() ? "values in [geometry] are numbers; write the expression where it is used"
+                             : suggestion(name, known));
   }
 
   Value function(std::string_view name, std::size_t at) {

@@ -97,8 +97,15 @@ std::vector<Reference> references(const StudyValue& value) {
   return list;
 }
 
+/// Letters that a name may have, so that messages and tables show it whole, with what is appended to it.
+constexpr std::size_t kLongestName = 48;
+
 void check_name(const Reference& reference) {
   const auto allowed = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-'); };
+  if (reference.name.size() > kLongestName) {
+    throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is too long",
+                     "write at most " + std::to_string(kLongestName) + " letters");
+  }
   if (!reference.name.empty() && std::ranges::all_of(reference.name, allowed)) return;
   throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is no name",
                    "write letters, digits, _ and -");
@@ -557,7 +564,8 @@ toml::table parse(const std::string& text, const std::string& path) {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     throw InputError({path, error.source().begin.line, error.source().begin.column},
-                     "this is not TOML: " + printable(error.description(), 120), "correct this line");
+                     "this is not TOML: " + printable(error.description(), 120),
+                     "correct this line; names of parameters and expressions stand in quotes");
   }
 }
 

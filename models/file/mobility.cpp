@@ -95,17 +95,20 @@ std::string vector_text(const Vector3& vector) {
 void describe_loose(const Jacobians& all, const Eigen::VectorXd& motion, const lie::Screw<double>& twist,
                     Mobility& found) {
   Index largest = 0;
-  motion.cwiseAbs().maxCoeff(&largest);
+  for (Index n = 1; n < motion.size(); ++n) {
+    if (std::abs(motion[n]) > std::abs(motion[largest])) largest = n;
+  }
   Index column = 0;
   for (Index passed = 0;; ++column) {
     if (!all.joints[size(column)]->actuated && passed++ == largest) break;
   }
   const bool turns = twist.head<3>().norm() > 1e-3 * twist.norm();
+  const Vector3 along = turns ? twist.head<3>() : twist.tail<3>();
+  const Vector3 direction = along / along.norm();
   found.loose_place = all.joints[size(column)]->place;
   found.loose_text = "joint '" + all.joints[size(column)]->name + "' of limb " +
                      std::to_string(all.limbs[size(column)]) + " is loose, and the platform " +
-                     (turns ? "turns about " + vector_text(twist.head<3>().normalized())
-                            : "slides along " + vector_text(twist.tail<3>().normalized()));
+                     (turns ? "turns about " + vector_text(direction) : "slides along " + vector_text(direction));
 }
 
 void find_loose(const Jacobians& all, Mobility& found) {
@@ -233,16 +236,24 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
 
 namespace {
 
+/// " in limb 2, which has none" where some limbs have a drive and that one has not; else empty.
+std::string limb_without_drive(const Mechanism& mechanism) {
+  const auto has_none = [](const Limb& limb) { return std::ranges::none_of(limb.joints, &Joint::actuated); };
+  const auto first = std::ranges::find_if(mechanism.limbs, has_none);
+  if (first == mechanism.limbs.end() || std::ranges::all_of(mechanism.limbs, has_none)) return {};
+  return " in limb " + std::to_string(first - mechanism.limbs.begin() + 1) + ", which has none";
+}
+
 /// Throws where the platform moves although all drives are held. where: "" at home, or " at some poses".
-void check_held(const Mobility& found, const std::string& where) {
+void check_held(const Mechanism& mechanism, const Mobility& found, const std::string& where) {
   if (found.loose == 0) return;
-  throw InputError(found.loose_place,
-                   "the drives do not hold the platform" + where + ", which has " +
-                       count_text(found.platform_freedoms, "freedom") + " and " + count_text(found.actuated, "drive") +
-                       ": " + found.loose_text,
-                   found.actuated < found.platform_freedoms
-                       ? "write actuated = true at one more joint, or correct the axes"
-                       : "correct the axes, drive another joint, or draw it at a pose that is not singular");
+  throw InputError(
+      found.loose_place,
+      "the drives do not hold the platform" + where + ", which has " + count_text(found.platform_freedoms, "freedom") +
+          " and " + count_text(found.actuated, "drive") + ": " + found.loose_text,
+      found.actuated < found.platform_freedoms
+          ? "write actuated = true at one more joint" + limb_without_drive(mechanism) + ", or correct the axes"
+          : "correct the axes, drive another joint, or draw it at a pose that is not singular");
 }
 
 }  // namespace
@@ -252,12 +263,12 @@ void check_mobility(const Mechanism& mechanism, const Mobility& home) {
     throw InputError(mechanism.coordinates_place, problem, remedy);
   };
   if (home.platform_freedoms == 0) fail("the platform cannot move", "look at the axes of the joints at home");
-  check_held(home, "");
+  check_held(mechanism, home, "");
   const std::size_t named = mechanism.coordinates.size();
   if (home.coordinates_rank < named) {
     fail("platform.coordinates are not independent: " + home.dependent +
              " follows from the others, and the platform has " + count_text(home.platform_freedoms, "freedom"),
-         "remove it, or take another");
+         "remove it, take another, or correct the axes of the joints");
   }
   if (named < home.platform_freedoms) {
     fail("platform.coordinates has " + std::to_string(named) + ", but the platform has " +
@@ -283,7 +294,7 @@ void check_mobility(const Mechanism& mechanism, const Mobility& home, std::span<
                std::to_string(pose.mobility.freedoms) + " elsewhere",
            "draw it at another pose");
     }
-    check_held(pose.mobility, " at some poses");
+    check_held(mechanism, pose.mobility, " at some poses");
   }
 }
 

@@ -14,6 +14,8 @@
 #include "models/chain/deformation_trace.h"
 #include "models/chain/metric.h"
 #include "models/chain/passive_condition.h"
+#include "models/chain/separation.h"
+#include "models/file/charts.h"
 #include "models/file/mobility.h"
 #include "models/file/structure.h"
 #include "models/file/tracking.h"
@@ -27,7 +29,8 @@ chain::Limb chain_limb(const Limb& limb) {
   for (const Joint& joint : limb.joints) {
     const bool turns = joint.motion == Motion::revolute || joint.motion == Motion::helical;
     of_chain.joints.push_back({turns ? chain::JointType::revolute : chain::JointType::prismatic,
-                               joint.actuated || !joint.moves(), joint.motion == Motion::helical ? joint.pitch : 0.0});
+                               joint.actuated || !joint.moves(), joint.motion == Motion::helical ? joint.pitch : 0.0,
+                               !joint.moves()});
   }
   of_chain.home = limb.home;
   return of_chain;
@@ -59,14 +62,8 @@ chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<
     return with_fixed(mechanism, tracker->track(pose).displacements);
   };
   model.points = std::move(points);
-  model.platform = chain::PlatformReport{mechanism.tool};
+  model.platform = chain::PlatformReport{mechanism.tool, model.points.empty() ? mechanism.points : model.points};
   return model;
-}
-
-std::string coordinate_text(const Coordinate& coordinate) {
-  const std::string axis(1, "xyz"[coordinate.component % 3]);
-  if (coordinate.component < 3) return axis + " of the platform's origin in the base frame";
-  return "r" + axis + ", a rotation of the platform from home";
 }
 
 /// Positions of the responses with these names.
@@ -79,7 +76,8 @@ std::vector<std::size_t> positions(const std::vector<Response>& responses, std::
   return list;
 }
 
-ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism, const chain::DeformationModel& model) {
+ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism, const chain::DeformationModel& model,
+                          std::span<const Chart> charts) {
   ModelDescription description;
   description.name = file.name;
   description.title = file.title;
@@ -95,12 +93,14 @@ ModelDescription describe(const MechanismFile& file, const Mechanism& mechanism,
   description.factor_sets = mechanism.sets;
   description.responses = chain::responses_of(model);
   description.joints = displacement_names(mechanism);
+  for (const Chart& chart : charts) description.charts.push_back(chart.description());
   description.fidelities = {"exact", "first-order"};
   description.tolerance = chain::kToleranceByMetric;
   constexpr std::array<std::string_view, 5> kHeadline{"gap", "deformation_max", "position", "rotation", "tip_position"};
   constexpr std::array<std::string_view, 6> kSigned{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
   description.headline = positions(description.responses, kHeadline);
   description.signed_headline = positions(description.responses, kSigned);
+  description.separation = chain::separation_description(model);
   if (model.chain.meets) return description;
   description.metric = model.points.empty() ? "published" : "platform";
   if (model.points.empty()) description.tolerance = SolverOptions().tolerance;
@@ -116,8 +116,9 @@ class FileModel final : public Model {
             chain::Fidelity fidelity)
       : mechanism_(std::move(mechanism)),
         tracker_(std::make_shared<const Tracker>(mechanism_)),
+        charts_(charts_of(mechanism_)),
         model_(chain_model(mechanism_, tracker_, home, std::move(points))),
-        description_(describe(file, mechanism_, model_)),
+        description_(describe(file, mechanism_, model_, charts_)),
         fidelity_(fidelity) {}
 
   const ModelDescription& description() const override { return description_; }
@@ -129,6 +130,16 @@ class FileModel final : public Model {
 
   std::vector<double> joint_displacements(std::span<const double> pose) const override {
     return tracker_->track(pose).displacements;
+  }
+
+  std::optional<std::vector<double>> pose_from_chart(std::size_t chart,
+                                                     std::span<const double> coordinates) const override {
+    const Tracked found = charts_.at(chart).track(coordinates);
+    return found.unreachable.empty() ? std::optional(coordinates_of(mechanism_, found.pose)) : std::nullopt;
+  }
+
+  std::string no_pose_because(std::size_t chart, std::span<const double> coordinates) const override {
+    return charts_.at(chart).track(coordinates).unreachable;
   }
 
   double condition(std::span<const double> pose) const override {
@@ -148,7 +159,7 @@ class FileModel final : public Model {
   }
 
   std::vector<std::string> mobility() const override {
-    return mobility_lines(home_mobility(mechanism_), workspace_mobility(mechanism_));
+    return mobility_lines(mechanism_, home_mobility(mechanism_), workspace_mobility(mechanism_));
   }
 
   std::vector<std::string> unusual_geometry() const override { return home_outside(mechanism_); }
@@ -156,6 +167,8 @@ class FileModel final : public Model {
   std::optional<Sketch> sketch() const override { return sketch_of(mechanism_); }
 
   double rounding(std::size_t response) const override { return chain::effect_rounding(model_, response); }
+
+  Separation separation(std::span<const double> pose) const override { return chain::separation(model_, pose); }
 
   std::vector<PlatformPoint> metric_points() const override {
     if (model_.chain.meets) return {};
@@ -185,6 +198,7 @@ class FileModel final : public Model {
 
   Mechanism mechanism_;
   std::shared_ptr<const Tracker> tracker_;
+  std::vector<Chart> charts_;
   chain::DeformationModel model_;
   ModelDescription description_;
   chain::Fidelity fidelity_;

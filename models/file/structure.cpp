@@ -54,9 +54,12 @@ std::string difference(const Mobility& home, const PoseMobility& at) {
   return {};
 }
 
-std::string pose_text(std::span<const double> pose) {
+std::string pose_text(std::span<const Coordinate> coordinates, std::span<const double> pose) {
   std::string text;
-  for (const double value : pose) text += (text.empty() ? "" : ", ") + number_text(value);
+  for (std::size_t c = 0; c < pose.size(); ++c) {
+    text +=
+        (text.empty() ? "" : ", ") + coordinates[c].name + " = " + readable_text({pose[c], coordinates[c].dimension()});
+  }
   return text;
 }
 
@@ -79,6 +82,12 @@ bool has_errors(const Mechanism& mechanism, std::size_t limb, std::size_t first,
 }
 
 }  // namespace
+
+std::string coordinate_text(const Coordinate& coordinate) {
+  const std::string axis(1, "xyz"[coordinate.component % 3]);
+  if (coordinate.component < 3) return axis + " of the platform's origin in the base frame";
+  return "r" + axis + ", a rotation of the platform from home";
+}
 
 Sketch sketch_of(const Mechanism& mechanism) {
   Sketch sketch{.limbs = {}, .platform = sketched(mechanism.platform.p), .tool = {}};
@@ -130,7 +139,9 @@ std::string structure_text(const Mechanism& mechanism) {
          "  An error of frame i_j (j = 0 .. n) moves frame i_(j+1), or the platform, against frame i_j.\n";
 }
 
-std::vector<std::string> mobility_lines(const Mobility& home, std::span<const PoseMobility> poses) {
+std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobility& home,
+                                        std::span<const PoseMobility> poses) {
+  constexpr std::size_t kMostPoses = 3;
   std::vector<std::string> lines;
   lines.push_back(fmt::format("{} ({} actuated), rank {} of {} loop equations: {}, {}",
                               counted(home.joints, "joint", "joints"), home.actuated, home.rank, home.loop_equations,
@@ -148,8 +159,8 @@ std::vector<std::string> mobility_lines(const Mobility& home, std::span<const Po
   for (const PoseMobility& at : poses) {
     const std::string what = difference(home, at);
     if (what.empty()) continue;
-    ++different;
-    lines.push_back(fmt::format("pose ({}): {}", pose_text(at.pose), what));
+    if (++different > kMostPoses) continue;
+    lines.push_back(fmt::format("pose ({}): {}", pose_text(mechanism.coordinates, at.pose), what));
   }
   double turned = 0.0;
   double moved = 0.0;
@@ -158,10 +169,10 @@ std::vector<std::string> mobility_lines(const Mobility& home, std::span<const Po
     moved = std::max(moved, at.moved);
   }
   lines.push_back(
-      fmt::format("besides its coordinates the platform moves by up to {} mm and turns by up to {} deg there",
-                  number_text(kMillimetres * moved), number_text(turned * 180.0 / std::numbers::pi)));
-  lines.push_back(
       fmt::format("the same at {} of {} poses tried in the workspace", poses.size() - different, poses.size()));
+  lines.push_back(
+      fmt::format("there, besides its coordinates, the platform moves by up to {} mm and turns by up to {} deg",
+                  number_text(kMillimetres * moved), number_text(turned * 180.0 / std::numbers::pi)));
   return lines;
 }
 

@@ -14,13 +14,18 @@ namespace poesy::file {
 /// which the frames were chosen.
 std::string structure_text(const Mechanism& mechanism);
 
+/// What a coordinate is.
+std::string coordinate_text(const Coordinate& coordinate);
+
 /// The joints as the file has them: elementary ones that make one joint are one.
 Sketch sketch_of(const Mechanism& mechanism);
 
 /// Which coordinates of home are outside their workspace, a clause for each.
 std::vector<std::string> home_outside(const Mechanism& mechanism);
 
-/// Joints, ranks and freedoms at home, the singular values around the gap, and what differs in the workspace.
-std::vector<std::string> mobility_lines(const Mobility& home, std::span<const PoseMobility> poses);
+/// Joints, ranks and freedoms at home, the singular values around the gap, and what differs in the workspace: at the
+/// first poses where something does.
+std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobility& home,
+                                        std::span<const PoseMobility> poses);
 
 }  // namespace poesy::file

@@ -30,8 +30,11 @@ constexpr int kMostSettlings = 60;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-Index rank_of(const Vector& singular_values) {
-  return (singular_values.array() > kRankThreshold * singular_values[0]).count();
+std::size_t rank_of(const Matrix& matrix) {
+  if (matrix.cols() == 0) return 0;
+  Eigen::JacobiSVD<Matrix> svd(matrix);
+  svd.setThreshold(kRankThreshold);
+  return static_cast<std::size_t>(svd.rank());
 }
 
 std::span<const double> part(const Vector& q, std::size_t begin, std::size_t count) {
@@ -40,15 +43,9 @@ std::span<const double> part(const Vector& q, std::size_t begin, std::size_t cou
 
 }  // namespace
 
-/// Joints and platform on the way.
-struct Tracker::State {
-  Vector q;           ///< [moving], in units of the reach
-  PlatformPose pose;  ///< likewise
-};
-
 /// Every limb's platform moves to where the pose says: J_i dq_i - C dpose = log(T g_i^-1).
 struct Tracker::System {
-  Matrix matrix;    ///< [6 limbs x (moving + free)]
+  Matrix matrix;    ///< [6 limbs x free]
   Vector residual;  ///< [6 limbs]
 };
 
@@ -65,39 +62,63 @@ std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<c
   return scaled;
 }
 
-Tracker::Tracker(const Mechanism& mechanism) : unit_(in_reaches(mechanism)), reach_(mechanism.reach) {
-  for (std::size_t component = 0; component < 6; ++component) {
-    if (std::ranges::find(unit_.coordinates, component, &Coordinate::component) == unit_.coordinates.end()) {
-      free_.push_back(component);
-    }
-  }
+Tracker::Tracker(const Mechanism& mechanism, Given given)
+    : unit_(in_reaches(mechanism)), reach_(mechanism.reach), by_(given) {
+  const auto give = [&](std::size_t place, bool is_length) {
+    given_.push_back(place);
+    units_.push_back(is_length ? reach_ : 1.0);
+  };
+  std::size_t begin = 0;
   for (const Limb& limb : unit_.limbs) {
-    Columns columns(6, index(limb.moving()));
-    limb_transform(limb, std::vector<double>(limb.moving(), 0.0), &columns);
-    limb_ranks_.push_back(static_cast<std::size_t>(rank_of(Eigen::JacobiSVD<Matrix>(columns).singularValues())));
+    std::vector<std::size_t> free;
+    std::size_t k = 0;
+    for (const Joint& joint : limb.joints) {
+      if (!joint.moves()) continue;
+      if (given == Given::drives && joint.actuated) {
+        give(begin + k, joint.motion == Motion::prismatic);
+      } else {
+        free.push_back(k);
+      }
+      ++k;
+    }
+    Columns columns(6, index(k));
+    limb_transform(limb, std::vector<double>(k, 0.0), &columns);
+    limb_ranks_.push_back(rank_of(columns(Eigen::all, free)));
+    limb_joints_.push_back(std::move(free));
+    begin += k;
+  }
+  if (given == Given::coordinates) {
+    for (const Coordinate& coordinate : unit_.coordinates) give(begin + coordinate.component, coordinate.component < 3);
+  }
+  for (std::size_t place = 0; place < begin + 6; ++place) {
+    if (std::ranges::find(given_, place) == given_.end()) free_.push_back(place);
   }
 }
 
+PlatformPose Tracker::pose_of(const State& state) const {
+  PlatformPose pose;
+  std::ranges::copy(state.tail<6>(), pose.begin());
+  return pose;
+}
+
 Tracker::System Tracker::system(const State& state) const {
-  const Index joints = state.q.size();
-  const auto rows = 6 * index(unit_.limbs.size());
-  System made{Matrix::Zero(rows, joints + index(free_.size())), Vector(rows)};
-  const Transform wanted = platform_transform(unit_, state.pose);
-  const lie::Matrix6<double> by_pose = platform_columns(unit_, state.pose);
+  const PlatformPose pose = pose_of(state);
+  Matrix all = Matrix::Zero(6 * index(unit_.limbs.size()), state.size());
+  Vector residual(all.rows());
+  const Transform wanted = platform_transform(unit_, pose);
+  const lie::Matrix6<double> by_pose = platform_columns(unit_, pose);
   Index row = 0;
   std::size_t begin = 0;
   for (const Limb& limb : unit_.limbs) {
     Columns columns(6, index(limb.moving()));
-    const Transform g = limb_transform(limb, part(state.q, begin, limb.moving()), &columns);
-    made.matrix.block(row, index(begin), 6, columns.cols()) = columns;
-    for (std::size_t f = 0; f < free_.size(); ++f) {
-      made.matrix.block<6, 1>(row, joints + index(f)) = -by_pose.col(index(free_[f]));
-    }
-    made.residual.segment<6>(row) = lie::log(wanted * g.inverse());
+    const Transform g = limb_transform(limb, part(state, begin, limb.moving()), &columns);
+    all.block(row, index(begin), 6, columns.cols()) = columns;
+    all.block<6, 6>(row, all.cols() - 6) = -by_pose;
+    residual.segment<6>(row) = lie::log(wanted * g.inverse());
     begin += limb.moving();
     row += 6;
   }
-  return made;
+  return {all(Eigen::all, free_), residual};
 }
 
 /// Newton's method, as long as every step is a fraction of the one before: then the root is the one on the way.
@@ -110,8 +131,7 @@ Tracker::Ending Tracker::close(State& state) const {
     const Vector change = least_norm.compute(equations.matrix).solve(equations.residual);
     const double size = change.lpNorm<Eigen::Infinity>();
     if (!(size <= most)) return Ending::slow;
-    state.q += change.head(state.q.size());
-    for (std::size_t f = 0; f < free_.size(); ++f) state.pose[free_[f]] += change[state.q.size() + index(f)];
+    state(free_) += change;
     if (size <= kRest || equations.residual.lpNorm<Eigen::Infinity>() <= kRounding) {
       const bool closed = system(state).residual.lpNorm<Eigen::Infinity>() <= kClosed;
       return closed ? Ending::closed : Ending::open;
@@ -125,30 +145,33 @@ namespace {
 
 /// A limb that holds the platform where it is and still moves: the displacements with the least sum of squares, by
 /// Newton's method on min |q|^2 / 2 where log(g(q) g^-1) is given. To second order that is sum xi_j dq_j +
-/// sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. rank: of its columns.
-bool settle_limb(const Limb& limb, Index rank, const Transform& platform, Eigen::Ref<Vector> q) {
-  const Index joints = q.size();
-  Columns J(6, joints);
+/// sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2. free: the joints that may move; rank: of their columns.
+bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index rank, const Transform& platform,
+                 Eigen::Ref<Vector> q) {
+  const Index joints = index(free.size());
+  Columns all(6, q.size());
   for (int n = 0; n < kMostSettlings; ++n) {
-    const Transform g = limb_transform(limb, {q.data(), static_cast<std::size_t>(joints)}, &J);
+    const Transform g = limb_transform(limb, {q.data(), limb.moving()}, &all);
+    const Columns J = all(Eigen::all, free);
+    const Vector now = q(free);
     const Eigen::JacobiSVD<Matrix> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Matrix inverse = svd.matrixV().leftCols(rank) * svd.singularValues().head(rank).cwiseInverse().asDiagonal() *
                            svd.matrixU().leftCols(rank).transpose();
     const Matrix idle = svd.matrixV().rightCols(joints - rank);
     const Vector closing = inverse * lie::log(platform * g.inverse());
-    const lie::Screw<double> multiplier = -inverse.transpose() * q;
+    const lie::Screw<double> multiplier = -inverse.transpose() * now;
     Matrix hessian = Matrix::Identity(joints, joints);
     for (Index i = 0; i < joints; ++i) {
       for (Index j = i + 1; j < joints; ++j) {
         hessian(i, j) = hessian(j, i) = 0.5 * multiplier.dot(lie::bracket<double>(J.col(i), J.col(j)));
       }
     }
-    const Vector slope = idle.transpose() * (q + hessian * closing);
+    const Vector slope = idle.transpose() * (now + hessian * closing);
     const Eigen::LLT<Matrix> curvature(idle.transpose() * hessian * idle);
     Vector along = curvature.info() == Eigen::Success ? Vector(-curvature.solve(slope)) : Vector(-slope);
     if (along.norm() > kLargestMove) along *= kLargestMove / along.norm();
     const Vector change = closing + idle * along;
-    q += change;
+    q(free) += change;
     if (!change.allFinite()) return false;
     if (change.lpNorm<Eigen::Infinity>() <= kRest) return true;
   }
@@ -158,68 +181,72 @@ bool settle_limb(const Limb& limb, Index rank, const Transform& platform, Eigen:
 }  // namespace
 
 bool Tracker::settle(State& state) const {
-  const Transform platform = platform_transform(unit_, state.pose);
+  const Transform platform = platform_transform(unit_, pose_of(state));
   std::size_t begin = 0;
   for (std::size_t i = 0; i < unit_.limbs.size(); ++i) {
     const Limb& limb = unit_.limbs[i];
-    const std::size_t joints = limb.moving();
-    if (limb_ranks_[i] < joints &&
-        !settle_limb(limb, index(limb_ranks_[i]), platform, state.q.segment(index(begin), index(joints)))) {
+    if (limb_ranks_[i] < limb_joints_[i].size() && !settle_limb(limb, limb_joints_[i], index(limb_ranks_[i]), platform,
+                                                                state.segment(index(begin), index(limb.moving())))) {
       return false;
     }
-    begin += joints;
+    begin += limb.moving();
   }
   return true;
 }
 
 std::string Tracker::why(const State& state, Ending ending, double share) const {
-  Index idle = 0;
-  for (std::size_t i = 0; i < unit_.limbs.size(); ++i) idle += index(unit_.limbs[i].moving() - limb_ranks_[i]);
+  std::size_t joints = 0;  // that are solved for
+  std::size_t idle = 0;
+  for (std::size_t i = 0; i < unit_.limbs.size(); ++i) {
+    joints += limb_joints_[i].size();
+    idle += limb_joints_[i].size() - limb_ranks_[i];
+  }
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";
-  if (ending == Ending::open) {
-    return where + "beyond, the loops stay open by more than rounding, because the limbs do not fit each other there";
-  }
   const Matrix matrix = system(state).matrix;
   const Eigen::JacobiSVD<Matrix> svd(matrix, Eigen::ComputeFullV);
-  const Vector weakest = svd.matrixV().col(matrix.cols() - 1 - idle);
+  const Index last = matrix.cols() - 1 - index(idle);
+  if (ending == Ending::open && svd.singularValues()[last] > kRankThreshold * svd.singularValues()[0]) {
+    return where + "beyond, the loops stay open by more than rounding, because the limbs do not fit each other there";
+  }
+  const Vector weakest = svd.matrixV().col(last);
   Index column = 0;
-  weakest.head(state.q.size()).cwiseAbs().maxCoeff(&column);
+  weakest.head(index(joints)).cwiseAbs().maxCoeff(&column);
+  std::size_t place = free_[static_cast<std::size_t>(column)];
   std::string blamed;
   for (std::size_t i = 0; i < unit_.limbs.size() && blamed.empty(); ++i) {
     for (const Joint& joint : unit_.limbs[i].joints) {
-      if (joint.moves() && column-- == 0) {
+      if (joint.moves() && place-- == 0) {
         blamed = "joint '" + joint.name + "' of limb " + std::to_string(i + 1);
         break;
       }
     }
   }
   if (ending == Ending::restless) return where + "there the idle freedom at " + blamed + " has no definite position";
-  return where +
-         "there the mechanism comes to a singular pose, a limb is stretched, folded or has its axes in line, and " +
-         blamed + " moves most";
+  return where + "there the mechanism comes to a singular pose, " +
+         (by_ == Given::drives
+              ? "in which its drives do not hold it"
+              : "a limb is stretched, folded or has its axes in line, or the coordinates follow from each other") +
+         ", and " + blamed + " moves most";
 }
 
-Tracked Tracker::track(std::span<const double> coordinates) const {
-  POESY_EXPECTS(coordinates.size() == unit_.coordinates.size());
-  State state{Vector::Zero(index(unit_.moving())), home_pose(unit_)};
-  const PlatformPose home = state.pose;
-  PlatformPose wanted = home;
+Tracked Tracker::track(std::span<const double> numbers) const {
+  POESY_EXPECTS(numbers.size() == given_.size());
+  State home = Vector::Zero(index(unit_.moving() + 6));
+  std::ranges::copy(home_pose(unit_), home.tail<6>().begin());
+  State state = home;
   bool finite = true;
-  for (std::size_t c = 0; c < coordinates.size(); ++c) {
-    const Coordinate& coordinate = unit_.coordinates[c];
-    wanted[coordinate.component] = coordinate.component < 3 ? coordinates[c] / reach_ : coordinates[c];
-    finite = finite && std::isfinite(coordinates[c]);
-  }
+  for (const double number : numbers) finite = finite && std::isfinite(number);
   double share = 0.0;
   double stride = kFirstStep;
   Ending ending = Ending::closed;
   while (finite && share < 1.0 && stride >= kSmallestStep) {
     const double next = std::min(share + stride, 1.0);
     State trial = state;
-    for (const Coordinate& coordinate : unit_.coordinates) {
-      const std::size_t k = coordinate.component;
-      trial.pose[k] = next < 1.0 ? home[k] + next * (wanted[k] - home[k]) : wanted[k];
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const Index place = index(given_[n]);
+      const double wanted = numbers[n] / units_[n];
+      trial[place] = next < 1.0 ? home[place] + next * (wanted - home[place]) : wanted;
     }
     const Ending ended = close(trial);
     if (ended == Ending::closed && settle(trial)) {
@@ -231,12 +258,12 @@ Tracked Tracker::track(std::span<const double> coordinates) const {
       stride *= 0.5;
     }
   }
-  Tracked tracked{{}, state.pose, {}, share, {}};
+  Tracked tracked{{}, pose_of(state), {}, share, {}};
   if (share < 1.0) tracked.unreachable = finite ? why(state, ending, share) : "a coordinate is not a finite number";
-  for (std::size_t k = 0; k < 3; ++k) tracked.pose[k] *= reach_;
-  tracked.platform = platform_transform(unit_, state.pose);
+  tracked.platform = platform_transform(unit_, tracked.pose);
   tracked.platform.p *= reach_;
-  tracked.displacements = scaled_displacements(unit_, {state.q.data(), unit_.moving()}, reach_);
+  for (std::size_t k = 0; k < 3; ++k) tracked.pose[k] *= reach_;
+  tracked.displacements = scaled_displacements(unit_, {state.data(), unit_.moving()}, reach_);
   return tracked;
 }
 

@@ -19,25 +19,31 @@ struct SinCos {
   T cos;  ///< of the same angle
 };
 
-/// Sine and cosine for |x| < 100, within 2 ulp; where one of them vanishes at a multiple of pi/2, within 1e-26 for each
-/// quarter turn. Reduction by pi/2 in two parts (Cody and Waite), then the polynomials of fdlibm (Sun Microsystems
-/// 1993) for |r| <= pi/4. No branch, so that a lane never depends on its neighbours.
+/// The polynomials of fdlibm (Sun Microsystems 1993) for |x| <= pi/4.
 template <class T>
-inline SinCos<T> sin_cos(T x) {
-  constexpr double kTwoOverPi = 0.63661977236758134308;
-  constexpr double kHalfPiHigh = 1.57079632673412561417e+00;  // the first 33 bits of pi/2
-  constexpr double kHalfPiLow = 6.07710050650619224932e-11;   // the rest
+inline SinCos<T> sin_cos_near_zero(T x) {
   static constexpr double kSin[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
                                     -1.98412698298579493134e-04, 2.75573137070700676789e-06,
                                     -2.50507602534068634195e-08, 1.58969099521155010221e-10};
   static constexpr double kCos[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03,
                                     2.48015872894767294178e-05, -2.75573143513906633035e-07,
                                     2.08757232129817482790e-09, -1.13596475577881948265e-11};
-  const T n = nearest(x * T(kTwoOverPi));
-  const T r = nmadd(n, T(kHalfPiLow), nmadd(n, T(kHalfPiHigh), x));
-  const T z = r * r;
-  const T sine = madd(r * z, polynomial(z, kSin), r);
-  const T cosine = madd(z * z, polynomial(z, kCos), nmadd(T(0.5), z, T(1.0)));
+  const T z = x * x;
+  return {madd(x * z, polynomial(z, kSin), x), madd(z * z, polynomial(z, kCos), nmadd(T(0.5), z, T(1.0)))};
+}
+
+/// Sine and cosine for |x| < 100, within 2 ulp; where one of them vanishes at a multiple of pi/2, within 1e-26 for each
+/// quarter turn. Reduction by pi/2 in two parts (Cody and Waite). It is left out where no lane needs it, which changes
+/// no bit of any lane.
+template <class T>
+inline SinCos<T> sin_cos(T x) {
+  constexpr double kTwoOverPi = 0.63661977236758134308;
+  constexpr double kHalfPiHigh = 1.57079632673412561417e+00;  // the first 33 bits of pi/2
+  constexpr double kHalfPiLow = 6.07710050650619224932e-11;   // the rest
+  const T quarters = x * T(kTwoOverPi);
+  if (!any(!(abs(quarters) < T(0.5)))) return sin_cos_near_zero(x);
+  const T n = nearest(quarters);
+  const auto [sine, cosine] = sin_cos_near_zero(nmadd(n, T(kHalfPiLow), nmadd(n, T(kHalfPiHigh), x)));
   // n mod 2 and n mod 4, as 0 or +-1 and as -2 .. 2.
   const T odd = nmadd(T(2.0), nearest(T(0.5) * n), n);
   const T quarter = nmadd(T(4.0), nearest(T(0.25) * n), n);

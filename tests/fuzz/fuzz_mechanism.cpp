@@ -1,9 +1,15 @@
-// A mechanism's file. What is accepted is described and drawn, and its model built.
+// A mechanism's file. What is accepted is drawn; in one of 16 cases, because it takes a hundred times as long, it is
+// also followed through its workspace and described, and its model is built.
+#include <algorithm>
+#include <memory>
+#include <numeric>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "engine/report/mechanism_picture.h"
 #include "engine/report/tables.h"
+#include "models/file/mechanism.h"
+#include "models/file/structure.h"
 #include "models/registry.h"
 #include "tests/fuzz/target.h"
 
@@ -11,7 +17,15 @@ namespace {
 
 using namespace poesy;
 
-void read(const std::string& text) {
+void draw(const std::string& text) {
+  const file::MechanismFile file = file::read_mechanism_file(text, "mechanism.toml");
+  const file::Mechanism mechanism = file::mechanism(file, file::default_geometry(file));
+  fuzz::expect(!file::structure_text(mechanism).empty(), "its joints are described");
+  const std::string picture = mechanism_picture(file::sketch_of(mechanism), file.title);
+  fuzz::expect(picture.find("nan") == std::string::npos, "every place in a picture is a number");
+}
+
+void build(const std::string& text) {
   const CatalogEntry entry = registry().from_text(text, "mechanism.toml");
   fuzz::expect(!model_text(entry).empty(), "what is accepted is described");
   std::vector<double> geometry;
@@ -19,14 +33,15 @@ void read(const std::string& text) {
   const std::unique_ptr<Model> model = entry.build(geometry, 0);
   fuzz::expect(model->description().responses.size() == entry.description.responses.size(),
                "its model is as described");
-  const std::string picture = mechanism_picture(model->sketch().value(), entry.description.title);
-  fuzz::expect(picture.find("nan") == std::string::npos, "every place in a picture is a number");
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  fuzz::accepted<InputError>([&] { read(text); });
+  fuzz::accepted<InputError>([&] {
+    draw(text);
+    if (std::accumulate(data, data + size, 0u) % 16 == 0) build(text);
+  });
   return 0;
 }

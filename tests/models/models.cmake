@@ -1,6 +1,6 @@
 poesy_test(lie_test LABELS property SOURCES models/lie/so3_test.cpp models/lie/se3_test.cpp LINKS poesy_models)
 poesy_test(chain_test LABELS property SOURCES models/chain/limb_test.cpp models/chain/deformation_solver_test.cpp
-           models/chain/passive_condition_test.cpp
+           models/chain/passive_condition_test.cpp models/chain/separation_test.cpp
            LINKS poesy_models)
 poesy_test(trace_test LABELS unit SOURCES models/trace_test.cpp LINKS poesy_models)
 poesy_test(two_upr_rpu_test LABELS unit
@@ -17,10 +17,13 @@ poesy_test(three_prs_test LABELS unit
 poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coupling_test.cpp LINKS poesy_kinds poesy_models)
 # Of every mechanism in the registry, whatever it is.
 poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_kinds poesy_models)
-poesy_test(file_model_test LABELS unit SOURCES models/file/model_test.cpp LINKS poesy_models nlohmann_json::nlohmann_json DATA)
+poesy_test(file_model_test LABELS unit SOURCES models/file/model_test.cpp models/file/separation_test.cpp
+           LINKS poesy_models nlohmann_json::nlohmann_json DATA)
 poesy_test(compiled_test LABELS regression SOURCES models/file/compiled_test.cpp models/file/nategh_agheli_test.cpp
            LINKS poesy_models DATA)
 poesy_test(mechanism_file_test LABELS property
            SOURCES models/file/expression_test.cpp models/file/frames_test.cpp models/file/mechanism_file_test.cpp
                    models/file/mobility_test.cpp models/file/oracle_test.cpp models/file/tracking_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
+poesy_test(file_poses_test LABELS property SOURCES models/file/charts_test.cpp models/file/workspace_test.cpp
+           LINKS poesy_models DATA)

@@ -241,6 +241,7 @@ TEST_P(EveryMechanism, ShowsASolveWithTheSameEnd) {
   const std::unique_ptr<Evaluator> evaluator = model_->evaluator({});
   const std::vector<double> pose = poses().front();
   std::vector<double> errors(description().factors.size(), 0.0);
+  ASSERT_FALSE(errors.empty());
   errors[0] = 1e-4;
   const std::optional<SolveTrace> trace = model_->trace(pose, errors, {});
   if (!trace) GTEST_SKIP() << "the model shows no iterations";

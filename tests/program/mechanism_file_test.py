@@ -1,11 +1,14 @@
 """Mechanisms from files, as their designers use them: reference cases, everything that a study of one goes through, and
 a result that is complete without the file."""
 
+import csv
 import json
+import math
 import os
 from pathlib import Path
 
 import h5py
+import numpy
 
 from poesy_program import ProgramTest, main
 
@@ -31,6 +34,12 @@ samples = 300
 def table(rows, names):
     lines = [",".join(repr(row.get(name, 0.0)) for name in names) for row in rows]
     return "\n".join([",".join(names), *lines]) + "\n"
+
+
+def turned(beta, gamma):
+    """Rx(beta) Ry(gamma)."""
+    (cb, sb), (cg, sg) = ((numpy.cos(angle), numpy.sin(angle)) for angle in (beta, gamma))
+    return numpy.array([[1, 0, 0], [0, cb, -sb], [0, sb, cb]]) @ numpy.array([[cg, 0, sg], [0, 1, 0], [-sg, 0, cg]])
 
 
 def quantities(points):
@@ -99,6 +108,137 @@ class MechanismFile(ProgramTest):
             self.assertIn("# mobility:", self.succeeds("check", "template.toml"))
             self.succeeds("run", "template.toml", "--quiet")
             self.succeeds("report", "template.h5")
+
+    def displacements_by_unit(self, factors, points, poses):
+        """How errors move points of the platform (its frame), by differences of exact solves: [pose, 3 x points, error]."""
+        step = 1e-6
+        rows = [{factor: sign * step} for factor in factors for sign in (1, -1)]
+        self.write("errors.csv", table(rows, factors))
+        self.succeeds("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "differences.h5")
+        with h5py.File(self.folder / "differences.h5") as result:
+            found = {name: result["evaluate"][name][:] for name in ("x", "y", "z", "theta_x", "theta_y", "theta_z", "status")}
+        self.assertTrue((found["status"] < 2).all())
+        by_unit = []
+        for m, (_, beta, gamma) in enumerate(poses):
+            twist = numpy.array([(found[name][m, ::2] - found[name][m, 1::2]) / (2 * step)
+                                 for name in ("x", "y", "z", "theta_x", "theta_y", "theta_z")])
+            arms = points @ turned(beta, gamma).T
+            by_unit.append(numpy.concatenate([twist[:3] + numpy.cross(twist[3:].T, arm).T for arm in arms]))
+        return numpy.array(by_unit) / numpy.sqrt(len(points))
+
+    def test_what_calibration_can_remove(self):
+        self.study("upr2-rpu")
+        text = (self.folder / "upr2-rpu.toml").read_text()
+        self.write("upr2-rpu.toml", text[: text.index("\n[errors]")])  # all errors, those beside the drives among them
+        poses = [(-0.25, 0.2, -0.3), (-0.2, -0.3, 0.1)]
+        self.write("poses.csv", "z,beta,gamma\n" + "\n".join(",".join(map(str, pose)) for pose in poses) + "\n")
+        self.write("study.toml", (self.folder / "study.toml").read_text().replace("count = 4", 'select = "file"\nfile = "poses.csv"'))
+        self.succeeds("run", "study.toml", "--quiet")
+        with h5py.File(self.folder / "study.h5") as result:
+            factors = list(result["factors/name"].asstr()[:])
+            found = {name: result["separation"][name][:] for name in ("effect", "residual", "removable_local")}
+            self.assertEqual(set(result["separation/published"].asstr()[:]), {""})
+        points = numpy.array([(0.06, 0, 0), (-0.06, 0, 0), (0, 0.06 - 0.025, 0)])  # where the limbs' last joints are
+        drives = [factors.index(name) for name in ("delta_1_3_z", "delta_2_3_z", "delta_3_2_z")]
+        for m, by_unit in enumerate(self.displacements_by_unit(factors, points, poses)):
+            left = by_unit - by_unit[:, drives] @ numpy.linalg.lstsq(by_unit[:, drives], by_unit, rcond=None)[0]
+            effect, residual = numpy.linalg.norm(by_unit, axis=0), numpy.linalg.norm(left, axis=0)
+            numpy.testing.assert_allclose(found["effect"][:, m], effect, rtol=1e-6, atol=1e-7)
+            numpy.testing.assert_allclose(found["residual"][:, m], residual, rtol=1e-6, atol=1e-7)
+            moves = effect > 1e-6
+            self.assertGreater(moves.sum(), 60)
+            numpy.testing.assert_allclose(found["removable_local"][moves, m], 1 - residual[moves] / effect[moves], atol=1e-5)
+        shown = self.succeeds("show", "study.h5")
+        self.assertIn("What calibration can remove of each error's effect", shown)
+        self.assertIn("root mean square displacement of the platform's points, without the gap between its limbs", shown)
+        self.assertNotIn("published class", shown)
+        self.succeeds("report", "study.h5")
+        self.assertIn('id="calibration"', (self.folder / "study.html").read_text())
+
+    def test_calibration_of_six_drives_removes_everything(self):
+        self.study("ups6")
+        self.succeeds("run", "study.toml", "--quiet")
+        with h5py.File(self.folder / "study.h5") as result:
+            removable = result["separation/removable"][:]
+            self.assertEqual(result["separation/removable_together"][()], 1.0)
+            self.assertEqual(result["separation"].attrs["measure"], "root mean square displacement of the platform's points")
+        numpy.testing.assert_array_equal(removable[~numpy.isnan(removable)], 1.0)
+        self.assertGreater((~numpy.isnan(removable)).sum(), 100)
+
+    def test_negligible_errors_do_not_stand_in_the_way_of_tolerances(self):
+        # Of the planar 3-RRR, errors along the second link's hinge act with the square of their size, and next to nothing.
+        gallery = DATA.parent.parent / "results" / "gallery" / "3-rrr"
+        self.write("3-rrr.toml", (gallery / "3-rrr.toml").read_bytes())
+        self.write("study.toml", (gallery / "study.toml").read_text().replace("samples = 1000", "samples = 300"))
+        self.succeeds("run", "study.toml", "--quiet")
+        asked = ["tolerances", "study.h5", "--response", "position"]
+        printed = " ".join(self.succeeds(*asked, "--limit", "0.05 mm", "-d", "out").split())
+        self.assertIn("3 negligible errors have the size studied as tolerance: the index on position changes with size", printed)
+        with (self.folder / "out/tolerances.csv").open(newline="") as file:
+            rows = {row["factor"]: row for row in csv.DictReader(file)}
+        negligible = [f"delta_{limb}_2_y" for limb in (1, 2, 3)]
+        for name in negligible:
+            for way in ("limit_equal_effect", "limit_equal_tolerance"):
+                self.assertEqual(float(rows[name][way]), 1e-4)
+            self.assertIn(f"{name} (0.1 mm)", printed)
+        for row in rows.values():
+            self.assertLessEqual(float(row["limit_equal_effect"]), 1e-4 if row["unit"] == "m" else math.radians(0.05))
+        for way in ("equal_effect", "equal_tolerance"):
+            self.assertIn(self.poesy("run", f"out/confirm_{way}.toml", "-o", f"{way}.h5", "--quiet").returncode, (0, 6))
+            with h5py.File(self.folder / f"{way}.h5") as file:
+                at = list(file["response"].asstr()).index("position")
+                rms = math.hypot(file["monte_carlo/overall_mean"][at], file["monte_carlo/overall_std"][at])
+            self.assertAlmostEqual(rms / 0.05e-3, 1.0, delta=0.05)
+        # Counted from one of them, all others would be absurdly tight.
+        done = self.poesy(*asked, "-d", "none")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("or count from another error (--reference)", done.stderr.decode())
+        self.succeeds(*asked, "--reference", "delta_1_0_x=0.01 mm", "-d", "counted")
+        with (self.folder / "counted/tolerances.csv").open(newline="") as file:
+            rows = {row["factor"]: row for row in csv.DictReader(file)}
+        for name in negligible:
+            self.assertEqual(float(rows[name]["equal_effect"]), 1e-4)
+
+    def poses_of(self, result):
+        with h5py.File(self.folder / result) as file:
+            return list(zip(*(file["poses"][name][()] for name in ("rx", "ry", "z")), strict=True))
+
+    def test_poses_by_drives_and_by_the_tool(self):
+        self.study("rps3")
+        shown = self.succeeds("models", "rps3.toml")
+        for name, columns in (("tip", "rx, ry, tip_z"), ("actuators", "q_1_2, q_2_2, q_3_2")):
+            self.assertIn(f"\nposes may be given by {name}\n", shown)
+            self.assertIn(f"# Chart {name} in which a file may give poses: {columns}\n", self.succeeds("template", "rps3.toml"))
+        poses = [(0.1 * k - 0.2, 0.3 - 0.13 * k, 0.52 + 0.03 * k) for k in range(5)]
+        self.write("poses.csv", table([dict(zip(("rx", "ry", "z"), pose, strict=True)) for pose in poses], ["rx", "ry", "z"]))
+        self.write("errors.csv", "delta_1_0_x [mm]\n0.1\n")
+        self.succeeds("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "poses.h5")
+        with h5py.File(self.folder / "poses.h5") as file:
+            names = [name.decode() for name in file["evaluate/joint"]]
+            joints = file["evaluate/joint_displacements"][()]
+        drives = ["q_1_2", "q_2_2", "q_3_2"]
+        self.write("drives.csv", table([{d: float(row[names.index(d)]) for d in drives} for row in joints], drives))
+        # The tool is 0.1 m from P along the platform's z, by the rotation vector (rx, ry, 0).
+        tips = [{"rx": rx, "ry": ry, "tip_z": z + 0.1 * math.cos(math.hypot(rx, ry))} for rx, ry, z in poses]
+        self.write("tips.csv", table(tips, ["rx", "ry", "tip_z"]))
+        for name in ("drives", "tips"):
+            self.succeeds("evaluate", "study.toml", "--poses", f"{name}.csv", "--errors", "errors.csv", "-o", f"{name}.h5")
+            for found, wanted in zip(self.poses_of(f"{name}.h5"), poses, strict=True):
+                for a, b in zip(found, wanted, strict=True):
+                    self.assertAlmostEqual(a, b, delta=1e-13)
+            self.write("given.toml", STUDY.format(name="rps3", solver="").replace("count = 4", f'select = "file"\nfile = "{name}.csv"'))
+            self.succeeds("run", "given.toml", "--quiet", "-o", f"given_{name}.h5")
+            self.assertEqual(self.poses_of(f"given_{name}.h5"), self.poses_of(f"{name}.h5"))
+        self.write("far.csv", "q_1_2 [mm],q_2_2 [mm],q_3_2 [mm]\n0,0,0\n600,0,0\n")
+        done = self.poesy("evaluate", "study.toml", "--poses", "far.csv", "--errors", "errors.csv", "-o", "far.h5")
+        self.assertEqual(done.returncode, 2)
+        for words in ("far.csv:3:", "out of reach: the way there from home ends after 4", "drives do not hold it", "nearer to home"):
+            self.assertIn(words, done.stderr.decode())
+        self.write("way.csv", "t,q_1_2 [mm],q_2_2 [mm],q_3_2 [mm]\n0,0,0,0\n1,50,0,0\n")
+        self.write("way.toml", STUDY.format(name="rps3", solver="").replace(
+            "count = 4", 'select = "trajectory"\ntrajectory = { file = "way.csv", points = 5 }'))
+        self.succeeds("run", "way.toml", "--quiet")
+        self.assertEqual(len(self.poses_of("way.h5")), 5)
 
     def content_hash(self, name):
         with h5py.File(self.folder / name) as file:

@@ -115,12 +115,23 @@ class Tolerances(ProgramTest):
                 found.append(math.hypot(*(file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))))
         return found
 
+    def deforming(self, size):
+        """A result of all errors that deform the mechanism, as published: ten of them act with the square of their size."""
+        study = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '"deforming"').replace('method = "gauss-newton"', "")
+        study = study.replace('"1 mm" }\nang', f'"{size} mm" }}\nang').replace("0.2 deg", f"{size} deg")
+        return self.result(study.replace("samples = 1500", "samples = 500"))
+
+    def test_errors_that_act_with_the_square_of_a_small_size_keep_it(self):
+        printed = " ".join(self.succeeds("tolerances", self.deforming(0.01), "--response", "linear_deformation", "--limit",
+                                         "0.05 mm", "-d", "out").split())
+        self.assertIn("10 negligible errors have the size studied as tolerance", printed)
+        for rms in self.rms_of_confirmations("linear_deformation"):
+            self.assertAlmostEqual(rms / 0.05e-3, 1.0, delta=0.1)
+
     def test_study_that_refutes_its_limit_says_so(self):
         # Errors that act with the square of their size look harmless in a study of small ones.
-        study = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '"deforming"').replace('method = "gauss-newton"', "")
-        study = study.replace('"1 mm" }\nang', '"0.01 mm" }\nang').replace("0.2 deg", "0.01 deg").replace("samples = 1500", "samples = 500")
         response = "linear_deformation"
-        self.succeeds("tolerances", self.result(study), "--response", response, "--limit", "0.05 mm", "--extrapolate", "-d", "out")
+        self.succeeds("tolerances", self.deforming(0.03), "--response", response, "--limit", "0.05 mm", "--extrapolate", "-d", "out")
         first, second = (self.folder / "out/confirm_equal_effect.toml").read_text().splitlines()[:2]
         self.assertEqual(first, "# held constant: 30 errors of set 'benign' at 1 mm and 1 deg")
         self.assertRegex(second, "^# 10 errors have an index on linear_deformation that changes with size")

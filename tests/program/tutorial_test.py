@@ -1,4 +1,4 @@
-"""results/tutorial/README.md: its commands run, in its order, in an empty folder, and come to what it says."""
+"""results/tutorial/README.md: its commands run, in its order, in an empty folder, and print what it shows."""
 
 import math
 import os
@@ -11,12 +11,28 @@ import h5py
 from poesy_program import PROGRAM, ProgramTest, main
 
 ROOT = Path(__file__).resolve().parents[2]
-BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+TUTORIAL = ROOT / "results/tutorial"
+BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
 def blocks(text):
-    """The commands of a page, a text for each block of code that is marked as sh."""
-    return BLOCK.findall(text)
+    """The commands of a page: each block of code marked as sh, with the lines of output that are shown after it."""
+    found = []
+    for language, code in BLOCK.findall(text):
+        if language == "sh":
+            found.append((code, []))
+        elif not language:
+            found[-1][1].extend(code.splitlines())
+    return found
+
+
+def first_not_printed(shown, output):
+    """The first line shown that the output does not have after those before it; "..." stands for lines left out."""
+    printed = iter([line.rstrip() for line in output.splitlines()])
+    for line in shown:
+        if line.strip() not in ("", "...") and line.rstrip() not in printed:
+            return line
+    return None
 
 
 class Tutorial(ProgramTest):
@@ -37,32 +53,38 @@ class Tutorial(ProgramTest):
         self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
         return done.stdout
 
-    def test_commands_run_and_tolerances_are_confirmed(self):
-        commands = blocks((ROOT / "results/tutorial/README.md").read_text())
-        self.assertGreater(len(commands), 8)
-        for block in commands:
-            self.run_block(block)
-        with h5py.File(self.work / "study.h5") as file:
-            study = file["study/text"].asstr()[()]
-            self.assertIn('l_A = "0.08 m"', study)
-            self.assertIn("count = 40", study)
-        with h5py.File(self.work / "all.h5") as file:
-            self.assertEqual(file["factor"].shape, (41,))
+    def test_commands_run_and_print_what_is_shown(self):
+        commands = blocks((TUTORIAL / "README.md").read_text(encoding="utf-8"))
+        self.assertGreater(len(commands), 12)
+        for block, shown in commands:
+            output = self.run_block(block)
+            self.assertIsNone(first_not_printed(shown, output), f"{block}\n{output}")
+        for name in ("linear-delta.toml", "study.toml"):
+            self.assertEqual((self.work / name).read_bytes(), (TUTORIAL / name).read_bytes(), name)
         with h5py.File(self.work / "precise.h5") as file:
             self.assertIn("convergence", file)
-        with h5py.File(self.work / "all_tolerances/confirm_equal_effect.h5") as file:
-            at = list(file["response"].asstr()).index("gap")
+        with h5py.File(self.work / "boundary.h5") as file:
+            self.assertEqual(file["factor"].shape, (33,))
+        with h5py.File(self.work / "boundary_tolerances/confirm_equal_effect.h5") as file:
+            at = list(file["response"].asstr()).index("tip_position")
             mean, std = (file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))
         self.assertLess(math.hypot(mean, std), 5e-5)
         self.assertGreater(math.hypot(mean, std), 0.98 * 5e-5)
         self.assertGreater((self.work / "ranked.svg").stat().st_size, 5000)
-        self.assertTrue((self.work / "tables/local_gap.csv").is_file())
+        self.assertTrue((self.work / "tables/local_tip_position.csv").is_file())
 
     def test_a_command_that_fails_is_found(self):
-        first, second = blocks("```sh\npoesy models\n```\n\n```\nfalse\n```\n```sh\npoesy frobnicate\ntrue\n```\n")
+        (first, shown), (second, nothing) = blocks(
+            "```sh\npoesy models\n```\n\n```\nfalse\n```\n```toml\na = 1\n```\n```sh\npoesy frobnicate\ntrue\n```\n")
+        self.assertEqual((shown, nothing), (["false"], []))
         self.run_block(first)
         with self.assertRaises(AssertionError):
             self.run_block(second)
+
+    def test_output_that_differs_is_found(self):
+        self.assertIsNone(first_not_printed(["a", "...", "", "c"], "a  \nb\nc\n"))
+        self.assertEqual(first_not_printed(["a", "b 2"], "a\nb 1\n"), "b 2")
+        self.assertEqual(first_not_printed(["c", "a"], "a\nc\n"), "a")
 
 
 if __name__ == "__main__":

@@ -45,11 +45,16 @@ class FakeModel : public Model {
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override;
 
-  /// Chart "sums": depth = -z, sum = beta + gamma, difference = beta - gamma. No pose has |sum| > 2 rad.
+  /// Chart "sums": depth = -z, sum = beta + gamma, difference = beta - gamma. No pose has |sum| > 2 rad; of sums below
+  /// -2 rad it knows why.
   std::optional<std::vector<double>> pose_from_chart(std::size_t /*chart*/,
                                                      std::span<const double> sums) const override {
     if (std::abs(sums[1]) > 2.0) return std::nullopt;
     return std::vector{-sums[0], 0.5 * (sums[1] + sums[2]), 0.5 * (sums[1] - sums[2])};
+  }
+
+  std::string no_pose_because(std::size_t /*chart*/, std::span<const double> sums) const override {
+    return sums[1] < -2.0 ? "both tilts end at -1 rad" : "";
   }
 
  private:

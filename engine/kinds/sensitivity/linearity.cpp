@@ -228,6 +228,32 @@ std::string index_change_text(const StoredResult& result, std::size_t response) 
   return list.empty() ? text : text + "; not for " + some_names(list, kMostNames);
 }
 
+std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,
+                                           const MeanSquare& mean_square, double added) {
+  if (!has_index_changes(result)) return {};
+  const double most = kNegligible / static_cast<double>(result.factors.size()) * added;
+  std::vector<std::size_t> list = changing_errors(result, response);
+  std::erase_if(list, [&](std::size_t p) {
+    return !(mean_square.effects[p] * result.factor_sigma[p] * result.factor_sigma[p] <= most);
+  });
+  return list;
+}
+
+std::string negligible_text(const StoredResult& result, const ResponseTolerances& tolerances) {
+  if (tolerances.negligible.empty()) return {};
+  std::vector<std::string> list;
+  for (const std::size_t p : tolerances.negligible) {
+    const NamedUnit& factor = result.factors[p];
+    list.push_back(
+        fmt::format("{} ({:.4g} {})", factor.name, result.factor_sigma[p] / display(factor).si, unit_text(factor)));
+  }
+  return fmt::format(
+      "{} the size studied as tolerance: the index on {} changes with size, but at that size all together add at most "
+      "{:.3g} % to its mean square: {}",
+      counted(list.size(), "negligible error has", "negligible errors have"),
+      result.responses[tolerances.response].name, 100.0 * kNegligible, some_names(list, kMostNames));
+}
+
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances) {
   if (!has_index_changes(result)) return {};
   const std::span<const double> changes = changes_of(result, tolerances.response);

@@ -53,6 +53,19 @@ std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t
 /// epsilon_3_4_z (-99.1 %), ...". Precondition: has_index_changes.
 std::string index_change_text(const StoredResult& result, std::size_t response);
 
+/// What negligible errors add to a mean square together is at most this share of it.
+inline constexpr double kNegligible = 1e-3;
+
+/// The errors whose index on the response changes with size although it does not matter: at the size studied each adds
+/// at most kNegligible / P of `added` to the response's mean square, with P the number of all errors. So their
+/// tolerance may be the size studied, and their index at other sizes is not needed. Empty where the result does not say
+/// how indices change.
+std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,
+                                           const MeanSquare& mean_square, double added);
+
+/// Which errors are negligible and have the size studied, for a note; empty where none are.
+std::string negligible_text(const StoredResult& result, const ResponseTolerances& tolerances);
+
 /// Beyond this ratio to the size studied, in either direction, a tolerance is of another size.
 inline constexpr double kSameSize = 2.0;
 

@@ -167,15 +167,17 @@ Table separation_table(const StoredResult& result, const RankedErrors& ranked) {
                         fmt::format("all errors together, at the size the study sets: {} of the effect is removable",
                                     percent_text(found.removable_together))},
               .ranked = true};
-  fill(table, ranked.rows,
-       {rank_column(ranked, 2),
-        name_column(result.factors, "error"),
-        {text_column("published_class", "published class", 1),
-         [&](std::size_t p) { return text_cell(sensitivity_of(result).published_class[p]); }},
-        {percent_column("drive_share", "drive share"),
-         [&](std::size_t p) { return percent_cell(found.drive_share[p]); }},
-        {percent_column("removable", "removable by calibration"),
-         [&](std::size_t p) { return percent_cell(found.removable[p]); }}});
+  const std::vector<std::string>& of_errors = sensitivity_of(result).published_class;
+  std::vector<FilledColumn> columns{rank_column(ranked, 2), name_column(result.factors, "error")};
+  if (!classes_of(of_errors).empty()) {
+    columns.push_back({text_column("published_class", "published class", 1),
+                       [&of_errors](std::size_t p) { return text_cell(of_errors[p]); }});
+  }
+  columns.push_back({percent_column("drive_share", "drive share"),
+                     [&found](std::size_t p) { return percent_cell(found.drive_share[p]); }});
+  columns.push_back({percent_column("removable", "removable by calibration"),
+                     [&found](std::size_t p) { return percent_cell(found.removable[p]); }});
+  fill(table, ranked.rows, columns);
   return table;
 }
 

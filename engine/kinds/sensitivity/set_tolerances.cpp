@@ -199,23 +199,42 @@ void check_prediction(const StoredResult& result, const MeanSquare& response, co
   }
 }
 
-LimitTolerances tolerances_within_limit(const TolerancesOptions& options, const StoredResult& result,
-                                        const ResponseStudy& study, const MeanSquare& response, const NamedUnit& named,
-                                        const Catalog& catalog) {
+/// What --limit limits the response to, SI, above what the background alone gives.
+double checked_limit(const TolerancesOptions& options, const StoredResult& result, const MeanSquare& response,
+                     const NamedUnit& named) {
   const double limit = positive(*options.limit, "--limit", named);
   check_prediction(result, response, named.name);
-  if (limit * limit <= response.background) {
-    throw InputError(
-        {},
-        fmt::format("--limit: the background alone gives {} a root mean square of {}, so no tolerance can "
-                    "meet {}",
-                    named.name, response_text(named, std::sqrt(response.background)), response_text(named, limit)),
-        "raise the limit, or study smaller errors in [analysis] background");
-  }
+  if (limit * limit > response.background) return limit;
+  throw InputError(
+      {},
+      fmt::format("--limit: the background alone gives {} a root mean square of {}, so no tolerance can "
+                  "meet {}",
+                  named.name, response_text(named, std::sqrt(response.background)), response_text(named, limit)),
+      "raise the limit, or study smaller errors in [analysis] background");
+}
+
+/// Tolerances for errors that are not negligible within what the others leave of the limit.
+void set_limit(ResponseTolerances& found, double limit, const StoredResult& result, const ResponseStudy& study,
+               const Catalog& catalog) {
+  const MeanSquare& response = found.all.mean_square;
+  const double added = std::min(response.growth(result.factor_sigma), limit * limit - response.background);
+  found.negligible = negligible_errors(result, found.response, response, added);
   std::vector<Dimension> dimensions;
   for (const NamedUnit& factor : result.factors) dimensions.push_back(dimension_of(factor.unit));
-  return limit_tolerances(study, response, one_size_for_each(result.factor_sigma, dimensions), limit,
-                          largest_tolerances(result, catalog));
+  found.limit =
+      limit_tolerances(study, response.holding(found.negligible, result.factor_sigma),
+                       one_size_for_each(result.factor_sigma, dimensions), limit, largest_tolerances(result, catalog));
+  for (const std::size_t p : found.negligible) {
+    found.limit->equal_effect[p] = found.limit->equal_tolerance[p] = result.factor_sigma[p];
+  }
+}
+
+/// Without a limit: all but the reference may be negligible.
+void set_negligible(ResponseTolerances& found, const StoredResult& result) {
+  const MeanSquare& response = found.all.mean_square;
+  found.negligible = negligible_errors(result, found.response, response, response.growth(result.factor_sigma));
+  std::erase(found.negligible, found.all.reference->factor);
+  for (const std::size_t p : found.negligible) found.all.equal_effect[p] = result.factor_sigma[p];
 }
 
 /// Writes the table and the studies that test it; says what that was.
@@ -263,9 +282,12 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result, const
 std::string caveat_of(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
   const std::string caveat = wrong_sizes_text(result, found);
   if (caveat.empty() || options.extrapolate) return caveat;
+  const std::vector<std::size_t> changing = changing_errors(result, found.response);
+  const bool counted_from = !found.limit && std::ranges::count(changing, found.all.reference->factor) > 0;
   throw InputError({options.result}, caveat,
-                   fmt::format("study each at that size ([errors.override]){}, or give --extrapolate",
-                               result.metric == "published" ? ", or all by [solver] metric = \"platform\"" : ""));
+                   fmt::format("study each at that size ([errors.override]){}{}, or give --extrapolate",
+                               result.metric == "published" ? ", or all by [solver] metric = \"platform\"" : "",
+                               counted_from ? ", or count from another error (--reference)" : ""));
 }
 
 }  // namespace
@@ -326,8 +348,11 @@ std::string set_sensitivity_tolerances(const StoredResult& result, const Toleran
   const std::optional<ReferenceError> reference = reference_of(options, result, response);
   check_reference(options, result, study, named.name, reference);
   ResponseTolerances found{response, tolerances(study, reference), std::nullopt};
-  if (options.limit)
-    found.limit = tolerances_within_limit(options, result, study, found.all.mean_square, named, catalog);
+  if (options.limit) {
+    set_limit(found, checked_limit(options, result, found.all.mean_square, named), result, study, catalog);
+  } else {
+    set_negligible(found, result);
+  }
   found.caveat = caveat_of(options, result, found);
   Table table = tolerance_table(result, found);
   if (const auto note = perfect_errors_note(result, catalog)) table.notes.push_back(*note);

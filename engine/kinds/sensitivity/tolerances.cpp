@@ -232,6 +232,7 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
                     "this result",
                     result.poesy_version));
   }
+  if (!tolerances.negligible.empty()) list.push_back(negligible_text(result, tolerances));
   if (!tolerances.caveat.empty()) list.push_back(tolerances.caveat);
   list.push_back(fmt::format(
       "index: scatter of the response per scatter of the error; low, high: its {:.3g} % interval; "

@@ -22,7 +22,9 @@ struct ResponseTolerances {
   std::size_t response;                  ///< position among the result's
   Tolerances all;                        ///< without regard to a limit
   std::optional<LimitTolerances> limit;  ///< within the limit, if there is one
-  std::string caveat = {};               ///< why they may not hold, for tables and studies; empty: no known reason
+  /// Positions of errors that have the size studied in what is proposed; see negligible_errors().
+  std::vector<std::size_t> negligible = {};
+  std::string caveat = {};  ///< why they may not hold, for tables and studies; empty: no known reason
 };
 
 /// What a program that sets tolerances needs, without the rest: /tolerances.

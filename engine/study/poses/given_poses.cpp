@@ -83,7 +83,9 @@ SelectedPoses poses_of(const PoseTable& table, const PointRefusal& refusal, cons
     const auto pose = table.chart ? model.pose_from_chart(*table.chart, point)
                                   : std::optional(std::vector(point.begin(), point.end()));
     if (!pose) {
-      refuse("does not exist: no pose has these coordinates", model.description().charts[*table.chart].advice);
+      const std::string why = model.no_pose_because(*table.chart, point);
+      refuse(why.empty() ? "does not exist: no pose has these coordinates" : "is out of reach: " + why,
+             model.description().charts[*table.chart].advice);
     }
     if (const auto reason = model.unreachable(*pose)) refuse("is out of reach: " + *reason, refusal.if_unreachable);
     const double condition = model.condition(*pose);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <regex>
 
 namespace poesy {
@@ -52,6 +53,44 @@ TEST(MechanismPicture, ShowsASlideBetweenTheJointsThatItConnects) {
   };
   const double half_a_glyph = 6.0;
   EXPECT_NEAR(height_of("q&lt;") + half_a_glyph, (height_of("A") + height_of("B")) / 2, 0.11);
+}
+
+/// Of a hinge's or a frame's glyph in the first view.
+std::pair<double, double> place_of(const std::string& svg, const std::string& name) {
+  std::smatch match;
+  const std::string rest = svg.substr(svg.find("<title>" + name + "</title>"));
+  EXPECT_TRUE(std::regex_search(rest, match, std::regex(R"re(cx="([\d.]+)" cy="([\d.]+)")re"))) << name;
+  return {std::stod(match[1]), std::stod(match[2])};
+}
+
+/// Glyphs have a radius of 6: as joints at one point, at the base, and as those on the platform.
+TEST(MechanismPicture, ShowsJointsAtOnePointSideBySide) {
+  Sketch made = sketch();
+  for (const char* name : {"base1", "base2", "base3"}) {
+    made.limbs[0].insert(made.limbs[0].begin(), {name, 'R', false, {0.2, 0.0, -0.3}, {0.0, 1.0, 0.0}, false});
+  }
+  for (const char* name : {"top1", "top2"}) {
+    made.limbs[1].push_back({name, 'S', false, {-0.2, 0.0, 0.4}, {0.0, 1.0, 0.0}, false});
+  }
+  const std::string svg = mechanism_picture(made, "one point");
+  for (const std::vector<std::string>& row :
+       {std::vector<std::string>{"base1", "base2", "base3"}, std::vector<std::string>{"B", "top1", "top2"}}) {
+    for (std::size_t a = 0; a < row.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const auto [x, y] = place_of(svg, row[a]);
+        const auto [other_x, other_y] = place_of(svg, row[b]);
+        EXPECT_GE(std::hypot(x - other_x, y - other_y), 12.0) << row[a] << ' ' << row[b];
+      }
+    }
+  }
+}
+
+TEST(MechanismPicture, BreaksLongTitles) {
+  const std::string words = "a title of many words that is longer than any picture is wide, so it takes two lines";
+  const std::string svg = mechanism_picture(sketch(), words);
+  EXPECT_EQ(count(svg, "font-size=\"14\""), 2u);
+  EXPECT_NE(svg.find("<title>" + words + "</title>"), std::string::npos);
+  EXPECT_EQ(count(mechanism_picture(sketch(), "short"), "font-size=\"14\""), 1u);
 }
 
 TEST(MechanismPicture, StaysInsideItsFrameWhateverTheSize) {

@@ -196,6 +196,19 @@ TEST(LimitTolerances, AreNoLargerThanTheyMayBe) {
   EXPECT_LT(response.rms(found), kLimit);
 }
 
+TEST(LimitTolerances, ShareWhatErrorsOfAGivenSizeLeave) {
+  const LinearResponse response;
+  const MeanSquare prediction = mean_square(response.study());
+  const std::vector<double> sizes{1.0, 5e-3, 1.0};
+  const std::vector<std::size_t> held{1};
+  const MeanSquare others = prediction.holding(held, sizes);
+  EXPECT_EQ(others.effects, (std::vector<double>{prediction.effects[0], 0.0, prediction.effects[2]}));
+  std::vector<double> found = limit_tolerances(response.study(), others, response.sigma, 1e-3, kUnbounded).equal_effect;
+  found[1] = sizes[1];
+  EXPECT_NEAR(response.rms(found), 1e-3, 1e-15);
+  EXPECT_NEAR(std::sqrt(others.at(found)), 1e-3, 1e-15);
+}
+
 TEST(LimitTolerances, VanishAsTheLimitNearsTheBackground) {
   LinearResponse response;
   response.index[2] = 0.0;

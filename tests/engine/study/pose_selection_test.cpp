@@ -234,6 +234,9 @@ TEST(FilePoses, MayStandInTheCoordinatesOfAChart) {
   test::expect_input_error([&] { select_poses(selection, kModel); }, {"poses.csv", 3, 1},
                            {"pose 2 (depth = 0.25 m, sum = 2.5 rad = 143.239 deg, difference = 0 rad = 0 deg)",
                             "no pose has these coordinates; make the sum smaller", "SI"});
+  selection.from_file.points = PoseSet(3, {0.25, -2.5, 0.0});
+  test::expect_input_error([&] { select_poses(selection, kModel); }, {"poses.csv", 2, 1},
+                           {"is out of reach: both tilts end at -1 rad; make the sum smaller"});
   selection.from_file.points = PoseSet(3, {0.2, 0.3, 0.1});
   EXPECT_EQ(values_of(select_poses(selection, kModel).poses), (std::vector{-0.2, 0.2, 0.5 * (0.3 - 0.1)}));
 }

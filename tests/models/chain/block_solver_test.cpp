@@ -232,7 +232,8 @@ std::vector<double> expect_root(const BlockSamples& samples, std::size_t b, cons
   const std::vector<double> q = displacements_of(samples, b, reported);
   const auto frames = frames_of(samples, b);
   EXPECT_LE((reported - residual(samples.chain, frames, q)).cwiseAbs().maxCoeff(), 1e-14);
-  EXPECT_LE((jacobian(samples.chain, frames, q).transpose() * reported).cwiseAbs().maxCoeff(), 1e-12);
+  // A last step is shorter than sqrt(tolerance / 10), and leaves a few times its square.
+  EXPECT_LE((jacobian(samples.chain, frames, q).transpose() * reported).cwiseAbs().maxCoeff(), 2e-12);
   return q;
 }
 

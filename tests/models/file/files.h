@@ -8,9 +8,10 @@
 
 namespace poesy::file {
 
-/// The text of tests/data/mechanisms/NAME.toml.
+/// The text of tests/data/mechanisms/NAME.toml, or where there is none of results/gallery/NAME/NAME.toml.
 inline std::string text_of(const std::string& name) {
   std::ifstream file(POESY_TEST_DATA "/mechanisms/" + name + ".toml");
+  if (!file) file.open(POESY_TEST_DATA "/../../results/gallery/" + name + "/" + name + ".toml");
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

@@ -10,9 +10,9 @@ namespace {
 
 /// A wrong file: a part of a right one, what is put in its place, and the message.
 struct Wrong {
-  const char* from;
-  const char* to;
-  const char* message;
+  std::string from;
+  std::string to;
+  std::string message;
 };
 
 /// What reading says of the text, and of its mobility at home.
@@ -70,8 +70,12 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:7:22: geometry.a.value '250 mm^2' cannot be read at '^2'; write numbers with units, parameters, + - "
            "* / ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\""},
           {"\"250 mm\"", "\"h / 2\"",
-           "m.toml:7:16: geometry.a.value 'h / 2' has an unknown parameter 'h'; known: sqrt, sin, cos, tan, atan2, pi"},
+           "m.toml:7:16: geometry.a.value 'h / 2' has an unknown parameter 'h'; values in [geometry] are numbers; "
+           "write the expression where it is used"},
           {"c = {", "mm = {", "m.toml:8:6: geometry.mm is a unit; give the parameter another name"},
+          {"c = {", std::string(49, 'c') + " = {",
+           "m.toml:8:53: geometry." + std::string(49, 'c') + " '" + std::string(49, 'c') +
+               "' is too long; write at most 48 letters"},
           {"c = {", "sin = {",
            "m.toml:8:7: geometry.sin has a meaning in expressions; give the parameter another name"},
           {"origin      = [0, 0, \"h\"]", "origin      = [0, 0, \"h + 3 deg\"]",
@@ -218,13 +222,16 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:28:8: sets.few[0] 'gamma_*' fits no error; they have names like epsilon_1_0_x"},
           {"frames = \"all\"", "frames = \"all\"\n[sets]\n\"a b\" = [\"*\"]",
            "m.toml:28:9: sets.a b 'a b' is no name; write letters, digits, _ and -"},
+          {"frames = \"all\"", "frames = \"all\"\n[sets]\n" + std::string(49, 's') + " = [\"*\"]",
+           "m.toml:28:53: sets." + std::string(49, 's') + " '" + std::string(49, 's') +
+               "' is too long; write at most 48 letters"},
           {"frames = \"all\"", "frames = \"all\"\n[sets",
            "m.toml:27:6: this is not TOML: Error while parsing table header: expected ']', saw '\\n'; correct this "
-           "line"},
+           "line; names of parameters and expressions stand in quotes"},
           {"[\"rx\", \"ry\", \"z\"]\nworkspace   = { ",
            "[\"rx\", \"ry\", \"z\", \"x\"]\nworkspace   = { x = [0, \"1 mm\"], ",
            "m.toml:14:15: platform.coordinates are not independent: x follows from the others, and the platform has 3 "
-           "freedoms; remove it, or take another"},
+           "freedoms; remove it, take another, or correct the axes of the joints"},
           {"[\"rx\", \"ry\", \"z\"]\nworkspace   = { rx",
            "[\"ry\", \"z\"]\nworkspace   = { z = [\"500 mm\", \"700 mm\"], ry = [0, \"9 deg\"] } # ",
            "m.toml:14:15: platform.coordinates has 2, but the platform has 3 freedoms; name as many as it has "
@@ -233,7 +240,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "[\"rx\", \"ry\", \"rz\"]\nworkspace   = { rz = [0, \"1 deg\"], rx = [0, \"1 deg\"], ry = [0, \"9 deg\"] } "
            "# ",
            "m.toml:14:15: platform.coordinates are not independent: rz follows from the others, and the platform has 3 "
-           "freedoms; remove it, or take another"},
+           "freedoms; remove it, take another, or correct the axes of the joints"},
       });
 }
 
@@ -279,7 +286,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
           {"[\"l_*\"]", "[\"m_*\"]", "m.toml:47:12: sets.lengths[0] 'm_*' fits no error; they have names like l_1"},
           {"[[error]]", "[error]",
            "m.toml:33:1: this is not TOML: Error while parsing table header: cannot redefine existing table 'error' as "
-           "array-of-tables; correct this line"},
+           "array-of-tables; correct this line; names of parameters and expressions stand in quotes"},
           {"actuated = true", "actuated = false",
            "m.toml:24:3: the drives do not hold the platform, which has 3 freedoms and 0 drives: joint 'C' of limb 1 "
            "is loose, and the platform turns about (0, 0, 1); write actuated = true at one more joint, or correct the "

@@ -8,32 +8,10 @@
 
 #include "models/chain/limb.h"
 #include "tests/models/file/files.h"
+#include "tests/models/file/poses.h"
 
 namespace poesy::file {
 namespace {
-
-std::vector<std::vector<double>> random_poses(const Mechanism& mechanism, std::size_t count) {
-  std::mt19937_64 engine(7);
-  std::uniform_real_distribution<double> share(0.0, 1.0);
-  std::vector<std::vector<double>> poses(count);
-  for (std::vector<double>& pose : poses) {
-    for (const Coordinate& c : mechanism.coordinates) pose.push_back(c.lower + share(engine) * (c.upper - c.lower));
-  }
-  return poses;
-}
-
-/// The largest distance between a limb's platform and the pose, rad and shares of the reach.
-double open_by(const Mechanism& mechanism, const Tracked& tracked) {
-  double largest = 0.0;
-  std::size_t begin = 0;
-  for (const Limb& limb : mechanism.limbs) {
-    const Transform g = limb_transform(limb, std::span(tracked.displacements).subspan(begin, limb.moving()));
-    const lie::Screw<double> mismatch = lie::log(tracked.platform * g.inverse());
-    largest = std::max({largest, mismatch.head<3>().norm(), mismatch.tail<3>().norm() / mechanism.reach});
-    begin += limb.moving();
-  }
-  return largest;
-}
 
 class Everywhere : public testing::TestWithParam<const char*> {
  protected:
@@ -66,31 +44,6 @@ TEST_P(Everywhere, OrderOfPosesMakesNoDifference) {
   for (const auto& pose : poses) first.push_back(tracker_.track(pose).displacements);
   const Tracker other(mechanism_);
   for (std::size_t n = poses.size(); n-- > 0;) EXPECT_EQ(other.track(poses[n]).displacements, first[n]);
-}
-
-/// Between two poses displacements change in proportion to the distance: no jump to another working mode, whatever the
-/// ways from home were. So idle freedoms do not depend on them either.
-TEST_P(Everywhere, IsContinuousAlongLines) {
-  const std::vector<std::vector<double>> ends = random_poses(mechanism_, 4);
-  constexpr std::size_t kParts = 20;
-  for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
-    std::vector<std::vector<double>> along;
-    for (std::size_t k = 0; k <= kParts; ++k) {
-      std::vector<double> pose;
-      for (std::size_t c = 0; c < ends[n].size(); ++c) {
-        pose.push_back(std::lerp(ends[n][c], ends[n + 1][c], static_cast<double>(k) / kParts));
-      }
-      along.push_back(tracker_.track(pose).displacements);
-    }
-    for (std::size_t q = 0; q < along[0].size(); ++q) {
-      double span = 0.0;
-      for (std::size_t k = 1; k <= kParts; ++k) span += std::abs(along[k][q] - along[k - 1][q]);
-      for (std::size_t k = 2; k <= kParts; ++k) {
-        const double second = along[k][q] - 2.0 * along[k - 1][q] + along[k - 2][q];
-        EXPECT_LE(std::abs(second), 0.05 * span + 1e-3) << q;
-      }
-    }
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, Everywhere,
@@ -158,6 +111,38 @@ TEST(Tracker, IdleFreedomsTakeTheLeastNorm) {
     }
   }
 }
+
+/// Legs that may spin, and screws: displacements change smoothly between two poses, so idle freedoms do not depend on
+/// the way from home. Without them workspace_test.cpp knows by how much.
+class Spinning : public testing::TestWithParam<const char*> {};
+
+TEST_P(Spinning, IsContinuousAlongLines) {
+  const Mechanism mechanism = from_file(GetParam());
+  const Tracker tracker(mechanism);
+  const std::vector<std::vector<double>> ends = random_poses(mechanism, 4);
+  constexpr std::size_t kParts = 20;
+  for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
+    std::vector<std::vector<double>> along;
+    for (std::size_t k = 0; k <= kParts; ++k) {
+      std::vector<double> pose;
+      for (std::size_t c = 0; c < ends[n].size(); ++c) {
+        pose.push_back(std::lerp(ends[n][c], ends[n + 1][c], static_cast<double>(k) / kParts));
+      }
+      along.push_back(tracker.track(pose).displacements);
+    }
+    for (std::size_t q = 0; q < along[0].size(); ++q) {
+      double span = 0.0;
+      for (std::size_t k = 1; k <= kParts; ++k) span += std::abs(along[k][q] - along[k - 1][q]);
+      for (std::size_t k = 2; k <= kParts; ++k) {
+        const double second = along[k][q] - 2.0 * along[k - 1][q] + along[k - 2][q];
+        EXPECT_LE(std::abs(second), 0.05 * span + 1e-3) << q;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, Spinning, testing::Values("sps6", "odd6", "mixed6", "press"),
+                         [](const auto& instance) { return std::string(instance.param); });
 
 TEST(Tracker, SaysHowFarTheWayWent) {
   const Mechanism mechanism = from_file("rrr3");

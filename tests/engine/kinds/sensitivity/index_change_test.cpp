@@ -87,6 +87,33 @@ TEST(WrongSizes, OfALimitAreThoseOfEitherWayToShareIt) {
   EXPECT_NE(wrong_sizes_text(stored, found).find("delta_b (-50.0 %; study it at 0.17 mm)"), std::string::npos);
 }
 
+TEST(Negligible, ErrorsChangeWithSizeAndAddNextToNothing) {
+  const StoredResult stored = result({-0.5, -0.5, 0.0});  // studied at 1 mm, 0.5 deg, 2 mm
+  const double angle = stored.factor_sigma[1];
+  const double most = 1e-3 / 4.0;  // a thousandth for all four errors together
+  const auto found = [&](double of_length, double of_angle) {
+    return negligible_errors(stored, 0, {0.0, {of_length / 1e-6, of_angle / (angle * angle), 1e-9, kNaN}}, 1.0);
+  };
+  EXPECT_EQ(found(0.99 * most, 1.01 * most), std::vector<std::size_t>{0});
+  EXPECT_EQ(found(1.01 * most, 0.99 * most), std::vector<std::size_t>{1});
+  EXPECT_EQ(found(0.0, kNaN), std::vector<std::size_t>{0}) << "what is not known is not negligible";
+  EXPECT_EQ(found(1.0, 1.0), std::vector<std::size_t>());
+  EXPECT_EQ(negligible_errors(ranked_result(), 0, {0.0, {0.0, 0.0, 0.0, 0.0}}, 1.0), std::vector<std::size_t>())
+      << "an older result";
+}
+
+TEST(Negligible, ErrorsAreNamedWithTheSizeStudied) {
+  const StoredResult stored = result({-0.5, -0.5, 0.0});
+  ResponseTolerances found = tolerances({1e-3, 1e-3, 2e-3, kNaN});
+  EXPECT_EQ(negligible_text(stored, found), "");
+  found.negligible = {1, 0};
+  const std::string text =
+      "2 negligible errors have the size studied as tolerance: the index on x changes with size, but at that size all "
+      "together add at most 0.1 % to its mean square: epsilon_a (0.5 deg), delta_b (1 mm)";
+  EXPECT_EQ(negligible_text(stored, found), text);
+  EXPECT_TRUE(std::ranges::count(tolerance_table(stored, found).notes, text));
+}
+
 TEST(WrongSizes, StandBelowTheTolerances) {
   ResponseTolerances found = tolerances({2.5e-3, 1e-6, 0.9e-3, kNaN});
   found.caveat = "they may not hold";

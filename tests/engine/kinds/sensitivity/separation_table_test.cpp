@@ -39,6 +39,10 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
             "   3  b_1      -                    -             -\n"
             "effect: how far the platform moves\n"
             "all errors together, at the size the study sets: 43.2 % of the effect is removable\n");
+  sensitivity_in(result).published_class = {"", "", ""};
+  const std::string without_classes = text_of(result_tables(result, "position").at(1), kUnlimitedWidth);
+  EXPECT_EQ(without_classes.find("published"), std::string::npos);
+  EXPECT_NE(without_classes.find("   1  theta_1     25          6.25\n"), std::string::npos) << without_classes;
 }
 
 }  // namespace

@@ -1,0 +1,188 @@
+#include "models/chain/separation.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
+#include "models/chain/first_order.h"
+#include "models/chain/metric.h"
+
+namespace poesy::chain {
+namespace {
+
+using Vector3 = lie::Vector3<double>;
+using Screw = lie::Screw<double>;
+using Matrix6 = lie::Matrix6<double>;
+using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// A part that is a smaller share of the whole is rounding.
+constexpr double kRounding = 1e-12;
+
+/// A column of length 1 of which others leave less depends on them.
+constexpr double kDependent = 1e-9;
+
+/// A limb where the perfect mechanism holds its platform.
+struct LimbJoints {
+  Vector3 end = Vector3::Zero();  ///< where its last joint is (m)
+  Columns passive;                ///< twists of the platform by the passive joints
+  Columns driven;                 ///< and by the drives
+};
+
+/// Room for one column more.
+auto next_column(Columns& columns) {
+  columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+  return columns.rightCols<1>();
+}
+
+LimbJoints joints_of(const Limb& limb, std::span<const double> displacements) {
+  LimbJoints found;
+  lie::Transform<double> g = limb.home.front();
+  for (std::size_t j = 0; j < limb.joints.size(); ++j) {
+    const Joint& joint = limb.joints[j];
+    if (!joint.fixed) {
+      found.end = g.p;
+      next_column(joint.actuated ? found.driven : found.passive) = spatial_column(joint, g);
+    }
+    move_joint(joint, displacements[j], g);
+    g = g * limb.home[j + 1];
+  }
+  return found;
+}
+
+/// The projection onto what is at right angles to all of these columns.
+Matrix6 beyond(const Columns& columns) {
+  if (columns.cols() == 0) return Matrix6::Identity();
+  Eigen::ColPivHouseholderQR<Columns> qr(columns);
+  qr.setThreshold(kDependent);
+  const Matrix6 q = qr.householderQ();
+  const auto rest = q.rightCols(6 - qr.rank());
+  return rest * rest.transpose();
+}
+
+/// What a projection leaves of x: all or nothing where the other part is rounding.
+Screw left_of(const Screw& x, const Matrix6& projection) {
+  const Screw left = projection * x;
+  if (left.norm() <= kRounding * x.norm()) return Screw::Zero();
+  return (x - left).norm() <= kRounding * x.norm() ? x : left;
+}
+
+/// B_i: by how much a limb's motion moves the platform.
+Matrix6 platform_by_limb(const ParallelChain& chain, FirstOrder& first_order, std::size_t limb) {
+  std::vector<double> delta_mu(6 * chain.pairs.size());
+  std::vector<double> moved(chain.passive_joints());
+  Matrix6 B;
+  for (std::size_t c = 0; c < 6; ++c) {
+    // An error of the first frame, which is seen from the base.
+    const FrameEntry unit{chain.first_frame(limb), c};
+    first_order.effect(unit, delta_mu, moved);
+    B.col(static_cast<Eigen::Index>(c)) =
+        first_order.sum_of_motions(unit, moved) / static_cast<double>(chain.limbs.size());
+  }
+  return B;
+}
+
+/// Displacements of the platform, whose norms are those of the points.
+struct Parts {
+  Screw drive;       ///< B_i A_i a
+  Screw constraint;  ///< B_i n
+};
+
+/// Tells apart what errors of one limb do.
+class LimbSeparation {
+ public:
+  /// to_displacement: from twists of the limb to Parts. radius: rho.
+  LimbSeparation(const LimbJoints& joints, const Matrix6& to_displacement, double radius) {
+    lengths_ << radius * lie::Matrix3<double>::Identity(), lie::Matrix3<double>::Zero(), -lie::hat<double>(joints.end),
+        lie::Matrix3<double>::Identity();
+    from_lengths_ = to_displacement * lengths_.inverse();
+    Columns passive = lengths_ * joints.passive;
+    passive.colwise().normalize();
+    beyond_passive_ = beyond(passive);
+    Columns driven = lengths_ * joints.driven;
+    driven.colwise().normalize();
+    driven = beyond_passive_ * driven;
+    for (auto column : driven.colwise()) {
+      if (column.norm() < kDependent) column.setZero();
+    }
+    beyond_drives_ = beyond(driven);
+    drives_ = from_lengths_ * driven;
+  }
+
+  /// B_i A_i, each column over |A_i|_i.
+  const Columns& drives() const { return drives_; }
+
+  /// Of an error that moves the limb's platform by this twist.
+  Parts parts(const Screw& xi) const {
+    const Screw not_passive = left_of(lengths_ * xi, beyond_passive_);
+    const Screw rest = left_of(not_passive, beyond_drives_);
+    return {from_lengths_ * (not_passive - rest), from_lengths_ * rest};
+  }
+
+ private:
+  Matrix6 lengths_;         ///< |lengths xi| = |xi|_i
+  Matrix6 from_lengths_;    ///< to displacements of the platform
+  Matrix6 beyond_passive_;  ///< what passive joints leave
+  Matrix6 beyond_drives_;   ///< what drives leave of that
+  Columns drives_;
+};
+
+std::vector<LimbSeparation> limb_separations(const DeformationModel& model, std::span<const double> displacements,
+                                             FirstOrder& first_order) {
+  const std::vector<Vector3>& points = model.platform->points;
+  const Matrix6 root = platform_metric(model.chain, points, displacements).W.llt().matrixU();
+  std::vector<LimbSeparation> limbs;
+  for (std::size_t i = 0; i < model.chain.limbs.size(); ++i) {
+    const std::size_t joints = model.chain.limbs[i].joints.size();
+    limbs.emplace_back(joints_of(model.chain.limbs[i], displacements.first(joints)),
+                       root * platform_by_limb(model.chain, first_order, i), radius_of(points));
+    displacements = displacements.subspan(joints);
+  }
+  return limbs;
+}
+
+/// What corrections of all drives leave of a displacement.
+Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
+  Columns drives;
+  for (const LimbSeparation& limb : limbs) {
+    for (const auto column : limb.drives().colwise()) next_column(drives) = column;
+  }
+  return beyond(drives);
+}
+
+}  // namespace
+
+Separation separation(const DeformationModel& model, std::span<const double> pose) {
+  POESY_EXPECTS(model.platform && model.platform->points.size() >= 3);
+  const std::vector<double> displacements = model.joint_displacements(pose);
+  const std::optional<Metric> metric = model.metric(displacements);
+  FirstOrder first_order(model.chain);
+  if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) {
+    const std::vector<double> unknown(model.slots.size(), kNaN);
+    return {unknown, unknown, unknown, unknown};
+  }
+  const std::vector<LimbSeparation> limbs = limb_separations(model, displacements, first_order);
+  const Matrix6 uncorrected = beyond_all_drives(limbs);
+  Separation found;
+  for (const ErrorSlot& slot : model.slots) {
+    const auto [drive, constraint] = limbs[slot.limb].parts(slot.scale * first_order.motion(model.entry(slot)));
+    found.drive.push_back(drive.norm());
+    found.constraint.push_back(constraint.norm());
+    found.effect.push_back((drive + constraint).norm());
+    // Corrections take all of the drive part.
+    found.residual.push_back(left_of(constraint, uncorrected).norm());
+  }
+  return found;
+}
+
+std::optional<SeparationDescription> separation_description(const DeformationModel& model) {
+  if (!model.platform || model.platform->points.empty()) return std::nullopt;
+  std::string measure = "root mean square displacement of the platform's points";
+  if (!model.chain.meets) measure += ", without the gap between its limbs";
+  return SeparationDescription{std::move(measure), std::vector<std::string>(model.slots.size())};
+}
+
+}  // namespace poesy::chain

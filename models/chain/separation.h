@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+
+#include "engine/model/model.h"
+#include "models/chain/deformation_model.h"
+
+namespace poesy::chain {
+
+/// How each error [F] moves the platform to first order at a reachable pose, and what correcting the drives leaves of
+/// it. A unit of an error of limb i, where no joint gives way, moves the limb's own platform by the twist xi, and the
+/// mechanism's, once the passive joints have given way (J^T W delta_mu = 0, see FirstOrder), by B_i xi, the mean of its
+/// limbs' motions. Of xi the limb's own joints can take away, with the columns V_i of its passive joints and A_i of its
+/// drives, all but a rest n:
+///
+///     xi = V_i u + A_i a + n, u and a so that |n|_i is as small as it can be
+///     drive = |B_i A_i a|, constraint = |B_i n|, effect = |B_i xi|
+///     residual = min over dq of |B_i xi + sum over all limbs of B_k A_k dq_k|
+///
+/// Passive joints give way: B_i V_i = 0. |x| is the root mean square displacement of the model's platform->points under
+/// the twist x. |n|_i is that of the limb's end: |n|_i^2 = |v + omega x c|^2 + rho^2 |omega|^2, with c the place of the
+/// limb's last joint and rho the points' distance from their middle. It decides what counts as drive and what as
+/// constraint; effect and residual do not depend on it. For a 3-PRS all four are those of three_prs::separation().
+///
+/// Where the mechanism is over-constrained, this is about the displacement of its platform and not about the gap:
+/// corrections leave that as it is, unless there are more drives than freedoms. NaN where passive joints are in a
+/// singular configuration; a drive that cannot move the platform, and one that others can stand for, correct nothing
+/// more. Precondition: platform->points are at least three, on no line.
+Separation separation(const DeformationModel& model, std::span<const double> pose);
+
+/// Without classes of the literature; none where the model has no platform->points.
+std::optional<SeparationDescription> separation_description(const DeformationModel& model);
+
+}  // namespace poesy::chain

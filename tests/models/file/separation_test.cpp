@@ -1,0 +1,216 @@
+// What calibration can remove, of mechanisms from files: against their exact solver and against the compiled 3-PRS.
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "models/file/model.h"
+#include "models/registry.h"
+#include "tests/models/file/files.h"
+#include "tests/support/names.h"
+
+namespace poesy::file {
+namespace {
+
+std::unique_ptr<Model> build(const CatalogEntry& entry, std::size_t fidelity = 0) {
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  return entry.build(geometry, fidelity);
+}
+
+/// A pose in the middle half of the workspace.
+std::vector<double> draw_pose(const ModelDescription& model, std::mt19937_64& engine) {
+  std::vector<double> pose;
+  for (std::size_t c = 0; c < model.pose_lower.size(); ++c) {
+    const double share = std::uniform_real_distribution<double>(0.25, 0.75)(engine);
+    pose.push_back(model.pose_lower[c] + share * (model.pose_upper[c] - model.pose_lower[c]));
+  }
+  return pose;
+}
+
+TEST(SeparationOfFile, IsThatOfTheCompiledThreePrs) {
+  const std::unique_ptr<Model> compiled = build(*find(registry(), "3-prs"));
+  std::ostringstream text;
+  text << std::ifstream(POESY_TEST_DATA "/../../results/gallery/3-prs/3-prs.toml").rdbuf();
+  const CatalogEntry entry = catalog_entry(text.str(), "3-prs.toml");
+  std::mt19937_64 engine(5);
+  for (const std::size_t fidelity : {0u, 1u}) {
+    const std::unique_ptr<Model> from_file = build(entry, fidelity);
+    for (int n = 0; n < 30; ++n) {
+      const std::vector<double> pose = draw_pose(from_file->description(), engine);
+      ASSERT_FALSE(compiled->unreachable(pose));
+      const Separation truth = compiled->separation(pose);
+      const Separation found = from_file->separation(pose);
+      for (const auto part :
+           {&Separation::drive, &Separation::constraint, &Separation::effect, &Separation::residual}) {
+        for (std::size_t f = 0; f < truth.effect.size(); ++f) {
+          const std::string& name = compiled->description().factors[f].name;
+          const double value = (found.*part)[from_file->description().find_factor(name)->value];
+          EXPECT_NEAR(value, (truth.*part)[f], 1e-12 * (1.0 + truth.effect[f])) << name;
+          EXPECT_EQ(value == 0.0, (truth.*part)[f] == 0.0) << name;
+        }
+      }
+    }
+  }
+}
+
+/// A correction of one drive as errors of the frame behind it, whose axis it has: of a screw both its turn and its
+/// advance.
+struct Drive {
+  std::size_t turn;      ///< factor about the axis
+  std::size_t slide;     ///< factor along it
+  double turn_by = 0.0;  ///< per unit of the drive
+  double slide_by = 0.0;
+};
+
+/// A mechanism of tests/data with every error of its frames, by its platform's metric or as published.
+class OfMechanism : public testing::TestWithParam<std::string> {
+ protected:
+  OfMechanism() {
+    std::string text = text_of(GetParam());
+    text = text.substr(0, std::min(text.find("\n[errors]"), text.find("\n[[error]]")));  // then it has all of them
+    const MechanismFile file = read_mechanism_file(text, GetParam());
+    mechanism_ = mechanism(file, default_geometry(file));
+    entry_ = catalog_entry(text, GetParam());
+    find_drives();
+  }
+
+  void find_drives() {
+    for (std::size_t i = 0; i < mechanism_.limbs.size(); ++i) {
+      const std::vector<Joint>& joints = mechanism_.limbs[i].joints;
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        if (!joints[j].actuated) continue;
+        ASSERT_LT(j + 1, joints.size());
+        const auto factor = [&](const char* kind) {
+          const std::string name = std::string(kind) + "_" + std::to_string(i + 1) + "_" + std::to_string(j + 1) + "_z";
+          return entry_.description.find_factor(name)->value;
+        };
+        const bool slides = joints[j].motion == Motion::prismatic;
+        const double pitch = joints[j].motion == Motion::helical ? joints[j].pitch : 0.0;
+        drives_.push_back({factor("epsilon"), factor("delta"), slides ? 0.0 : 1.0, slides ? 1.0 : pitch});
+      }
+    }
+  }
+
+  /// Where the platform's points go, over the root of their number, for each column of errors [F x B]: [3 x points, B].
+  Eigen::MatrixXd displacements(const Model& model, const std::vector<double>& pose,
+                                const Eigen::MatrixXd& errors) const {
+    const ModelDescription& description = model.description();
+    const auto samples = static_cast<std::size_t>(errors.cols());
+    std::vector<FactorIndex> varied;
+    for (std::size_t f = 0; f < description.factors.size(); ++f) varied.emplace_back(f);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = errors;
+    std::vector<double> responses(description.responses.size() * samples);
+    std::vector<SolveStatus> status(samples);
+    std::vector<std::uint32_t> iterations(samples);
+    const std::vector<double> zeros(varied.size(), 0.0);
+    model.evaluator({.tolerance = description.tolerance, .max_iterations = 500})
+        ->evaluate({pose, zeros, varied, {rows.data(), varied.size() * samples}, samples},
+                   {responses, status, iterations, {}});
+    const Limb& limb = mechanism_.limbs[0];
+    const std::vector<double> joints = model.joint_displacements(pose);
+    const Transform platform = limb_transform(limb, std::span(joints).first(limb.moving()));
+    const auto row = static_cast<std::size_t>(std::ranges::find(description.responses, "x", &Response::name) -
+                                              description.responses.begin());
+    const auto points = static_cast<Eigen::Index>(mechanism_.points.size());
+    Eigen::MatrixXd moved(3 * points, errors.cols());
+    for (std::size_t b = 0; b < samples; ++b) {
+      EXPECT_TRUE(solved(status[b]));
+      const auto triple = [&](std::size_t r) {
+        return Vector3(responses[r * samples + b], responses[(r + 1) * samples + b], responses[(r + 2) * samples + b]);
+      };
+      const lie::Matrix3<double> turn = lie::exp<double>(triple(row + 3));
+      for (Eigen::Index a = 0; a < points; ++a) {
+        const Vector3 arm = platform.R * mechanism_.points[static_cast<std::size_t>(a)];
+        moved.col(static_cast<Eigen::Index>(b)).segment<3>(3 * a) = triple(row) + turn * arm - arm;
+      }
+    }
+    return moved / std::sqrt(static_cast<double>(points));
+  }
+
+  /// By a unit of each drive, of the displacements by units of errors.
+  Eigen::MatrixXd by_drives(const Eigen::MatrixXd& by_errors) const {
+    Eigen::MatrixXd columns(by_errors.rows(), static_cast<Eigen::Index>(drives_.size()));
+    for (std::size_t d = 0; d < drives_.size(); ++d) {
+      columns.col(static_cast<Eigen::Index>(d)) =
+          drives_[d].turn_by * by_errors.col(static_cast<Eigen::Index>(drives_[d].turn)) +
+          drives_[d].slide_by * by_errors.col(static_cast<Eigen::Index>(drives_[d].slide));
+    }
+    return columns;
+  }
+
+  /// Errors [F x B] with corrections [drives x B] besides.
+  Eigen::MatrixXd corrected(Eigen::MatrixXd errors, const Eigen::MatrixXd& corrections) const {
+    for (std::size_t d = 0; d < drives_.size(); ++d) {
+      const auto correction = corrections.row(static_cast<Eigen::Index>(d));
+      errors.row(static_cast<Eigen::Index>(drives_[d].turn)) += drives_[d].turn_by * correction;
+      errors.row(static_cast<Eigen::Index>(drives_[d].slide)) += drives_[d].slide_by * correction;
+    }
+    return errors;
+  }
+
+  void check(const Model& model, const std::vector<double>& pose) const {
+    const auto factors = static_cast<Eigen::Index>(model.description().factors.size());
+    const Separation found = model.separation(pose);
+    const Eigen::MatrixXd units = Eigen::MatrixXd::Identity(factors, factors);
+    constexpr double kStep = 1e-6;
+    const Eigen::MatrixXd effects =
+        (displacements(model, pose, kStep * units) - displacements(model, pose, -kStep * units)) / (2.0 * kStep);
+    const Eigen::MatrixXd corrections = -by_drives(effects).completeOrthogonalDecomposition().solve(effects);
+    const Eigen::MatrixXd left = displacements(model, pose, kStep * corrected(units, corrections)) / kStep;
+    for (Eigen::Index f = 0; f < factors; ++f) {
+      const auto at = static_cast<std::size_t>(f);
+      const std::string& name = model.description().factors[at].name;
+      const double effect = effects.col(f).norm();
+      EXPECT_NEAR(found.effect[at], effect, 1e-7 * (1.0 + effect)) << name;
+      // The errors and what corrects them go on in second order.
+      EXPECT_NEAR(found.residual[at], left.col(f).norm(), 1e-4 * (1.0 + effect)) << name;
+    }
+  }
+
+  Mechanism mechanism_;
+  CatalogEntry entry_;
+  std::vector<Drive> drives_;
+};
+
+TEST_P(OfMechanism, CorrectionsLeaveTheResidual) {
+  std::mt19937_64 engine(6);
+  const std::unique_ptr<Model> model = build(entry_);
+  check(*model, draw_pose(entry_.description, engine));
+  check(*model, draw_pose(entry_.description, engine));
+  if (!entry_.other_metric) return;
+  check(*build(*entry_.other_metric), draw_pose(entry_.description, engine));
+}
+
+/// With six drives that hold six freedoms everything can be corrected; with fewer, shares are between none and all.
+TEST_P(OfMechanism, SharesAreBetweenNoneAndAll) {
+  std::mt19937_64 engine(7);
+  const std::unique_ptr<Model> model = build(entry_);
+  const Separation found = model->separation(draw_pose(entry_.description, engine));
+  for (std::size_t f = 0; f < found.effect.size(); ++f) {
+    EXPECT_LE(found.residual[f], found.effect[f] * (1.0 + 1e-12));
+    EXPECT_LE(found.residual[f], found.constraint[f] * (1.0 + 1e-12));
+    if (drives_.size() < 6) continue;
+    EXPECT_EQ(found.residual[f], 0.0);
+    EXPECT_EQ(found.constraint[f], 0.0);
+    EXPECT_EQ(found.drive[f], found.effect[f]);
+  }
+  const auto not_removed = std::ranges::count_if(found.residual, [](double value) { return value > 0.0; });
+  EXPECT_EQ(not_removed > 0, drives_.size() < 6);
+  for (const Drive& drive : drives_) {
+    if (drive.turn_by != 0.0 && drive.slide_by != 0.0) continue;
+    EXPECT_EQ(found.residual[drive.turn_by != 0.0 ? drive.turn : drive.slide], 0.0);
+  }
+}
+
+const std::vector<std::string> kMechanisms{"rps3", "ups6",  "sps6", "upr2-rpu", "tripteron",
+                                           "rrr3", "press", "odd6", "mixed6"};
+
+INSTANTIATE_TEST_SUITE_P(Mechanisms, OfMechanism, testing::ValuesIn(kMechanisms),
+                         test::named({"rps3", "ups6", "sps6", "upr2_rpu", "tripteron", "rrr3", "press", "odd6",
+                                      "mixed6"}));
+
+}  // namespace
+}  // namespace poesy::file
