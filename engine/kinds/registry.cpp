@@ -11,17 +11,19 @@
 #include "engine/kinds/identification/kind.h"
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/sensitivity/kind.h"
+#include "engine/kinds/sobol/kind.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind, &kMonteCarloKind, &kCouplingKind};
+constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind,
+                          &kMonteCarloKind,  &kSobolKind,          &kCouplingKind};
 
 /// The keys of [analysis] as the reference lists them; a key that is not among them comes last.
-constexpr std::array<std::string_view, 19> kKeys{"kind",      "factors",   "samples",    "conf_level", "background",
-                                                 "reference", "linearity", "quantiles",  "groups",     "pose_share",
-                                                 "cases",     "limits",    "judge",      "share",      "linear",
-                                                 "angular",   "limbs",     "components", "sources"};
+constexpr std::array<std::string_view, 22> kKeys{
+    "kind",       "factors",    "samples", "conf_level", "background", "reference", "linearity",    "quantiles",
+    "groups",     "pose_share", "cases",   "limits",     "judge",      "share",     "second_order", "design",
+    "replicates", "linear",     "angular", "limbs",      "components", "sources"};
 
 }  // namespace
 

@@ -8,7 +8,8 @@
 namespace poesy {
 
 /// What a stream's draws are used for. Part of every address, so that purposes never share draws.
-enum class Purpose : std::uint64_t { error_samples = 1, sampling_design = 2 };
+/// second_error_samples: the second of two independent sets of samples of the same errors.
+enum class Purpose : std::uint64_t { error_samples = 1, sampling_design = 2, second_error_samples = 3 };
 
 /// The address of a run of draws: one factor at one pose. The sample index completes it.
 struct StreamAddress {

@@ -26,7 +26,10 @@ bool fits(std::string_view described, std::string_view path) {
   const auto first_name = [](std::string_view rest) { return rest.substr(0, rest.find('.')); };
   const std::string_view pattern = first_name(described);
   const std::string_view name = first_name(path);
-  if (pattern != without_number(name) && !stands_for_names(pattern)) return false;
+  const bool fits_name = pattern.ends_with("[]")
+                             ? without_number(pattern) == without_number(name) && name.ends_with(']')
+                             : pattern == without_number(name) || stands_for_names(pattern);
+  if (!fits_name) return false;
   const bool ends = pattern.size() == described.size();
   if (ends || name.size() == path.size()) return ends && name.size() == path.size();
   return fits(described.substr(pattern.size() + 1), path.substr(name.size() + 1));
@@ -80,6 +83,9 @@ std::string cell(std::string_view text) {
 
 std::string heading(const StudyTable& table) {
   if (table.paths.front().empty()) return "The file itself";
+  if (const std::string_view path = table.paths.front(); path.ends_with("[]")) {
+    return fmt::format("`[[{}]]`", path.substr(0, path.size() - 2));
+  }
   return fmt::format("`[{}]`", fmt::join(table.paths, "]`, `["));
 }
 
@@ -117,9 +123,13 @@ std::string section(const StudyTable& table) {
 
 }  // namespace
 
-const StudyKey* StudyTable::find(std::string_view key) const {
-  const auto found = std::ranges::find(keys, key, &StudyKey::name);
-  return found == keys.end() ? nullptr : &*found;
+const StudyKey* StudyTable::find(std::string_view key, std::string_view word) const {
+  const auto first = std::ranges::find(keys, key, &StudyKey::name);
+  const auto chosen = std::find_if(first, keys.end(), [&](const StudyKey& candidate) {
+    return candidate.name == key && holds_for(candidate.only_for, word);
+  });
+  if (chosen != keys.end()) return &*chosen;
+  return first == keys.end() ? nullptr : &*first;
 }
 
 std::vector<std::string_view> StudyTable::names() const { return poesy::names(keys); }
@@ -186,7 +196,7 @@ const StudyTable& TemplateLines::table(std::string_view path) const {
 }
 
 const StudyKey& TemplateLines::key(std::string_view path, std::string_view name) const {
-  const StudyKey* found = table(path).find(name);
+  const StudyKey* found = table(path).find(name, word_);
   POESY_EXPECTS(found != nullptr);
   return *found;
 }

@@ -39,16 +39,19 @@ struct StudyKey {
 
 /// A table of a study file, or several that have the same keys.
 struct StudyTable {
-  /// "analysis.groups", with '.' between names and without the numbers of a list; empty for the file itself.
+  /// "analysis.cases", with '.' between names and without the numbers of a list; empty for the file itself.
+  /// "analysis.groups[]" is an element of a list alone: there may be a table "analysis.groups" as well.
   std::vector<std::string_view> paths;
   std::string_view meaning;       ///< a sentence
   std::string_view chooser = {};  ///< the key by whose word other keys of this table hold or not; empty: all hold
   std::string_view owner = {};    ///< how messages speak of the chooser's word: "select ="
   std::vector<StudyKey> keys;     ///< in the order in which they are listed
 
-  const StudyKey* find(std::string_view key) const;  ///< Null where it has none of that name.
-  std::vector<std::string_view> names() const;       ///< The keys' names, in order.
-  bool has_names_of_model() const;                   ///< Whether it has a key that stands for names of the model's.
+  /// Null where it has none of that name. Where keys of one name hold for different words of the chooser, the one that
+  /// holds for this word, else the first.
+  const StudyKey* find(std::string_view key, std::string_view word = {}) const;
+  std::vector<std::string_view> names() const;  ///< The keys' names, in order.
+  bool has_names_of_model() const;              ///< Whether it has a key that stands for names of the model's.
   /// `select = "grid"`: what a key does not belong to that does not hold for this word.
   std::string owner_of(std::string_view word) const;
   /// What to do where the key is missing; a name of the model's has that of the key that stands for it.
@@ -73,7 +76,8 @@ std::string comment(std::string_view text);  ///< Text of any number of lines as
 /// What a template says of keys. Every text is whole lines of TOML. Precondition: there are such tables and keys.
 class TemplateLines {
  public:
-  explicit TemplateLines(const StudyTables& tables) : tables_(&tables) {}  ///< The tables must outlive it.
+  /// The tables must outlive it. word: the chooser's where keys of one name hold for different words.
+  explicit TemplateLines(const StudyTables& tables, std::string_view word = {}) : tables_(&tables), word_(word) {}
 
   /// A line that shows this key, with its explanation: behind it where that fits, else in comment lines before it, with
   /// the words that it takes.
@@ -95,6 +99,7 @@ class TemplateLines {
   const StudyKey& key(std::string_view path, std::string_view name) const;
 
   const StudyTables* tables_;
+  std::string word_;
 };
 
 std::string in_quotes(std::string_view text);  ///< A TOML string: in quotes, with what needs it escaped.

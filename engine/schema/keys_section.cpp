@@ -172,7 +172,8 @@ void StudySection::allow(std::span<const std::string_view> known, std::string_vi
 void StudySection::refuse_all_but_those_for(std::string_view word) const {
   POESY_EXPECTS(described_ != nullptr && !described_->chooser.empty());
   for (const StudyKey& key : described_->keys) {
-    if (holds_for(key.only_for, word) || key.may_stay) continue;
+    const StudyKey& chosen = *described_->find(key.name, word);
+    if (holds_for(chosen.only_for, word) || chosen.may_stay) continue;
     refuse(key.name, described_->owner_of(word));
   }
 }

@@ -265,11 +265,20 @@ std::vector<StudyRow> shared_rows() {
   };
 }
 
-/// For which kinds each row holds, and what is said of `kind`. Kinds whose factors a study names come first.
+StudyRows shared_table() {
+  return {.paths = {"analysis"}, .meaning = "What is asked.", .chooser = "kind", .rows = shared_rows()};
+}
+
+std::vector<StudyRow> own_rows(const StudyKind& kind) {
+  return kind.rows == nullptr ? std::vector<StudyRow>() : kind.rows();
+}
+
+/// For which kinds each shared row holds, and what is said of `kind`. Kinds whose factors a study names come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
   std::stable_partition(listed.begin(), listed.end(), [](const StudyKind* kind) { return kind->has_key("factors"); });
   for (StudyRow& row : table.rows) {
+    if (!row.only_for.empty()) continue;
     for (const StudyKind* kind : listed) {
       if (kind->has_key(row.name)) row.only_for.push_back(kind->name);
     }
@@ -326,17 +335,18 @@ std::string read_name(const StudySection& section, std::span<const std::string_v
 }
 
 StudyRows analysis_keys(const StudyKind& kind) {
-  StudyRows table{.paths = {"analysis"}, .meaning = "What is asked.", .chooser = "kind", .rows = shared_rows()};
-  if (kind.rows == nullptr) return table;
-  for (StudyRow& row : kind.rows()) table.rows.push_back(std::move(row));
+  StudyRows table = shared_table();
+  for (StudyRow& row : own_rows(kind)) table.rows.push_back(std::move(row));
   return table;
 }
 
 StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order) {
-  StudyRows table = analysis_keys(*kinds.front());
-  for (const StudyKind* kind : kinds.subspan(1)) {
-    if (kind->rows == nullptr) continue;
-    for (StudyRow& row : kind->rows()) table.rows.push_back(std::move(row));
+  StudyRows table = shared_table();
+  for (const StudyKind* kind : kinds) {
+    for (StudyRow& row : own_rows(*kind)) {
+      row.only_for = {kind->name};
+      table.rows.push_back(std::move(row));
+    }
   }
   describe_kinds(table, kinds);
   std::ranges::find(table.rows, "factors", &StudyRow::name)->usual = usual_factors_text(kinds);

@@ -118,7 +118,7 @@ std::string sets_comment(const ModelDescription& model) {
 }
 
 std::string template_text(const CatalogEntry& entry, const StudyKind& kind, const StudyKinds& kinds) {
-  const TemplateLines lines(kinds.tables);
+  const TemplateLines lines(kinds.tables, kind.name);
   Study shown;
   shown.mechanism.entry = &by_metric(entry, "platform");
   shown.analysis.kind = &kind;

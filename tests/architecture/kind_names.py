@@ -16,7 +16,8 @@ from pathlib import Path
 
 REGISTRY = "engine/kinds/registry.cpp"
 # What a model does, and the command that solves rows of errors.
-WORDS_OF_OTHERS = {"evaluate": ("engine/app/evaluate.cpp",)}
+# Sobol' points are a sequence of engine/random.
+WORDS_OF_OTHERS = {"evaluate": ("engine/app/evaluate.cpp",), "sobol": ("engine/random/low_discrepancy.cpp",)}
 TEXT = re.compile(r'"(?:\\.|[^"\\])*"')
 COMMENT = re.compile(r'"(?:\\.|[^"\\])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 

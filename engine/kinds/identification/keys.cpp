@@ -16,7 +16,7 @@ ErrorSize usual_group() { return {"group 1", display_unit(Dimension::length).si,
 
 const InnerRows<ErrorSize>& group_keys() {
   static const InnerRows<ErrorSize> keys{
-      .paths = {"analysis.groups"},
+      .paths = {"analysis.groups[]"},
       .meaning = "For kind = \"identification\".",
       .rows = {InnerRow<ErrorSize>{.name = "name",
                                    .value = text_at(&ErrorSize::name),
@@ -53,7 +53,7 @@ std::string groups_lines(const Study& study) {
 }
 
 std::string shown_groups(const TemplateLines& lines, const Study&) {
-  return lines.explanation_lines("analysis", "groups") + lines.keys_lines("analysis.groups") +
+  return lines.explanation_lines("analysis", "groups") + lines.keys_lines("analysis.groups[]") +
          "groups = [\n"
          "  { name = \"group 1\", linear = \"5 mm\", angular = \"0.005 rad\" },\n"
          "  { name = \"group 2\", linear = \"1 mm\", angular = \"1 deg\" },\n"

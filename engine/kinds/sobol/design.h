@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "engine/kinds/sobol/result.h"
+#include "engine/study/plan.h"
+
+namespace poesy {
+
+/// Consecutive samples of a panel, at all poses.
+struct PanelUnit {
+  std::size_t replicate;  ///< of the design; 0 for random draws
+  std::size_t first;      ///< sample within the replicate
+  std::size_t count;      ///< B
+  std::size_t number;     ///< of the first sample, among all of the study's
+};
+
+/// The two samples of which a panel is made: they have nothing in common.
+enum class PanelSample { A, B };
+
+/// Where the samples of a study of Sobol' indices are in the errors' space, and how they divide into units of work. The
+/// same for any number of threads and ranks.
+class PanelDesign {
+ public:
+  /// The most samples of a unit.
+  static constexpr std::size_t kUnitSamples = 128;
+
+  /// Refers to the plan.
+  PanelDesign(const Plan& plan, const SobolOptions& asked);
+
+  /// Whether samples are independent of each other; else only those of different replicates are.
+  bool independent() const { return design_ == Design::random; }
+  std::size_t replicates() const { return replicates_; }                     ///< 1 for random draws.
+  std::size_t units_per_replicate() const;                                   ///< Units of each replicate.
+  std::size_t units() const { return replicates_ * units_per_replicate(); }  ///< Of the whole study.
+  PanelUnit unit(std::size_t n) const;                                       ///< The n-th, replicate by replicate.
+
+  /// The uniforms of one error in the unit's samples, [B]. slot: position among the plan's factors.
+  /// Sample A of random draws is that of a Monte Carlo study with draws per machine and the same seed.
+  void fill(PanelSample which, std::size_t slot, const PanelUnit& unit, std::span<double> uniforms) const;
+
+ private:
+  const Plan* plan_;
+  Design design_;
+  std::size_t replicates_;
+  std::size_t samples_;  ///< of each replicate
+};
+
+}  // namespace poesy

@@ -1,0 +1,153 @@
+#include "engine/kinds/sobol/groups.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+const Factor& factor_at(const Analysis& analysis, const ModelDescription& model, std::size_t position) {
+  return model.factors[analysis.factors[position].value];
+}
+
+/// Errors with one text in common, in the order in which the texts first appear.
+std::vector<ErrorGroup> joined_by(const Analysis& analysis, const std::function<std::string(std::size_t)>& text) {
+  std::vector<ErrorGroup> groups;
+  for (std::size_t p = 0; p < analysis.factors.size(); ++p) {
+    const std::string name = text(p);
+    auto group = std::ranges::find(groups, name, &ErrorGroup::name);
+    if (group == groups.end()) group = groups.insert(group, {name, {}});
+    group->members.push_back(p);
+  }
+  return groups;
+}
+
+std::string named_group(const std::vector<NamedGroup>& groups, std::string_view factor) {
+  for (const NamedGroup& group : groups) {
+    const auto fits = [&](const std::string& pattern) { return matches(pattern, factor); };
+    if (std::ranges::any_of(group.patterns, fits)) return group.name;
+  }
+  return std::string(kOtherErrors);
+}
+
+/// In the order in which the study names them; errors of none of them last.
+std::vector<ErrorGroup> joined_by_name(const Analysis& analysis, const ModelDescription& model) {
+  const std::vector<NamedGroup>& named = asked_of<SobolOptions>(analysis).named_groups;
+  std::vector<ErrorGroup> groups =
+      joined_by(analysis, [&](std::size_t p) { return named_group(named, factor_at(analysis, model, p).name); });
+  const auto place = [&](const ErrorGroup& group) { return std::ranges::find(named, group.name, &NamedGroup::name); };
+  std::ranges::sort(groups, {}, place);
+  return groups;
+}
+
+/// The response NAME_AXIS or, without a name before, AXIS.
+std::optional<std::size_t> find_response(const ModelDescription& model, const std::string& name) {
+  const auto found = std::ranges::find(model.responses, name, &Response::name);
+  if (found == model.responses.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - model.responses.begin());
+}
+
+/// The vector whose x is this response; empty where it is no such component.
+std::optional<SignedVector> vector_of(const ModelDescription& model, std::size_t x) {
+  const std::string& name = model.responses[x].name;
+  if (name != "x" && !name.ends_with("_x")) return std::nullopt;
+  const std::string stem = name.substr(0, name.size() - 1);
+  const auto y = find_response(model, stem + "y");
+  const auto z = find_response(model, stem + "z");
+  if (!y || !z) return std::nullopt;
+  for (const std::size_t other : {*y, *z}) {
+    if (model.responses[other].dimension != model.responses[x].dimension) return std::nullopt;
+  }
+  return SignedVector{stem.empty() ? "displacement" : stem.substr(0, stem.size() - 1), {x, *y, *z}};
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char letter : text) {
+    if (letter == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += letter;
+    }
+  }
+  return parts;
+}
+
+/// "omega" of "omega_x".
+std::string stem_of(const std::string& component) { return component.substr(0, component.find_last_of('_')); }
+
+/// A vector for each run of components that have one unit. first: position of the detail's first component.
+void append_parts(const Detail& detail, std::size_t first, std::vector<SignedVector>& vectors) {
+  const std::vector<std::string> units = split(detail.unit);
+  std::string unit;
+  for (std::size_t c = 0; c < detail.components.size(); ++c) {
+    const std::string& own = units.size() == 1 ? units.front() : units[c];
+    if (c == 0 || own != unit) {
+      vectors.push_back({units.size() == 1 ? detail.name : detail.name + "_" + stem_of(detail.components[c]), {}});
+    }
+    unit = own;
+    vectors.back().components.push_back(first + c);
+  }
+}
+
+}  // namespace
+
+bool matches(std::string_view pattern, std::string_view text) {
+  std::size_t p = 0;
+  std::size_t t = 0;
+  std::size_t star = std::string_view::npos;  // the last '*', and the text from which it was tried
+  std::size_t tried = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      tried = t;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p;
+      ++t;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      t = ++tried;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model) {
+  const auto limb = [&](std::size_t p) { return "limb " + std::to_string(factor_at(analysis, model, p).limb); };
+  switch (asked_of<SobolOptions>(analysis).groups_by) {
+    case GroupsBy::limb:
+      return joined_by(analysis, limb);
+    case GroupsBy::frame:
+      return joined_by(analysis, [&](std::size_t p) {
+        return limb(p) + " frame " + std::to_string(factor_at(analysis, model, p).frame);
+      });
+    case GroupsBy::name:
+      return joined_by_name(analysis, model);
+    case GroupsBy::none:
+      break;
+  }
+  return joined_by(analysis, [&](std::size_t p) { return factor_at(analysis, model, p).name; });
+}
+
+std::vector<SignedVector> signed_vectors(const ModelDescription& model) {
+  std::vector<SignedVector> vectors;
+  for (std::size_t r = 0; r < model.responses.size(); ++r) {
+    if (auto vector = vector_of(model, r)) vectors.push_back(*std::move(vector));
+  }
+  std::size_t first = model.responses.size();
+  for (const Detail& detail : model.details) {
+    append_parts(detail, first, vectors);
+    first += detail.components.size();
+  }
+  return vectors;
+}
+
+}  // namespace poesy

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/kinds/sobol/result.h"
+#include "engine/model/model.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// Errors that vary at once in a pair of samples.
+struct ErrorGroup {
+  std::string name;                  ///< of an error of its own that error's
+  std::vector<std::size_t> members;  ///< positions among the study's errors, ascending
+};
+
+/// What errors that no named group has are called together.
+inline constexpr std::string_view kOtherErrors = "others";
+
+/// Whether a text is as the pattern says, in which '*' stands for any letters and '?' for one.
+bool matches(std::string_view pattern, std::string_view text);
+
+/// The groups of a study: each error is in one. With named groups, errors that none of them has come last, as "others".
+std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model);
+
+/// A vector with a sign, whose components have one unit: its mean square does not depend on the axes.
+struct SignedVector {
+  std::string name;                     ///< "position", "delta_mu_21_v"
+  std::vector<std::size_t> components;  ///< positions: r of a response, R + d of a detail's component
+};
+
+/// The signed vectors of a model: responses NAME_x, NAME_y and NAME_z (x, y and z alone are "displacement", theta_x and
+/// so on "theta"), and the parts of each detail that have one unit.
+std::vector<SignedVector> signed_vectors(const ModelDescription& model);
+
+}  // namespace poesy

@@ -1,0 +1,241 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "engine/base/text.h"
+#include "engine/kinds/sobol/groups.h"
+#include "engine/kinds/sobol/result.h"
+#include "engine/study/study_kind.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::array<std::string_view, 8> kSobolKeys{"factors",      "samples", "conf_level", "groups",
+                                                     "second_order", "design",  "replicates", "background"};
+
+constexpr std::array kGroupings{GroupsBy::none, GroupsBy::limb, GroupsBy::frame};
+
+/// Patterns of one group: a text, or a list of texts.
+std::vector<std::string> read_patterns(const StudyValue& value) {
+  if (value.is_text()) return {value.text()};
+  std::vector<std::string> patterns;
+  for (const StudyValue& one : value.list()) patterns.push_back(one.text());
+  if (patterns.empty()) value.fail("is empty", "name errors, e.g. [\"delta_1_4_*\"]");
+  return patterns;
+}
+
+/// A name for tables and files.
+void check_group_name(const StudyValue& value, std::string_view name) {
+  if (!name.empty() && name != kOtherErrors && name.find_first_of(",;\"\n\r\t") == std::string_view::npos) return;
+  value.fail("is not a name for a group",
+             fmt::format("a name is plain text without commas and quotes, and not '{}'", kOtherErrors));
+}
+
+void read_groups(const StudyValue& value, Study& study, const Reading&) {
+  SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  if (value.is_text()) {
+    std::vector<std::string_view> words;
+    for (const GroupsBy by : kGroupings) words.push_back(name(by));
+    asked.groups_by = kGroupings[value.word(words)];
+    return;
+  }
+  const StudySection section = value.section();
+  asked.groups_by = GroupsBy::name;
+  for (const std::string& group : section.keys()) {
+    const StudyValue patterns = section.require(group);
+    check_group_name(patterns, group);
+    asked.named_groups.push_back({group, read_patterns(patterns)});
+  }
+  if (asked.named_groups.empty())
+    value.fail("names no group", "write { NAME = [\"delta_1_4_*\"], ... }, or leave it out");
+}
+
+std::string groups_lines(const Study& study) {
+  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  if (asked.groups_by != GroupsBy::name) return "groups = " + in_quotes(name(asked.groups_by)) + "\n";
+  std::string text;
+  for (const NamedGroup& group : asked.named_groups) {
+    std::vector<std::string> patterns;
+    for (const std::string& pattern : group.patterns) patterns.push_back(in_quotes(pattern));
+    text += fmt::format("groups.{} = {}\n", in_quotes(group.name), list_text(patterns));
+  }
+  return text;
+}
+
+std::string shown_groups(const TemplateLines& lines, const Study& study) {
+  std::string text = lines.explained("analysis", "groups", "groups = \"none\"");
+  if (study.model().factors.empty()) return text;
+  return text + fmt::format("# groups = {{ mine = [{}] }}\n", in_quotes(study.model().factors.front().name));
+}
+
+KeyValue<SobolOptions> design() {
+  return word_at<Design>(
+      {{Design::random, "independent draws, those of a Monte Carlo study with one set of errors at all poses"},
+       {Design::lhs, "a Latin hypercube for each replicate"},
+       {Design::sobol, "scrambled Sobol' points, a scramble of its own for each replicate"}},
+      &SobolOptions::design);
+}
+
+KeyValue<SobolOptions> second_order() {
+  const auto read = [](const StudyValue& value) {
+    const auto asked = value.boolean();
+    if (!asked) value.fail("is neither true nor false", "write true or false, without quotes");
+    return *asked;
+  };
+  const auto text = [](bool asked) { return std::string(asked ? "true" : "false"); };
+  return value_at("true or false", "", read, text, &SobolOptions::second_order);
+}
+
+std::string replicates_line(const Study& study) {
+  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  return asked.design == Design::random ? "" : fmt::format("replicates = {}\n", asked.replicates);
+}
+
+std::vector<StudyRow> sobol_rows() {
+  return {StudyRow{.name = "groups",
+                   .value = {.type = "text or table",
+                             .words = {{"none", "each error is a group of its own"},
+                                       {"limb", "the errors of each limb"},
+                                       {"frame", "the errors of each frame of a limb"}}},
+                   .usual = "`\"none\"`",
+                   .meaning =
+                       "Errors that are taken together; or a table { NAME = [\"delta_1_4_*\"] } of groups, the errors "
+                       "of none of them being one more.",
+                   .reader = read_groups,
+                   .lines = groups_lines,
+                   .late = 1,
+                   .shown = shown_groups},
+          StudyRow{.name = "second_order",
+                   .value = asked_value(second_order()),
+                   .meaning = "Whether the interaction of each pair is asked for; it takes a solve for each of them."},
+          StudyRow{.name = "design", .value = asked_value(design()), .meaning = "How samples fill the errors' space."},
+          StudyRow{.name = "replicates",
+                   .value = asked_value(whole_at(8, 100'000, &SobolOptions::replicates)),
+                   .meaning = "Independent parts of a design that is not random, from which intervals follow; they "
+                              "share the samples evenly.",
+                   .lines = replicates_line,
+                   .commented = true}};
+}
+
+StudyTables sobol_tables_of_keys() {
+  return {{.paths = {"analysis.groups"},
+           .meaning = "For kind = \"sobol\".",
+           .keys = {{.name = "GROUP",
+                     .type = "text or list of texts",
+                     .usual = "none",
+                     .meaning = "The group's errors by name, '*' for any letters and '?' for one."}}}};
+}
+
+/// The error at this position of the study.
+const std::string& factor_name(const Study& study, std::size_t position) {
+  return study.model().factors[study.analysis.factors[position].value].name;
+}
+
+/// Each pattern has errors, and none of these belongs to an earlier group.
+void check_named_groups(const Study& study, const StudySection& section) {
+  std::vector<std::string_view> owner(study.analysis.factors.size());
+  for (const NamedGroup& group : asked_of<SobolOptions>(study.analysis).named_groups) {
+    const StudyValue value = section.require(group.name);
+    for (const std::string& pattern : group.patterns) {
+      bool any = false;
+      for (std::size_t p = 0; p < owner.size(); ++p) {
+        if (!matches(pattern, factor_name(study, p))) continue;
+        any = true;
+        if (!owner[p].empty() && owner[p] != group.name) {
+          value.fail(fmt::format("has '{}', which group '{}' has as well", factor_name(study, p), owner[p]),
+                     "an error belongs to one group");
+        }
+        owner[p] = group.name;
+      }
+      if (!any) {
+        value.fail("has '" + printable(pattern) + "', which is none of the errors that the study varies",
+                   "'poesy models " + study.model().name + "' lists them; see also analysis.factors");
+      }
+    }
+  }
+}
+
+/// Samples divide among the replicates.
+void check_replicates(const Study& study, const StudySection& analysis) {
+  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const auto replicates = analysis.find("replicates");
+  if (asked.design == Design::random) {
+    if (replicates) replicates->fail("is set, but analysis.design is \"random\"", "write another design, or remove it");
+    return;
+  }
+  const std::size_t samples = study.analysis.samples;
+  if (samples % asked.replicates == 0 && samples / asked.replicates >= 2) return;
+  const std::size_t each = std::max<std::size_t>(2, (samples + asked.replicates - 1) / asked.replicates);
+  const std::string problem = fmt::format("is {}, which {} replicates do not share evenly", samples, asked.replicates);
+  const std::string remedy = fmt::format("write samples = {}, or other replicates", each * asked.replicates);
+  if (const auto value = analysis.find("samples")) value->fail(problem, remedy);
+  throw InputError(analysis.place(), "analysis.samples " + problem, remedy);
+}
+
+void check_sobol(Study& study, const Reading& reading) {
+  const StudySection analysis = reading.root.section("analysis");
+  if (study.analysis.adaptive) {
+    analysis.require("samples").fail("is a table, but this kind of study takes a fixed number",
+                                     "write a number, e.g. samples = 4096");
+  }
+  check_replicates(study, analysis);
+  if (asked_of<SobolOptions>(study.analysis).groups_by == GroupsBy::name) {
+    check_named_groups(study, analysis.section("groups"));
+  }
+  if (error_groups(study.analysis, study.model()).size() > 1 || reading.use != StudyUse::run) return;
+  throw InputError(analysis.place(), "all errors are one group, so there is nothing to compare",
+                   "name more factors, or other groups");
+}
+
+/// Samples A and B, one for each group, and for each pair of groups where these are asked for.
+double solves_of_sample(const Study& study) {
+  const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
+  const bool pairs = asked_of<SobolOptions>(study.analysis).second_order;
+  return 2.0 + groups + (pairs ? 0.5 * groups * (groups - 1.0) : 0.0);
+}
+
+AtPose sobol_at_pose(const Study& study) {
+  const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
+  return {groups, "groups", solves_of_sample(study) * static_cast<double>(study.analysis.samples),
+          "samples times groups and two"};
+}
+
+}  // namespace
+
+std::string_view name(GroupsBy by) {
+  switch (by) {
+    case GroupsBy::none:
+      return "none";
+    case GroupsBy::limb:
+      return "limb";
+    case GroupsBy::frame:
+      return "frame";
+    case GroupsBy::name:
+      break;
+  }
+  return "name";
+}
+
+std::string_view name(Design design) {
+  switch (design) {
+    case Design::random:
+      return "random";
+    case Design::lhs:
+      return "lhs";
+    case Design::sobol:
+      break;
+  }
+  return "sobol";
+}
+
+const StudyKind kSobolStudy{.name = "sobol",
+                            .asks = "how the variance of each response divides among the errors and their interactions",
+                            .keys = kSobolKeys,
+                            .varies = Varies::together,
+                            .rows = sobol_rows,
+                            .tables = sobol_tables_of_keys,
+                            .complete = check_sobol,
+                            .at_pose = sobol_at_pose};
+
+}  // namespace poesy

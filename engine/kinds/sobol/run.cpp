@@ -1,0 +1,255 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
+#include "engine/kinds/sobol/kind.h"
+#include "engine/kinds/sobol/panel.h"
+#include "engine/run/fold.h"
+#include "engine/run/rounds.h"
+#include "engine/stats/merge_tree.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::uint64_t kKind = 6;  ///< no other state begins with this number
+
+/// All units of a panel, in their order: the work of fold(). A replicate of a design is merged unit by unit, and then
+/// is one leaf of a tree; of random draws each unit is a leaf.
+class PanelWork {
+ public:
+  PanelWork(const Plan& plan, const Model& model, const Study& study, const RunOptions& options)
+      : plan_(plan),
+        model_(model),
+        panel_(study, plan.poses().size()),
+        design_(plan, asked_of<SobolOptions>(study.analysis)),
+        units_per_leaf_(design_.independent() ? 1 : design_.units_per_replicate()),
+        leaves_(options.shard.value_or(Shard()).of(design_.units() / units_per_leaf_)),
+        next_(leaves_.first * units_per_leaf_) {}
+
+  std::size_t begin_round() {
+    begun_ = next_;
+    return end() - next_;
+  }
+  PanelEvaluator worker() const { return {plan_, model_, panel_, design_}; }
+  PanelSums solve(PanelEvaluator& evaluate, std::size_t n) const { return evaluate(design_.unit(begun_ + n)); }
+  SolveCounts merge(std::size_t, const PanelSums& found) {
+    if (next_ % units_per_leaf_ == 0) {
+      open_ = found;
+    } else {
+      open_.merge(found);
+    }
+    ++next_;
+    solved_.merge(total_of(found.solves));
+    if (next_ % units_per_leaf_ == 0) {
+      tree_.add(next_ / units_per_leaf_ - 1, design_.independent() ? std::move(open_) : open_.as_one());
+    }
+    return total_of(found.solves);
+  }
+  static void write(std::size_t, const PanelSums& found, ByteWriter& to) { found.write(to); }
+  PanelSums read(std::size_t, ByteReader& from) const { return PanelSums::read(from, panel_, plan_.samples()); }
+  SolveCounts solved() const { return solved_; }
+  std::uint64_t left() const {
+    std::uint64_t samples = 0;
+    for (std::size_t n = next_; n < end(); ++n) samples += design_.unit(n).count;
+    return samples * panel_.solves_of_sample() * panel_.poses;
+  }
+  Bytes state() const {
+    ByteWriter to;
+    for (const std::uint64_t number : sizes()) to.number(number);
+    to.number(next_);
+    solved_.write(to);
+    tree_.write(to);
+    if (is_open()) open_.write(to);
+    return to.take();
+  }
+  void restore(std::span<const std::byte> state) {
+    ByteReader from(state);
+    tree_ = {};
+    solved_ = {};
+    while (from.left() > 0) restore_one(from);
+  }
+  static bool next_round() { return false; }
+
+  const IndexPanel& panel() const { return panel_; }
+  /// Precondition: every unit was merged.
+  PanelSums total() && {
+    POESY_EXPECTS(next_ == design_.units());
+    return std::move(tree_).total();
+  }
+
+ private:
+  std::size_t end() const { return leaves_.end * units_per_leaf_; }
+  bool is_open() const { return next_ % units_per_leaf_ != 0; }
+  /// What a state begins with.
+  std::array<std::uint64_t, 5> sizes() const {
+    return {kKind, panel_.quantities(), panel_.groups.size(), panel_.poses, panel_.pairs.size()};
+  }
+  void restore_one(ByteReader& from) {
+    for (const std::uint64_t expected : sizes()) {
+      if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
+    }
+    next_ = static_cast<std::size_t>(from.number_up_to(design_.units()));
+    solved_.merge(SolveCounts::read(from));
+    const auto read_sums = [&](ByteReader& bytes, std::size_t, std::size_t) {
+      return PanelSums::read(bytes, panel_, plan_.samples());
+    };
+    tree_.read(from, design_.units() / units_per_leaf_, read_sums);
+    if (tree_.end() != (tree_.empty() ? 0 : next_ / units_per_leaf_)) throw BytesError("has lost some of its samples");
+    if (is_open()) open_ = PanelSums::read(from, panel_, plan_.samples());
+  }
+
+  const Plan& plan_;
+  const Model& model_;
+  IndexPanel panel_;
+  PanelDesign design_;
+  std::size_t units_per_leaf_;
+  NumberRange leaves_;  ///< of this shard
+  std::size_t next_;    ///< unit to be merged
+  std::size_t begun_ = 0;
+  PanelSums open_;  ///< of the leaf that is not complete
+  MergeTree<PanelSums> tree_;
+  SolveCounts solved_;
+};
+
+void append(const Estimate& estimate, std::vector<double>& value, std::vector<double>& low, std::vector<double>& high) {
+  value.push_back(estimate.value);
+  low.push_back(estimate.interval.low);
+  high.push_back(estimate.interval.high);
+}
+
+SobolIndices indices_of(std::span<const IndexSums> sums, double conf_level) {
+  SobolIndices found;
+  found.conf_level = conf_level;
+  for (const IndexSums& index : sums) {
+    append(index.first.estimate(conf_level), found.S1, found.S1_ci_low, found.S1_ci_high);
+    append(index.total.estimate(conf_level), found.ST, found.ST_ci_low, found.ST_ci_high);
+  }
+  return found;
+}
+
+/// The pairs of one response as a symmetric matrix, NaN on its diagonal.
+void append_pairs(const IndexPanel& panel, std::span<const RatioSums> sums, double conf_level, SobolResult& found) {
+  const std::size_t groups = panel.groups.size();
+  const std::size_t first = found.S2.size();
+  for (std::vector<double>* list : {&found.S2, &found.S2_ci_low, &found.S2_ci_high}) {
+    list->resize(first + groups * groups, kNaN);
+  }
+  for (std::size_t k = 0; k < panel.pairs.size(); ++k) {
+    const auto [i, j] = panel.pairs[k];
+    const Estimate estimate = sums[k].estimate(conf_level);
+    for (const std::size_t at : {first + i * groups + j, first + j * groups + i}) {
+      found.S2[at] = estimate.value;
+      found.S2_ci_low[at] = estimate.interval.low;
+      found.S2_ci_high[at] = estimate.interval.high;
+    }
+  }
+}
+
+std::string members_text(const ErrorGroup& group, const Study& study) {
+  std::string text;
+  for (const std::size_t p : group.members) {
+    text += (text.empty() ? "" : " ") + study.model().factors[study.analysis.factors[p].value].name;
+  }
+  return text;
+}
+
+SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSums& sums) {
+  const double level = study.analysis.conf_level;
+  const std::size_t shared = panel.responses * panel.groups.size();
+  SobolResult found;
+  found.responses = panel.responses;
+  found.poses = panel.poses;
+  found.joined = asked_of<SobolOptions>(study.analysis).groups_by != GroupsBy::none;
+  for (const ErrorGroup& group : panel.groups) {
+    found.group_names.push_back(group.name);
+    found.group_members.push_back(members_text(group, study));
+  }
+  for (const SignedVector& vector : panel.vectors) found.vectors.push_back(vector.name);
+  found.at_poses = indices_of(sums.at_poses, level);
+  found.aggregated = indices_of(std::span(sums.aggregated).first(shared), level);
+  found.of_vectors = indices_of(std::span(sums.aggregated).subspan(shared), level);
+  for (const IndexSums& cell : sums.at_poses) found.n.push_back(cell.total.count());
+  for (const Moments& moments : sums.moments) {
+    found.mean.push_back(moments.count() == 0 ? kNaN : moments.mean());
+    found.variance.push_back(moments.variance());
+  }
+  for (const double least : sums.least) found.without_sign.push_back(least >= 0.0 ? 1 : 0);
+  for (std::size_t r = 0; r < panel.responses && !panel.pairs.empty(); ++r) {
+    append_pairs(panel, std::span(sums.pairs).subspan(r * panel.pairs.size(), panel.pairs.size()), level, found);
+  }
+  found.solves = sums.solves;
+  for (std::size_t m = 0; m < panel.poses; ++m) append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
+  return found;
+}
+
+std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
+  const Plan plan(run.study, run.poses);
+  PanelWork work(plan, run.model, run.study, run.options);
+  if (!fold(work, run.options) || run.options.shard || !run.makes_result()) return std::nullopt;
+  const IndexPanel panel = work.panel();
+  return StudyResult{result_of(run.study, panel, std::move(work).total()), std::nullopt, {}};
+}
+
+/// The panel of an outlook, tried pose by pose.
+struct Trial {
+  Trial(const Study& study, const Model& model, const PoseSet& poses)
+      : plan(study, poses),
+        panel(study, poses.size()),
+        design(plan, asked_of<SobolOptions>(study.analysis)),
+        evaluate(plan, model, panel, design) {}
+
+  double solves() const {
+    return static_cast<double>(plan.samples()) * static_cast<double>(panel.solves_of_sample() * panel.poses);
+  }
+
+  Plan plan;
+  IndexPanel panel;
+  PanelDesign design;
+  PanelEvaluator evaluate;
+};
+
+MemoryOutlook memory_of(const IndexPanel& panel, const PanelDesign& design) {
+  const std::size_t cells = panel.responses * panel.groups.size() * panel.poses;
+  const std::size_t sums = cells * sizeof(IndexSums);
+  std::size_t nodes = 2;
+  for (std::size_t leaves = design.units(); leaves > 1; leaves /= 2) ++nodes;
+  const std::size_t numbers = cells * 7 * sizeof(double);
+  return {nodes * sums, nodes * sums, numbers, numbers};
+}
+
+Outlook sobol_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const auto trial = std::make_shared<Trial>(study, model, poses);
+  const auto try_some = [trial](double at) {
+    const auto pose = static_cast<std::size_t>(at * static_cast<double>(trial->panel.poses));
+    return static_cast<double>(trial->evaluate.try_pose(trial->design.unit(0), PoseIndex(pose))) / trial->solves();
+  };
+  return {.solves = fmt::format("{} poses x {} samples x {} solves (A, B, {}) = {:.0f} solves", poses.size(),
+                                study.analysis.samples, trial->panel.solves_of_sample(),
+                                counted_things(trial->panel.solves_of_sample() - 2, "mixtures"), trial->solves()),
+          .memory = memory_of(trial->panel, trial->design),
+          .shared = {WorkOutlook{try_some, 1.0}},
+          .by_one = {},
+          .least = 1.0};
+}
+
+/// A shard takes whole replicates of a design, or units of random draws.
+std::size_t most_shards(const Study& study, std::size_t) {
+  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  if (asked.design != Design::random) return asked.replicates;
+  return (study.analysis.samples + PanelDesign::kUnitSamples - 1) / PanelDesign::kUnitSamples;
+}
+
+}  // namespace
+
+constinit const Kind kSobolKind{.study = kSobolStudy,
+                                .run = {run_study_of_kind, sobol_outlook, most_shards},
+                                .file = kSobolFile,
+                                .report = kSobolReport};
+
+}  // namespace poesy
