@@ -58,8 +58,9 @@ RowOrder order_of(const ShowOptions& options) {
 bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
 /// ShowOptions that speak of ranked errors need some.
-void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result) {
-  if (ranks_errors(result)) return;
+void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result,
+                 const std::vector<Table>& tables) {
+  if (std::ranges::any_of(tables, &Table::ranked)) return;
   for (const auto& [given, option] :
        {std::pair(options.sort.has_value(), "--sort"), {options.top.has_value(), "--top"}}) {
     if (!given) continue;
@@ -91,11 +92,11 @@ int show_one(const ShowOptions& options) {
   const std::string& path = options.results.front();
   const RowOrder order = order_of(options);
   StoredResult result = read_result_with_warning(path);
-  check_ranks(options, path, result);
   const std::string response = response_of(options.response, path, result);
   if (!options.response.empty() && !ranks_errors(result)) show_alone(response, result);
   const ReportKind& kind = kind_of(result).report;
   std::vector<Table> tables = result_tables(kind, result, {response, order});
+  check_ranks(options, path, result, tables);
   const SolveTally tally = kind.tally(result);
   if (options.top) keep_first(*options.top, tables);
   const std::size_t width = width_of(options);

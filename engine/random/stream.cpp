@@ -152,6 +152,12 @@ std::uint64_t random_bits(const StreamAddress& address, SampleIndex sample) {
   return block_at(address, sample.value / kBlockWords)[sample.value % kBlockWords];
 }
 
+std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uint64_t block) {
+  std::array<std::uint64_t, kBlockWords> words;
+  std::ranges::copy(block_at(address, block), words.begin());
+  return words;
+}
+
 void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms) {
   // Whole blocks, of which the first may begin before the first sample and the last go on beyond the last one.
   constexpr std::size_t kWords = 512;

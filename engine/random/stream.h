@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -8,8 +9,13 @@
 namespace poesy {
 
 /// What a stream's draws are used for. Part of every address, so that purposes never share draws.
-/// second_error_samples: the second of two independent sets of samples of the same errors.
-enum class Purpose : std::uint64_t { error_samples = 1, sampling_design = 2, second_error_samples = 3 };
+enum class Purpose : std::uint64_t {
+  error_samples = 1,
+  sampling_design = 2,
+  scrambled_sobol = 3,
+  latin_hypercube = 4,
+  second_error_samples = 5  ///< independent of error_samples, of the same errors
+};
 
 /// The address of a run of draws: one factor at one pose. The sample index completes it.
 struct StreamAddress {
@@ -22,6 +28,9 @@ struct StreamAddress {
 /// The 64 random bits at (address, sample): a pure function, Philox4x64-10 (Salmon et al. 2011)
 /// with key (seed, purpose) and counter (factor, pose, sample / 4, 0), word sample mod 4.
 std::uint64_t random_bits(const StreamAddress& address, SampleIndex sample);
+
+/// The random bits of samples 4 block to 4 block + 3, which together cost as much as one of them.
+std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uint64_t block);
 
 /// Fills uniforms[k] with the draw of sample first + k, strictly inside (0, 1): the middle of the
 /// 2^53 cells named by the upper bits. Equal to uniform_from_bits(random_bits(address, first + k)).

@@ -53,13 +53,6 @@ POESY_EACH_INSTRUCTION_SET PowerSums power_sums(std::span<const double> values, 
   return {total(s1), total(s2), total(s3), total(s4)};
 }
 
-/// What a standard error is multiplied by on either side.
-double student_quantile(double freedom, double conf_level) {
-  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
-  const boost::math::students_t student(freedom);
-  return boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
-}
-
 }  // namespace
 
 void Moments::add(double value) {
@@ -142,6 +135,12 @@ double sample_mean_square(double mean, double standard_deviation, double count) 
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count) {
   const double spread = count < 2 ? 0.0 : standard_deviation;  // a single value has none
   return std::sqrt(sample_mean_square(mean, spread, static_cast<double>(count)));
+}
+
+double student_quantile(double freedom, double conf_level) {
+  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
+  const boost::math::students_t student(freedom);
+  return boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
 }
 
 Interval mean_interval(const Moments& moments, double conf_level) {

@@ -53,6 +53,10 @@ double sample_mean_square(double mean, double standard_deviation, double count);
 /// The root mean square of `count` values with this mean and sample standard deviation; NaN without values.
 double root_mean_square(double mean, double standard_deviation, std::uint64_t count);
 
+/// What a standard error with so many degrees of freedom is multiplied by on either side of a two-sided interval
+/// (Student's t). Preconditions: freedom > 0, 0 < conf_level < 1.
+double student_quantile(double freedom, double conf_level);
+
 /// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.
 /// Precondition: 0 < conf_level < 1.
 Interval mean_interval(const Moments& moments, double conf_level);

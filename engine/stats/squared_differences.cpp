@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "engine/base/contract.h"
@@ -70,8 +69,7 @@ Estimate RatioSums::estimate(double conf_level) const {
   POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
   if (count_ < 2 || !(w_ > 0.0)) return {value(), {kNaN, kNaN}};
   const auto n = static_cast<double>(count_);
-  const boost::math::students_t student(n - 1.0);
-  const double z = boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
+  const double z = student_quantile(n - 1.0, conf_level);
   // In units of the mean of w, so that small numbers do not vanish: the variances of both means and their covariance.
   const double mean = w_ / n;
   const double ratio = x_ / w_;

@@ -7,11 +7,21 @@
 
 namespace poesy {
 
+namespace {
+
+PanelPoints points_of(const Plan& plan, Design design, std::size_t samples) {
+  if (design == Design::lhs) return LatinHypercube(samples, plan.seed());
+  if (design == Design::sobol) return ScrambledSobol(2 * plan.factors().size(), plan.seed());
+  return std::monostate();
+}
+
+}  // namespace
+
 PanelDesign::PanelDesign(const Plan& plan, const SobolOptions& asked)
     : plan_(&plan),
-      design_(asked.design),
-      replicates_(independent() ? 1 : asked.replicates),
-      samples_(plan.samples() / replicates_) {
+      replicates_(asked.design == Design::random ? 1 : asked.replicates),
+      samples_(plan.samples() / replicates_),
+      points_(points_of(plan, asked.design, samples_)) {
   POESY_EXPECTS(samples_ * replicates_ == plan.samples());
 }
 
@@ -25,8 +35,17 @@ PanelUnit PanelDesign::unit(std::size_t n) const {
 }
 
 void PanelDesign::fill(PanelSample which, std::size_t slot, const PanelUnit& unit, std::span<double> uniforms) const {
-  const Purpose purpose = which == PanelSample::A ? Purpose::error_samples : Purpose::second_error_samples;
-  fill_uniforms({plan_->seed(), purpose, plan_->factors()[slot], PoseIndex(0)}, SampleIndex(unit.first), uniforms);
+  const std::size_t dimension = which == PanelSample::A ? slot : plan_->factors().size() + slot;
+  const DesignColumn column{dimension, unit.replicate};
+  const SampleIndex first(unit.first);
+  if (const auto* const cube = std::get_if<LatinHypercube>(&points_)) {
+    cube->fill(column, first, uniforms);
+  } else if (const auto* const points = std::get_if<ScrambledSobol>(&points_)) {
+    points->fill(column, first, uniforms);
+  } else {
+    const Purpose purpose = which == PanelSample::A ? Purpose::error_samples : Purpose::second_error_samples;
+    fill_uniforms({plan_->seed(), purpose, plan_->factors()[slot], PoseIndex(0)}, first, uniforms);
+  }
 }
 
 }  // namespace poesy

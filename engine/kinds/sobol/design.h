@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <variant>
 
 #include "engine/kinds/sobol/result.h"
+#include "engine/random/latin_hypercube.h"
+#include "engine/random/scrambled_sobol.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -20,22 +23,28 @@ struct PanelUnit {
 /// The two samples of which a panel is made: they have nothing in common.
 enum class PanelSample { A, B };
 
+/// Points that are not drawn one by one; none for random draws.
+using PanelPoints = std::variant<std::monostate, LatinHypercube, ScrambledSobol>;
+
 /// Where the samples of a study of Sobol' indices are in the errors' space, and how they divide into units of work. The
 /// same for any number of threads and ranks.
 class PanelDesign {
  public:
-  /// The most samples of a unit.
-  static constexpr std::size_t kUnitSamples = 128;
+  /// The most samples of a unit; milestones of adaptive samples are whole units.
+  static constexpr std::size_t kUnitSamples = 125;
 
   /// Refers to the plan.
   PanelDesign(const Plan& plan, const SobolOptions& asked);
 
   /// Whether samples are independent of each other; else only those of different replicates are.
-  bool independent() const { return design_ == Design::random; }
+  bool independent() const { return std::holds_alternative<std::monostate>(points_); }
   std::size_t replicates() const { return replicates_; }                     ///< 1 for random draws.
   std::size_t units_per_replicate() const;                                   ///< Units of each replicate.
   std::size_t units() const { return replicates_ * units_per_replicate(); }  ///< Of the whole study.
   PanelUnit unit(std::size_t n) const;                                       ///< The n-th, replicate by replicate.
+
+  /// Units of the first samples. Precondition: samples are independent.
+  std::size_t units_for(std::size_t samples) const { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
   /// The uniforms of one error in the unit's samples, [B]. slot: position among the plan's factors.
   /// Sample A of random draws is that of a Monte Carlo study with draws per machine and the same seed.
@@ -43,9 +52,9 @@ class PanelDesign {
 
  private:
   const Plan* plan_;
-  Design design_;
   std::size_t replicates_;
   std::size_t samples_;  ///< of each replicate
+  PanelPoints points_;
 };
 
 }  // namespace poesy

@@ -75,6 +75,12 @@ struct Layout {
   Fields<SobolResult> pairs;
 };
 
+const CourseWords kConvergence = convergence_words(kByResponse, "ST", "1", "Largest aggregated ST of any error",
+                                                   "Samples went on until, at a milestone, half of no interval of an "
+                                                   "aggregated ST was more than relative_error of the "
+                                                   "largest ST, for each response of the headline, or max was there",
+                                                   "errors");
+
 /// Either of the two.
 const Layout& layout(bool joined) {
   static const Layout kOfErrors(false);
@@ -106,6 +112,7 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
   if (found.joined) {
     result.add("/sobol/members", {"group"}, found.group_members, {"1", "Errors of the group, with blanks between"});
   }
+  add_convergence(result, kConvergence, found.convergence);
   add_solver(result, kByPose, found.solves);
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
 }
@@ -128,6 +135,7 @@ void read(const h5::File& file, StoredResult& result) {
   read_fields(file, rows.aggregated.path, rows.pairs, found);
   if (!found.vectors.empty()) read_group(file, rows.of_vectors, found.of_vectors);
   found.solves = read_solver(file, kByPose);
+  result.convergence = read_convergence(file, kConvergence);
   result.varied = {std::string(kAllFactors)};
   result.failures = read_failures(file, result);
   result.found = std::move(found);
@@ -208,6 +216,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   append_solve_columns(solves, found.solves);
   tables.push_back(std::move(solves));
   tables.push_back(failure_table(result));
+  append_convergence_tables(tables, result, kConvergence);
 }
 
 }  // namespace

@@ -175,8 +175,8 @@ void check_replicates(const Study& study, const StudySection& analysis) {
 
 void check_sobol(Study& study, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
-  if (study.analysis.adaptive) {
-    analysis.require("samples").fail("is a table, but this kind of study takes a fixed number",
+  if (study.analysis.adaptive && asked_of<SobolOptions>(study.analysis).design != Design::random) {
+    analysis.require("samples").fail("is a table, but analysis.design is not \"random\"",
                                      "write a number, e.g. samples = 4096");
   }
   check_replicates(study, analysis);

@@ -249,7 +249,10 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_where(result, page);
 }
 
+Settling settling(const StoredResult& result) { return {"largest total indices", {"all errors"}, result.headline}; }
+
 void warn(const StoredResult& result, std::vector<std::string>& list) {
+  if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
   for (const std::size_t r : result.headline) {
     if (sobol_of(result).without_sign[r] != 0) list.push_back(without_sign_text(result.responses[r]) + ".");
   }
@@ -286,6 +289,7 @@ std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& 
 
 constinit const ReportKind kSobolReport{.tally = tally,
                                         .tables = sobol_tables,
+                                        .settling = settling,
                                         .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
                                         .warn = warn,
                                         .shown_cells = cells,

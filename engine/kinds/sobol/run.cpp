@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -17,10 +19,30 @@
 namespace poesy {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kKind = 6;  ///< no other state begins with this number
 
-/// All units of a panel, in their order: the work of fold(). A replicate of a design is merged unit by unit, and then
-/// is one leaf of a tree; of random draws each unit is a leaf.
+/// How sure the indices of a panel are: of each response the largest ST, and the largest half-width of any.
+std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums, double conf_level) {
+  const std::size_t groups = panel.groups.size();
+  std::vector<Estimate> list;
+  for (std::size_t r = 0; r < panel.responses; ++r) {
+    double value = 0.0;
+    double half_width = 0.0;
+    for (const IndexSums& index : std::span(sums.aggregated).subspan(r * groups, groups)) {
+      const Estimate total = index.total.estimate(conf_level);
+      const double half = 0.5 * (total.interval.high - total.interval.low);
+      value = std::max(value, total.value);
+      half_width = std::isnan(half) ? kInfinity : std::max(half_width, half);
+    }
+    list.push_back({value, {value - half_width, value + half_width}});
+  }
+  return list;
+}
+
+/// All units of a panel, in their order: the work of fold(). Of random draws each unit is a leaf of a tree; a replicate
+/// of another design is merged unit by unit, and then is one leaf. With adaptive samples there is a round for each
+/// milestone.
 class PanelWork {
  public:
   PanelWork(const Plan& plan, const Model& model, const Study& study, const RunOptions& options)
@@ -30,6 +52,11 @@ class PanelWork {
         design_(plan, asked_of<SobolOptions>(study.analysis)),
         units_per_leaf_(design_.independent() ? 1 : design_.units_per_replicate()),
         leaves_(options.shard.value_or(Shard()).of(design_.units() / units_per_leaf_)),
+        conf_level_(study.analysis.conf_level),
+        rule_{panel_.responses,
+              study.model().headline.empty() ? all_positions(panel_.responses) : study.model().headline, conf_level_,
+              std::vector<double>(panel_.responses, 0.0)},
+        rounds_(plan, rule_),
         next_(leaves_.first * units_per_leaf_) {}
 
   std::size_t begin_round() {
@@ -45,63 +72,93 @@ class PanelWork {
       open_.merge(found);
     }
     ++next_;
-    solved_.merge(total_of(found.solves));
-    if (next_ % units_per_leaf_ == 0) {
-      tree_.add(next_ / units_per_leaf_ - 1, design_.independent() ? std::move(open_) : open_.as_one());
-    }
+    if (!is_open()) close();
     return total_of(found.solves);
   }
   static void write(std::size_t, const PanelSums& found, ByteWriter& to) { found.write(to); }
   PanelSums read(std::size_t, ByteReader& from) const { return PanelSums::read(from, panel_, plan_.samples()); }
-  SolveCounts solved() const { return solved_; }
+  SolveCounts solved() const {
+    SolveCounts sum = closed_;
+    if (is_open()) sum.merge(total_of(open_.solves));
+    return sum;
+  }
   std::uint64_t left() const {
     std::uint64_t samples = 0;
     for (std::size_t n = next_; n < end(); ++n) samples += design_.unit(n).count;
-    return samples * panel_.solves_of_sample() * panel_.poses;
+    return rounds_.expected_left(solved(), samples * panel_.solves_of_sample() * panel_.poses);
   }
   Bytes state() const {
     ByteWriter to;
     for (const std::uint64_t number : sizes()) to.number(number);
+    to.number(plan_.samples());
     to.number(next_);
-    solved_.write(to);
+    to.number(is_open() ? 1 : 0);
+    closed_.write(to);
     tree_.write(to);
     if (is_open()) open_.write(to);
-    return to.take();
+    return rounds_.state_before(to.take());
   }
   void restore(std::span<const std::byte> state) {
     ByteReader from(state);
+    rounds_ = Rounds(plan_, rule_);
+    rounds_.restore(from);
+    if (from.left() == 0) throw BytesError("is cut off");
     tree_ = {};
-    solved_ = {};
+    closed_ = {};
     while (from.left() > 0) restore_one(from);
   }
-  static bool next_round() { return false; }
+  bool next_round() {
+    return rounds_.go_on([&](std::size_t) { return largest_of_responses(panel_, sums(), conf_level_); });
+  }
 
   const IndexPanel& panel() const { return panel_; }
-  /// Precondition: every unit was merged.
-  PanelSums total() && {
-    POESY_EXPECTS(next_ == design_.units());
-    return std::move(tree_).total();
+  std::optional<ConvergenceResult> convergence() const { return rounds_.result(); }
+  /// Everything merged so far. Precondition: a leaf was.
+  PanelSums sums() const {
+    MergeTree<PanelSums> all = tree_;
+    if (is_open()) all.add(all.end(), open_);
+    return std::move(all).total();
   }
 
  private:
-  std::size_t end() const { return leaves_.end * units_per_leaf_; }
-  bool is_open() const { return next_ % units_per_leaf_ != 0; }
+  /// Where this round ends.
+  std::size_t end() const {
+    return plan_.adaptive() ? design_.units_for(rounds_.samples(0)) : leaves_.end * units_per_leaf_;
+  }
+  /// Whether what was merged last is no whole leaf: a part of a replicate, or a unit that a longer study makes larger.
+  bool is_open() const {
+    if (next_ % units_per_leaf_ != 0) return true;
+    return design_.independent() && next_ > 0 && design_.unit(next_ - 1).count < PanelDesign::kUnitSamples;
+  }
+  /// Makes a leaf of what is open.
+  void close() {
+    closed_.merge(total_of(open_.solves));
+    tree_.add(next_ / units_per_leaf_ - 1, design_.independent() ? std::move(open_) : open_.as_one());
+  }
   /// What a state begins with.
   std::array<std::uint64_t, 5> sizes() const {
     return {kKind, panel_.quantities(), panel_.groups.size(), panel_.poses, panel_.pairs.size()};
   }
+  /// Samples of a design that is not random belong together, so a longer study has others and cannot go on.
   void restore_one(ByteReader& from) {
     for (const std::uint64_t expected : sizes()) {
       if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
     }
+    const bool longer = from.number_up_to(plan_.samples()) < plan_.samples();
+    if (longer && !design_.independent()) throw BytesError("is of a design with other samples");
     next_ = static_cast<std::size_t>(from.number_up_to(design_.units()));
-    solved_.merge(SolveCounts::read(from));
+    const bool has_open = from.number_up_to(1) == 1;
+    closed_.merge(SolveCounts::read(from));
     const auto read_sums = [&](ByteReader& bytes, std::size_t, std::size_t) {
       return PanelSums::read(bytes, panel_, plan_.samples());
     };
     tree_.read(from, design_.units() / units_per_leaf_, read_sums);
-    if (tree_.end() != (tree_.empty() ? 0 : next_ / units_per_leaf_)) throw BytesError("has lost some of its samples");
-    if (is_open()) open_ = PanelSums::read(from, panel_, plan_.samples());
+    if (has_open) open_ = PanelSums::read(from, panel_, plan_.samples());
+    if (has_open && longer) --next_;  // the shorter study's last unit, of which this one has more
+    const bool open = has_open && !longer;
+    const std::size_t closed_units = design_.independent() && open ? next_ - 1 : next_;
+    const bool follows = tree_.empty() || tree_.end() == closed_units / units_per_leaf_;
+    if (open != is_open() || !follows) throw BytesError("has lost some of its samples");
   }
 
   const Plan& plan_;
@@ -110,11 +167,14 @@ class PanelWork {
   PanelDesign design_;
   std::size_t units_per_leaf_;
   NumberRange leaves_;  ///< of this shard
-  std::size_t next_;    ///< unit to be merged
+  double conf_level_;
+  Rounds::Rule rule_;
+  Rounds rounds_;
+  std::size_t next_;  ///< unit to be merged
   std::size_t begun_ = 0;
   PanelSums open_;  ///< of the leaf that is not complete
   MergeTree<PanelSums> tree_;
-  SolveCounts solved_;
+  SolveCounts closed_;  ///< of the tree
 };
 
 void append(const Estimate& estimate, std::vector<double>& value, std::vector<double>& low, std::vector<double>& high) {
@@ -192,8 +252,9 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
   PanelWork work(plan, run.model, run.study, run.options);
   if (!fold(work, run.options) || run.options.shard || !run.makes_result()) return std::nullopt;
-  const IndexPanel panel = work.panel();
-  return StudyResult{result_of(run.study, panel, std::move(work).total()), std::nullopt, {}};
+  SobolResult found = result_of(run.study, work.panel(), work.sums());
+  found.convergence = work.convergence();
+  return StudyResult{std::move(found), std::nullopt, {}};
 }
 
 /// The panel of an outlook, tried pose by pose.
@@ -235,7 +296,7 @@ Outlook sobol_outlook(const Study& study, const Model& model, const PoseSet& pos
           .memory = memory_of(trial->panel, trial->design),
           .shared = {WorkOutlook{try_some, 1.0}},
           .by_one = {},
-          .least = 1.0};
+          .least = least_share(trial->plan)};
 }
 
 /// A shard takes whole replicates of a design, or units of random draws.

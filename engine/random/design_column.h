@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstddef>
+
+namespace poesy {
+
+/// One column of uniforms of a sampling design: a coordinate of its points, in one of its randomisations.
+struct DesignColumn {
+  std::size_t dimension = 0;  ///< coordinate of the points
+  std::size_t replicate = 0;  ///< which of the design's independent randomisations
+};
+
+}  // namespace poesy
