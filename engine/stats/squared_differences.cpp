@@ -68,6 +68,7 @@ double RatioSums::value() const { return w_ > 0.0 ? x_ / w_ : kNaN; }
 Estimate RatioSums::estimate(double conf_level) const {
   POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
   if (count_ < 2 || !(w_ > 0.0)) return {value(), {kNaN, kNaN}};
+  if (xx_ == xw_ * value() && xw_ == ww_ * value()) return {value(), {value(), value()}};  // no scatter about it
   const auto n = static_cast<double>(count_);
   const double z = student_quantile(n - 1.0, conf_level);
   // In units of the mean of w, so that small numbers do not vanish: the variances of both means and their covariance.

@@ -93,7 +93,7 @@ TEST(RatioSums, MergesAsIfAllHadBeenAddedOneByOne) {
 }
 
 TEST(RatioSums, IsReadAsItWasWritten) {
-  const RatioSums sums = sums_of({1.0, 2.0, 6.0}, {2.0, 8.0, 10.0});
+  const RatioSums sums = sums_of({1.0, 2.0, 6.0, 3.0}, {4.0, 5.0, 9.0, 6.0});
   ByteWriter to;
   sums.write(to);
   const Bytes bytes = to.take();
