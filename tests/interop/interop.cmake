@@ -22,24 +22,23 @@ set_tests_properties(interop.write_examples PROPERTIES FIXTURES_SETUP interop_ex
 
 function(poesy_interop_test name)
   add_test(NAME interop.${name} COMMAND ${ARGN})
-  set_tests_properties(interop.${name} PROPERTIES FIXTURES_REQUIRED interop_examples LABELS interop TIMEOUT 120)
+  set_tests_properties(interop.${name} PROPERTIES FIXTURES_REQUIRED interop_examples LABELS interop TIMEOUT 300)
 endfunction()
 
 set(scripts ${CMAKE_CURRENT_SOURCE_DIR}/interop)
+set(octave ${scripts}/octave ${POESY_OCTAVE} --no-init-file --quiet)
 foreach(kind sensitivity evaluate paired monte_carlo coupling cases identification)
   poesy_interop_test(h5dump_${kind} ${POESY_H5DUMP} ${examples}/${kind}.h5)
   poesy_interop_test(python_structure_${kind} ${POESY_PYTHON} ${scripts}/check_structure.py ${examples}/${kind}.h5)
   poesy_interop_test(python_tables_${kind} ${POESY_PYTHON} ${scripts}/check_tables.py ${examples}/${kind})
-  poesy_interop_test(octave_tables_${kind} ${POESY_OCTAVE} --no-init-file --quiet ${scripts}/check_tables.m
-                     ${examples}/${kind})
+  poesy_interop_test(octave_tables_${kind} ${octave} ${scripts}/check_tables.m ${examples}/${kind})
 endforeach()
 # What users take to read results: results/read_results.py and results/read_results.m. Files that are none come first.
 add_test(NAME interop.make_strangers COMMAND ${POESY_PYTHON} -B ${scripts}/make_strangers.py ${examples})
 set_tests_properties(interop.make_strangers PROPERTIES FIXTURES_SETUP interop_strangers DEPENDS interop.write_examples
                      FIXTURES_REQUIRED interop_examples LABELS interop)
 poesy_interop_test(python_read_results ${POESY_PYTHON} -B ${scripts}/read_results_test.py $<TARGET_FILE:poesy> ${examples})
-poesy_interop_test(octave_read_results ${POESY_OCTAVE} --no-init-file --quiet ${scripts}/check_read_results.m
-                   ${PROJECT_SOURCE_DIR} ${examples})
+poesy_interop_test(octave_read_results ${octave} ${scripts}/check_read_results.m ${PROJECT_SOURCE_DIR} ${examples})
 set_tests_properties(interop.python_read_results interop.octave_read_results PROPERTIES
                      TIMEOUT 300 FIXTURES_REQUIRED "interop_examples;interop_strangers" ENVIRONMENT "POESY_PYTHON=${POESY_PYTHON}")
 add_test(NAME interop.reading_guide COMMAND ${POESY_PYTHON} -B ${scripts}/reading_guide_test.py $<TARGET_FILE:poesy>

@@ -37,14 +37,14 @@ class ReadingGuide(unittest.TestCase):
 
     @classmethod
     def succeeds(cls, *command):
-        done = subprocess.run(command, cwd=cls.folder, capture_output=True, text=True, timeout=120, check=False,
+        done = subprocess.run(command, cwd=cls.folder, capture_output=True, text=True, timeout=280, check=False,
                               env={**os.environ, "POESY_PYTHON": sys.executable})
         if done.returncode != 0:
             raise AssertionError(f"{command}\n{done.stdout}\n{done.stderr}")
         return done.stdout
 
     def octave(self, code):
-        return self.succeeds(OCTAVE, "--no-init-file", "--quiet", "--eval", OCTAVE_START + code)
+        return self.succeeds(ROOT / "tests/interop/octave", OCTAVE, "--no-init-file", "--quiet", "--eval", OCTAVE_START + code)
 
     def test_python(self):
         h5py_lines, xarray_lines = blocks("python")
