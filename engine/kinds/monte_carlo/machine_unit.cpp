@@ -71,9 +71,8 @@ void MachineUnit::write(ByteWriter& to) const {
   write_each(failed, to);
 }
 
-MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::size_t n) {
+MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t machines) {
   const std::size_t poses = table.plan().poses().size();
-  const WorkUnit machines = table.unit(n);
   MachineUnit unit;
   unit.sums = MachineSums::read(from, table);
   unit.counts = MachineCounts::read(from, table.responses(), poses);
@@ -82,9 +81,8 @@ MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::
   read_each(from, table.responses(), unit.rms);
   read_each(from, poses, unit.solves);
   for (const SolveCounts& solves : unit.solves) {
-    if (solves.total() != machines.count) throw BytesError("has a pose with other machines");
-    unit.failed.push_back(FailedSamples::read(from, solves.not_converged(), machines.first.value,
-                                              machines.first.value + machines.count));
+    if (solves.total() != machines) throw BytesError("has a pose with other machines");
+    unit.failed.push_back(FailedSamples::read(from, solves.not_converged(), first, first + machines));
   }
   unit.total = total_of(unit.solves);
   return unit;

@@ -51,8 +51,8 @@ struct MachineUnit {
 
   /// For a message or a state.
   void write(ByteWriter& to) const;
-  /// Of the machines of unit n.
-  static MachineUnit read(ByteReader& from, const MachineTable& table, std::size_t n);
+  /// Of so many machines from `first` on. Throws BytesError.
+  static MachineUnit read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t machines);
 };
 
 /// Solves units of machines serially: draws their errors once and solves them pose by pose. Owns the scratch of one
