@@ -74,17 +74,17 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
 
 ExitCode judge_yield(const YieldVerdict& yield, const std::string& study_path, const std::string& remedy) {
   using enum YieldVerdict::Decision;
-  const std::string found = fmt::format("the yield is {} ({} to {} at {})", percent_text(yield.value),
-                                        percent_text(yield.ci_low), percent_text(yield.ci_high),
-                                        percent_text(yield.conf_level));
+  const std::string found =
+      fmt::format("the yield is {} ({} to {} at {})", percent_text(yield.value), percent_text(yield.ci_low),
+                  percent_text(yield.ci_high), percent_text(yield.conf_level));
   if (yield.decision == undecided) {
     say(Message::warning, fmt::format("{}: {}, which does not tell whether it is {}; take more samples, whose number "
                                       "may grow with --resume if the checkpoint is kept",
                                       study_path, found, percent_text(yield.asked)));
   }
   if (yield.decision != not_kept) return kDone;
-  say(Message::error, fmt::format("{}: {}, below the {} that is asked for; {}", study_path, found,
-                                  percent_text(yield.asked), remedy));
+  say(Message::error,
+      fmt::format("{}: {}, below the {} that is asked for; {}", study_path, found, percent_text(yield.asked), remedy));
   return kLimitNotKept;
 }
 

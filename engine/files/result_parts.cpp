@@ -68,8 +68,10 @@ const Fields<LimitVerdict> kLimitFields{
 constexpr std::string_view kLimitsMeaning =
     "How each limit of [analysis.limits] was kept. judge: what is compared with it: rms, the root mean square over the "
     "samples of all poses; share, what a share of the draws stays within at the worst pose; yield, what the share of "
-    "machines that the study asks for stays within at all poses, each limit taken alone (where it asks for none, a limit "
-    "is kept if every machine is within it), while /yield judges all limits together; row, the largest magnitude of any "
+    "machines that the study asks for stays within at all poses, each limit taken alone (where it asks for none, a "
+    "limit "
+    "is kept if every machine is within it), while /yield judges all limits together; row, the largest magnitude of "
+    "any "
     "row of errors";
 
 /// What a convergence says in addition to its course: one number for each quantity, or for each slot.

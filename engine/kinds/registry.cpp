@@ -19,9 +19,9 @@ constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKin
 
 /// The keys of [analysis] as the reference lists them; a key that is not among them comes last.
 constexpr std::array<std::string_view, 21> kKeys{
-    "kind",       "factors", "samples", "draws",  "conf_level", "background", "reference", "linearity", "quantiles",
-    "groups",     "pose_share", "cases", "limits", "judge", "share", "yield", "linear", "angular",
-    "limbs",     "components", "sources"};
+    "kind",      "factors",   "samples", "draws",      "conf_level", "background", "reference",
+    "linearity", "quantiles", "groups",  "pose_share", "cases",      "limits",     "judge",
+    "share",     "yield",     "linear",  "angular",    "limbs",      "components", "sources"};
 
 }  // namespace
 

@@ -50,10 +50,14 @@ std::string yield_caption(const YieldVerdict& yield) {
                                         counted(yield.machines, "machine is", "machines are"));
   const std::string asked = percent_text(yield.asked);
   switch (yield.decision) {
-    case kept: return fmt::format("PASS: the yield is at least {}: {}", asked, found);
-    case not_kept: return fmt::format("FAIL: the yield is below {}: {}", asked, found);
-    case undecided: return fmt::format("UNDECIDED: so few machines do not tell whether the yield is {}: {}", asked, found);
-    case not_asked: break;
+    case kept:
+      return fmt::format("PASS: the yield is at least {}: {}", asked, found);
+    case not_kept:
+      return fmt::format("FAIL: the yield is below {}: {}", asked, found);
+    case undecided:
+      return fmt::format("UNDECIDED: so few machines do not tell whether the yield is {}: {}", asked, found);
+    case not_asked:
+      break;
   }
   return "Yield: " + found;
 }

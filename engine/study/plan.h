@@ -49,9 +49,9 @@ class Plan {
   std::size_t samples() const { return samples_; }  ///< At each pose, of one slot.
   /// How a study may come to an end before each cell has samples().
   const std::optional<AdaptiveSamples>& adaptive() const { return adaptive_; }
-  Plan with_samples(std::size_t samples) const;                      ///< The same with another number of samples.
-  std::uint64_t seed() const { return seed_; }                       ///< Of the draws.
-  Draws draws() const { return draws_; }                             ///< Where they are made anew.
+  Plan with_samples(std::size_t samples) const;  ///< The same with another number of samples.
+  std::uint64_t seed() const { return seed_; }   ///< Of the draws.
+  Draws draws() const { return draws_; }         ///< Where they are made anew.
   /// Of the draws of factors()[slot] at a pose. A machine has the draws of the first pose at every pose.
   StreamAddress address(std::size_t slot, PoseIndex pose) const {
     return {seed_, Purpose::error_samples, factors_[slot], draws_ == Draws::per_machine ? PoseIndex(0) : pose};

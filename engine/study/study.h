@@ -131,13 +131,13 @@ struct Study {
   const ModelDescription& model() const { return mechanism.entry->description; }  ///< Of the mechanism.
 };
 
-std::string_view name(PoseSelection::Select select);            ///< As a study file has it.
-std::string_view name(Draws draws);                             ///< As a study file has it.
-std::string_view name(Judge judge);                             ///< As a study file has it.
+std::string_view name(PoseSelection::Select select);  ///< As a study file has it.
+std::string_view name(Draws draws);                   ///< As a study file has it.
+std::string_view name(Judge judge);                   ///< As a study file has it.
 /// Every one, in the order in which they are listed.
 inline constexpr std::array kJudges{Judge::rms, Judge::share, Judge::yield};
-std::string_view name(NotConverged policy);                     ///< As a study file has it.
-std::string_view name(SolverOptions::Method method);            ///< As a study file has it.
+std::string_view name(NotConverged policy);           ///< As a study file has it.
+std::string_view name(SolverOptions::Method method);  ///< As a study file has it.
 
 /// The constant errors, [F]: the background's value where it applies, else zero.
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);

@@ -182,14 +182,15 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
   }
   columns_.result().solves[pose] = SolveCounts::read(from);
   if (columns_.result().solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
-  failed_[pose] = FailedSamples::read(from, columns_.result().solves[pose].not_converged(), 0, columns_.result().solves[pose].total());
+  failed_[pose] = FailedSamples::read(from, columns_.result().solves[pose].not_converged(), 0,
+                                      columns_.result().solves[pose].total());
 }
 
 Bytes MonteCarloCollector::state() const {
   ByteWriter to;
   to.reserve(kept_bytes_ + kept_bytes_ / 4);  // what is kept, and some more
-  for (const std::uint64_t number :
-       std::array<std::uint64_t, 5>{kKind, responses_, columns_.result().poses, columns_.result().levels.size(), plan_->samples()}) {
+  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, responses_, columns_.result().poses,
+                                                                 columns_.result().levels.size(), plan_->samples()}) {
     to.number(number);
   }
   for (std::size_t m = 0; m < columns_.result().poses; ++m) {

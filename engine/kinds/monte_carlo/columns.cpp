@@ -113,8 +113,7 @@ void MonteCarloColumns::set_overall(const Moments& moments, const QuantileSketch
   result_.overall_count.push_back(moments.count());
   const std::vector<Bucket> buckets = sketch.buckets();
   for (std::size_t q = 0; q < result_.levels.size(); ++q) {
-    const Interval interval =
-        quantile_interval(buckets, among(ranks_of(independent)[q], independent, sketch.count()));
+    const Interval interval = quantile_interval(buckets, among(ranks_of(independent)[q], independent, sketch.count()));
     result_.overall_quantiles.push_back(sketch.quantile(result_.levels[q]));
     result_.overall_quantiles_ci_low.push_back(interval.low);
     result_.overall_quantiles_ci_high.push_back(interval.high);

@@ -7,8 +7,8 @@
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 10> kMonteCarloKeys{
-    "factors", "samples", "draws", "conf_level", "quantiles", "limits", "judge", "share", "yield", "background"};
+constexpr std::array<std::string_view, 10> kMonteCarloKeys{"factors", "samples", "draws", "conf_level", "quantiles",
+                                                           "limits",  "judge",   "share", "yield",      "background"};
 
 /// Shares between 0 and 1, ascending.
 KeyValue<MonteCarloOptions> quantiles() {
@@ -46,9 +46,7 @@ KeyValue<MonteCarloOptions> judge() {
 }
 
 /// Where the study says nothing else.
-Judge usual_judge(const Analysis& analysis) {
-  return analysis.draws == Draws::per_machine ? Judge::yield : Judge::rms;
-}
+Judge usual_judge(const Analysis& analysis) { return analysis.draws == Draws::per_machine ? Judge::yield : Judge::rms; }
 
 std::string judge_line(const Study& study) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
@@ -69,31 +67,32 @@ std::string yield_line(const Study& study) {
 }
 
 std::vector<StudyRow> monte_carlo_rows() {
-  return {StudyRow{.name = "quantiles",
-                   .value = asked_value(quantiles()),
-                   .meaning = "Shares of the samples that lie below, ascending."},
-          StudyRow{.name = "judge",
-                   .value = asked_value(judge()),
-                   .usual = "`\"rms\"`; with draws = \"per machine\" `\"yield\"`",
-                   .example = "\"rms\"",
-                   .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)",
-                   .lines = judge_line,
-                   .commented = true},
-          StudyRow{.name = "share",
-                   .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::share)),
-                   .usual = "",
-                   .example = "0.9973",
-                   .meaning = "With judge = \"share\", and required there: the share of the draws.",
-                   .lines = share_line,
-                   .commented = true},
-          StudyRow{.name = "yield",
-                   .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::yield)),
-                   .usual = "none: the yield is found, and not judged",
-                   .example = "0.9973",
-                   .meaning = "With judge = \"yield\": the share of the machines that must be within all limits. PASS or "
-                              "FAIL where conf_level of one-sided bounds show it, else undecided.",
-                   .lines = yield_line,
-                   .commented = true}};
+  return {
+      StudyRow{.name = "quantiles",
+               .value = asked_value(quantiles()),
+               .meaning = "Shares of the samples that lie below, ascending."},
+      StudyRow{.name = "judge",
+               .value = asked_value(judge()),
+               .usual = "`\"rms\"`; with draws = \"per machine\" `\"yield\"`",
+               .example = "\"rms\"",
+               .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)",
+               .lines = judge_line,
+               .commented = true},
+      StudyRow{.name = "share",
+               .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::share)),
+               .usual = "",
+               .example = "0.9973",
+               .meaning = "With judge = \"share\", and required there: the share of the draws.",
+               .lines = share_line,
+               .commented = true},
+      StudyRow{.name = "yield",
+               .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::yield)),
+               .usual = "none: the yield is found, and not judged",
+               .example = "0.9973",
+               .meaning = "With judge = \"yield\": the share of the machines that must be within all limits. PASS or "
+                          "FAIL where conf_level of one-sided bounds show it, else undecided.",
+               .lines = yield_line,
+               .commented = true}};
 }
 
 void check_share(const Study& study, const StudySection& section) {

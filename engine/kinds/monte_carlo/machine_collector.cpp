@@ -136,8 +136,8 @@ MachineResult MachineCollector::machines(const MachineSums& sums) const {
   for (const BinSpread& spread : table_->spreads()) {
     found.bin_error.insert(found.bin_error.end(), spread.mean.begin(), spread.mean.end());
   }
-  found.effects = main_effects(effects.first(at_poses), effects[at_poses], table_->spreads(), responses,
-                               analysis_->conf_level);
+  found.effects =
+      main_effects(effects.first(at_poses), effects[at_poses], table_->spreads(), responses, analysis_->conf_level);
   found.effects_on_largest = main_effects(effects.subspan(at_poses + 1, 1), effects[at_poses + 1], table_->spreads(),
                                           responses, analysis_->conf_level);
   if (sums.scores) found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
@@ -170,9 +170,8 @@ MonteCarloResult MachineCollector::result() && {
 
 Bytes MachineCollector::state() const {
   ByteWriter to;
-  for (const std::uint64_t number :
-       std::array<std::uint64_t, 5>{kKind, table_->responses(), poses(), table_->scales().size(),
-                                    table_->plan().samples()}) {
+  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, table_->responses(), poses(),
+                                                                 table_->scales().size(), table_->plan().samples()}) {
     to.number(number);
   }
   to.number(sums_.empty() ? 0 : 1);

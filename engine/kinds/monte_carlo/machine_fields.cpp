@@ -40,9 +40,15 @@ Group<MachineValues> values_group(const std::string& path, const std::string& wh
             "Lower end of an interval for the quantile of the distribution, from order statistics (binomial)"},
            {"quantiles_ci_high", &Values::quantiles_ci_high, kByResponseQuantile, kResponseUnit,
             "Upper end of an interval for the quantile of the distribution, from order statistics (binomial)"},
-           {"histogram_edges", &Values::histogram_edges, {"response", "edge"}, kResponseUnit,
+           {"histogram_edges",
+            &Values::histogram_edges,
+            {"response", "edge"},
+            kResponseUnit,
             "Edges of the bins, as /monte_carlo/histogram_edges"},
-           {"histogram_counts", &Values::histogram_counts, {"response", "bin"}, "1",
+           {"histogram_counts",
+            &Values::histogram_counts,
+            {"response", "bin"},
+            "1",
             "Machines in each bin, as /monte_carlo/histogram_counts"}}};
 }
 
@@ -64,7 +70,10 @@ const Group<YieldResult> kYield{
      {"rejects", &YieldResult::rejects, {}, "1", "Machines that are not within every limit at every pose"},
      {"machines", &YieldResult::machines, {}, "1", "Machines that were tried"},
      {"unsolved", &YieldResult::unsolved, {}, "1", "Of these, machines with a pose that is not solved"},
-     {"unsolved_pass", &YieldResult::unsolved_pass, {}, "1",
+     {"unsolved_pass",
+      &YieldResult::unsolved_pass,
+      {},
+      "1",
       "The yield if samples that are not solved were within every limit"},
      {"unsolved_pass_ci_low", &YieldResult::unsolved_pass_ci_low, {}, "1", "Lower" + kPearson},
      {"unsolved_pass_ci_high", &YieldResult::unsolved_pass_ci_high, {}, "1", "Upper" + kPearson},
@@ -107,13 +116,12 @@ Group<MainEffects> curves_group(const std::string& path, const std::string& what
            {"ci_high", &MainEffects::ci_high, kByResponseFactorBin, kResponseUnit, "Upper end of Student's interval"}}};
 }
 
-const Group<MainEffects> kCurves =
-    curves_group("/monte_carlo/main_effect", "the mean over all poses of each response");
+const Group<MainEffects> kCurves = curves_group("/monte_carlo/main_effect", "the mean over all poses of each response");
 const Group<MainEffects> kCurvesOfLargest =
     curves_group("/machines/largest/main_effect", "the largest magnitude over all poses of each response");
 
-const Fields<MachineResult> kBins{{"error", &MachineResult::bin_error, kByFactorBin, kFactorUnit,
-                                   "Mean of the error in its bin"}};
+const Fields<MachineResult> kBins{
+    {"error", &MachineResult::bin_error, kByFactorBin, kFactorUnit, "Mean of the error in its bin"}};
 
 template <class Found>
 void show_all_axes(ResultBuilder& result, const std::string& group, const Fields<Found>& fields) {
@@ -178,11 +186,8 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
 
 /// S1 of each error on each response, as SALib names them.
 CsvTable index_table(const StoredResult& result, const std::string& name, const MainEffects& effects) {
-  CsvTable table{name,
-                 {"factor", [&](std::size_t p) { return result.factors[p].name; }},
-                 result.factors.size(),
-                 {},
-                 {}};
+  CsvTable table{
+      name, {"factor", [&](std::size_t p) { return result.factors[p].name; }}, result.factors.size(), {}, {}};
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const std::size_t first = r * result.factors.size();
     const std::string& response = result.responses[r].name;

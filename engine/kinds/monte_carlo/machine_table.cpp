@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "engine/base/contract.h"
-#include "engine/run/evaluate_unit.h"
-#include "engine/run/result.h"
 
 namespace poesy {
 namespace {
@@ -17,38 +14,16 @@ constexpr std::size_t kMostEffectBytes = std::size_t{2} << 20U;
 
 /// At how many poses main effects fit into that, beside those of machines.
 std::size_t count_effect_poses(std::size_t poses, std::size_t responses, std::size_t errors) {
-  const std::size_t bytes = 3 * sizeof(double) * kEffectBins * std::max<std::size_t>(1, responses * errors);
+  const std::size_t bytes = 2 * sizeof(double) * kEffectBins * std::max<std::size_t>(1, responses * errors);
   const std::size_t fit = kMostEffectBytes / bytes;
   return std::min({poses, MachineTable::kMostEffectPoses, std::max<std::size_t>(fit, 3) - 2});
 }
 
-/// Means of some values each, 0 where there are none.
-class Means {
- public:
-  explicit Means(std::size_t count) : sum_(count), values_(count) {}
-
-  void add(std::size_t k, double value) {
-    sum_[k] += value;
-    ++values_[k];
-  }
-  std::vector<double> get() const {
-    std::vector<double> means(sum_.size());
-    for (std::size_t k = 0; k < means.size(); ++k) {
-      if (values_[k] > 0) means[k] = sum_[k] / static_cast<double>(values_[k]);
-    }
-    return means;
-  }
-
- private:
-  std::vector<double> sum_;
-  std::vector<std::size_t> values_;
-};
-
 }  // namespace
 
-MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis& analysis)
+MachineTable::MachineTable(const Plan& plan, std::size_t responses, const Analysis& analysis)
     : plan_(&plan),
-      responses_(model.description().responses.size()),
+      responses_(responses),
       has_limits_(!analysis.limits.empty()),
       limits_(responses_, std::numeric_limits<double>::infinity()) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
@@ -63,7 +38,6 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
   const std::size_t poses = plan.poses().size();
   const std::size_t count = count_effect_poses(poses, responses_, plan.factors().size());
   for (std::size_t n = 0; n < count; ++n) effect_poses_.emplace_back(n * poses / count);
-  set_shifts(model);
 }
 
 std::size_t MachineTable::unit_machines(std::size_t poses) {
@@ -83,32 +57,6 @@ WorkUnit MachineTable::unit(std::size_t n) const {
   POESY_EXPECTS(n < units());
   const std::size_t each = unit_machines(plan_->poses().size());
   return {0, PoseIndex(0), SampleIndex(n * each), std::min(each, plan_->samples() - n * each)};
-}
-
-void MachineTable::set_shifts(const Model& model) {
-  constexpr std::size_t kMost = 32;
-  const std::size_t machines = std::min(kMost, plan_->samples());
-  PoseUnitEvaluator evaluator(*plan_, model);
-  std::vector<double> largest(responses_ * machines);
-  Means of_machines(responses_);
-  for (const PoseIndex pose : effect_poses_) {
-    const UnitOutcomes outcomes = evaluator.solve(WorkUnit{0, pose, SampleIndex(0), machines});
-    Means here(responses_);
-    for (std::size_t b = 0; b < machines; ++b) {
-      if (!counts(outcomes.status[b], plan_->not_converged())) continue;
-      for (std::size_t r = 0; r < responses_; ++r) {
-        const double value = outcomes.responses[r * machines + b];
-        here.add(r, value);
-        of_machines.add(r, value);
-        largest[r * machines + b] = std::max(largest[r * machines + b], std::abs(value));
-      }
-    }
-    shifts_.push_back(here.get());
-  }
-  shifts_.push_back(of_machines.get());
-  Means of_largest(responses_);
-  for (std::size_t k = 0; k < largest.size(); ++k) of_largest.add(k / machines, largest[k]);
-  shifts_.push_back(of_largest.get());
 }
 
 }  // namespace poesy

@@ -33,8 +33,7 @@ MachineSums::MachineSums(const MachineTable& table)
       largest(table.responses()),
       rms(table.responses()) {
   if (table.has_limits()) scores.emplace(table.scales());
-  effects.reserve(table.shifts().size());
-  for (const std::vector<double>& shift : table.shifts()) effects.emplace_back(table.scales().size(), shift);
+  effects.assign(table.effects(), MainEffectSums(table.scales().size(), table.responses()));
 }
 
 void MachineSums::merge(const MachineSums& later) {
@@ -54,11 +53,12 @@ void MachineSums::write(ByteWriter& to) const {
 
 MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
   MachineSums sums(table);
-  for (auto* moments : {&sums.at_pose, &sums.mean, &sums.largest, &sums.rms}) read_each(from, moments->size(), *moments);
+  for (auto* moments : {&sums.at_pose, &sums.mean, &sums.largest, &sums.rms})
+    read_each(from, moments->size(), *moments);
   if (sums.scores) sums.scores = ScoreSums::read(from, table.scales());
   sums.effects.clear();
-  for (const std::vector<double>& shift : table.shifts()) {
-    sums.effects.push_back(MainEffectSums::read(from, table.scales().size(), shift));
+  for (std::size_t k = 0; k < table.effects(); ++k) {
+    sums.effects.push_back(MainEffectSums::read(from, table.scales().size(), table.responses()));
   }
   return sums;
 }
@@ -91,18 +91,18 @@ MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::
 MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Model& model)
     : UnitSolver(table.plan(), model, table.scales().size()), table_(&table) {
   const std::size_t machines = MachineTable::unit_machines(table.plan().poses().size());
-  bins_.resize(table.scales().size() * machines);
   counts_.resize(machines);
   kept_.reserve(machines);
 }
 
-void MachineUnitEvaluator::draw_all(const WorkUnit& unit) {
-  for (std::size_t v = 0; v < table_->scales().size(); ++v) {
-    const std::span row = std::span(values_).subspan(v * unit.count, unit.count);
-    fill_uniforms(plan_->address(v, unit.pose), unit.first, row);
-    effect_bins(row, std::span(bins_).subspan(v * unit.count, unit.count));
-    plan_->distributions()[v].transform(row);
-  }
+EffectBins MachineUnitEvaluator::draw_all(const WorkUnit& unit) {
+  const std::size_t errors = table_->scales().size();
+  const auto row = [&](std::size_t v) { return std::span(values_).subspan(v * unit.count, unit.count); };
+  for (std::size_t v = 0; v < errors; ++v) fill_uniforms(plan_->address(v, unit.pose), unit.first, row(v));
+  const std::span<const double> uniforms = std::span(values_).first(errors * unit.count);
+  EffectBins bins(uniforms, errors);
+  for (std::size_t v = 0; v < errors; ++v) plan_->distributions()[v].transform(row(v));
+  return bins;
 }
 
 std::span<const double> MachineUnitEvaluator::only(std::span<const double> values,
@@ -115,7 +115,8 @@ std::span<const double> MachineUnitEvaluator::only(std::span<const double> value
   return kept_;
 }
 
-void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, MachineBlock& block, MachineUnit& found) {
+void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins,
+                                      MachineBlock& block, MachineUnit& found) {
   const UnitOutcomes outcomes = UnitSolver::solve(PoseIndex(pose), plan_->factors(), unit.count, 0.0);
   const std::span ok = std::span(counts_).first(unit.count);
   for (std::size_t b = 0; b < unit.count; ++b) {
@@ -134,12 +135,12 @@ void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, Ma
   const auto place = std::ranges::find(table_->effect_poses(), PoseIndex(pose));
   if (place == table_->effect_poses().end()) return;
   const auto k = static_cast<std::size_t>(place - table_->effect_poses().begin());
-  found.sums->effects[k].add(std::span(bins_).first(table_->scales().size() * unit.count), outcomes.responses, ok);
+  found.sums->effects[k].add(bins, outcomes.responses, ok);
 }
 
-void MachineUnitEvaluator::add_machines(const MachineBlock& block, std::size_t poses, MachineUnit& found) {
+void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found) {
   const std::size_t machines = block.machines();
-  for (double& sum : sum_) sum /= static_cast<double>(poses);
+  for (double& sum : sum_) sum /= static_cast<double>(block.poses());
   const std::vector<double> largest = block.largest();
   const std::vector<double> rms = block.root_mean_square();
   const auto of_response = [&](const std::vector<double>& values, std::size_t r) {
@@ -152,7 +153,6 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, std::size_t p
     found.rms.emplace_back(of_response(rms, r));
     found.sums->rms[r] = Moments::of(of_response(rms, r));
   }
-  const std::span<const std::uint8_t> bins = std::span(bins_).first(table_->scales().size() * machines);
   const std::size_t at_poses = table_->effect_poses().size();
   found.sums->effects[at_poses].add(bins, sum_, block.solved());
   found.sums->effects[at_poses + 1].add(bins, largest, block.solved());
@@ -168,12 +168,12 @@ MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   found.at_pose.reserve(poses * responses_);
   found.solves.resize(poses);
   found.failed.resize(poses);
-  draw_all(unit);
+  const EffectBins bins = draw_all(unit);
   sum_.assign(responses_ * unit.count, 0.0);
   MachineBlock block(table_->limits(), unit.count);
-  for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, block, found);
+  for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);
   found.counts = block.counts();
-  add_machines(block, poses, found);
+  add_machines(block, bins, found);
   found.total = total_of(found.solves);
   return found;
 }

@@ -26,7 +26,7 @@ struct MachineSums {
   std::vector<Moments> largest;         ///< [R] of the machines' largest magnitudes
   std::vector<Moments> rms;             ///< [R] of the machines' root mean squares
   std::optional<ScoreSums> scores;      ///< where there are limits
-  std::vector<MainEffectSums> effects;  ///< in the order of MachineTable::shifts()
+  std::vector<MainEffectSums> effects;  ///< as MachineTable::effects() counts them
 
   /// Of no machines.
   explicit MachineSums(const MachineTable& table);
@@ -66,14 +66,15 @@ class MachineUnitEvaluator : private UnitSolver {
   MachineUnit operator()(std::size_t n);
 
  private:
-  void draw_all(const WorkUnit& unit);
-  void solve_pose(const WorkUnit& unit, std::size_t pose, MachineBlock& block, MachineUnit& found);
-  void add_machines(const MachineBlock& block, std::size_t poses, MachineUnit& found);
+  /// Fills values_, and gives the bins into which they fall.
+  EffectBins draw_all(const WorkUnit& unit);
+  void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
+                  MachineUnit& found);
+  void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
   /// Those of [B] values whose machine or sample counts.
   std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
 
   const MachineTable* table_;
-  std::vector<std::uint8_t> bins_;    ///< [P x B]
   std::vector<std::uint8_t> counts_;  ///< [B] at the pose
   std::vector<double> sum_;           ///< [R x B] over the poses
   std::vector<double> kept_;          ///< of one response

@@ -42,24 +42,25 @@ struct MachineValues {
 /// The share of machines that are within every limit at every pose. A machine that is not solved at a pose is a reject,
 /// unless said otherwise. Intervals: Clopper and Pearson, two-sided, at conf_level. NaN for a response without a limit.
 struct YieldResult {
-  double conf_level = 0.95;                ///< of all intervals
-  double value = 0.0;                      ///< the yield
-  double ci_low = 0.0;                     ///< of it
-  double ci_high = 0.0;                    ///< of it
-  std::uint64_t rejects = 0;               ///< machines that are not within every limit at every pose
-  std::uint64_t machines = 0;              ///< that were tried
-  std::uint64_t unsolved = 0;              ///< of these, those with a pose that is not solved
-  double unsolved_pass = 0.0;              ///< the yield if samples that are not solved were within every limit
-  double unsolved_pass_ci_low = 0.0;       ///< of it
-  double unsolved_pass_ci_high = 0.0;      ///< of it
-  std::uint64_t unsolved_pass_rejects = 0; ///< then
-  std::vector<double> by_response = {};         ///< [R] share of the machines that are within this limit at every pose
-  std::vector<double> by_response_ci_low = {};  ///< [R]
-  std::vector<double> by_response_ci_high = {}; ///< [R]
-  std::vector<double> worst_pose_share = {};    ///< [R x M] share of the machines that are not within this limit at the pose
-  std::vector<double> gradient = {};            ///< [P] of the yield by the sigma of each error; NaN where it has no score
-  std::vector<double> gradient_ci_low = {};     ///< [P] central limit theorem
-  std::vector<double> gradient_ci_high = {};    ///< [P]
+  double conf_level = 0.95;                      ///< of all intervals
+  double value = 0.0;                            ///< the yield
+  double ci_low = 0.0;                           ///< of it
+  double ci_high = 0.0;                          ///< of it
+  std::uint64_t rejects = 0;                     ///< machines that are not within every limit at every pose
+  std::uint64_t machines = 0;                    ///< that were tried
+  std::uint64_t unsolved = 0;                    ///< of these, those with a pose that is not solved
+  double unsolved_pass = 0.0;                    ///< the yield if samples that are not solved were within every limit
+  double unsolved_pass_ci_low = 0.0;             ///< of it
+  double unsolved_pass_ci_high = 0.0;            ///< of it
+  std::uint64_t unsolved_pass_rejects = 0;       ///< then
+  std::vector<double> by_response = {};          ///< [R] share of the machines that are within this limit at every pose
+  std::vector<double> by_response_ci_low = {};   ///< [R]
+  std::vector<double> by_response_ci_high = {};  ///< [R]
+  std::vector<double> worst_pose_share =
+      {};                             ///< [R x M] share of the machines that are not within this limit at the pose
+  std::vector<double> gradient = {};  ///< [P] of the yield by the sigma of each error; NaN where it has no score
+  std::vector<double> gradient_ci_low = {};   ///< [P] central limit theorem
+  std::vector<double> gradient_ci_high = {};  ///< [P]
 };
 
 /// How much of the scatter of each response an error makes alone: P errors, E bins.

@@ -118,7 +118,7 @@ class MachineWork {
       : plan_(plan),
         model_(model),
         analysis_(analysis),
-        table_(plan, model, analysis),
+        table_(plan, model.description().responses.size(), analysis),
         units_(options.shard.value_or(Shard()).of(table_.units())),
         rule_(rule_of(model, analysis)),
         rounds_(plan, rule_),

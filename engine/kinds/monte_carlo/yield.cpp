@@ -87,11 +87,10 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEff
     for (std::size_t p = 0; p < errors.size(); ++p) {
       std::vector<BinnedVariance> variances;
       for (const MainEffectSums& sums : at_poses) variances.push_back(sums.variance(r, p, errors[p]));
-      append(first_order_index(variances, AcrossPoses::same_machines, conf_level), effects.s1, effects.s1_ci_low,
+      append(first_order_index(variances, Dependence::unknown, conf_level), effects.s1, effects.s1_ci_low,
              effects.s1_ci_high);
-      const EffectCurve bins = curve.curve(r, p, conf_level);
-      for (std::size_t k = 0; k < kEffectBins; ++k) {
-        append({bins.mean[k], bins.interval[k]}, effects.mean, effects.ci_low, effects.ci_high);
+      for (const Estimate& bin : curve.curve(r, p, conf_level)) {
+        append(bin, effects.mean, effects.ci_low, effects.ci_high);
       }
     }
   }
