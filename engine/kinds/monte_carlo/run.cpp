@@ -1,5 +1,6 @@
 #include "engine/kinds/monte_carlo/kind.h"
 
+#include <bit>
 #include <utility>
 
 #include "engine/kinds/monte_carlo/collector.h"
@@ -200,6 +201,27 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return found;
 }
 
+/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places in
+/// the tree, and what pieces in flight hold.
+MemoryOutlook machine_memory(const Study& study, const Plan& plan) {
+  constexpr std::size_t kSketch = 20'000;
+  constexpr std::size_t kPackedSketch = 6000;
+  constexpr std::size_t kInFlight = 8;
+  const std::size_t responses = study.model().responses.size();
+  const std::size_t errors = plan.factors().size();
+  const std::size_t cells = plan.poses().size() * responses;
+  const MachineTable table(plan, responses, study.analysis);
+  const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512;
+  const std::size_t nodes = std::bit_width(table.units()) * sums;
+  const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(std::uint32_t);
+  const std::size_t numbers = (cells + 6 * responses * errors * (1 + kEffectBins)) * sizeof(double);
+  return {cells * kSketch + nodes + kInFlight * piece, cells * kPackedSketch + nodes, numbers, numbers};
+}
+
+MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
+  return {a.accumulators + b.accumulators, a.state + b.state, a.result + b.result, a.file + b.file};
+}
+
 MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
   constexpr std::size_t kNumbers = 8;  // mean, its interval, std, min, max, count, rms
   const std::size_t responses = study.model().responses.size();
@@ -211,6 +233,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
                               responses * (kStoredMoments + (2 + of_sketch) * sizeof(double)) + kStoredSolves,
                               numbers + sizeof(SolveCounts), numbers + kSolverColumns};
   MemoryOutlook memory = times(plan.poses().size(), of_pose);
+  if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, plan));
   if (!plan.adaptive()) return memory;
   // Packed sketches of finished poses, for the next round.
   constexpr std::size_t kPackedSketch = 6000;
