@@ -14,7 +14,7 @@ namespace poesy {
 /// Machines that are rejected, or samples at one pose.
 struct Rejects {
   std::uint64_t strict = 0;   ///< a sample that does not count (not solved) is a reject
-  std::uint64_t lenient = 0;  ///< a sample that does not count is no reject; never more than strict
+  std::uint64_t lenient = 0;  ///< a sample that does not count is no reject; at most as many
 
   friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Both.
 };
@@ -38,7 +38,7 @@ struct MachineCounts {
   friend bool operator==(const MachineCounts&, const MachineCounts&) = default;  ///< All counts.
 };
 
-/// B machines, to which the outcomes of one pose after another are added. Memory: 18 bytes for each response of a
+/// B machines, to which the outcomes of one pose after another are added. Memory: 17 bytes for each response of a
 /// machine, whatever the number of poses.
 /// A machine with a sample that does not count at any pose is rejected (strict), and has neither a largest magnitude
 /// nor a root mean square: both are NaN, because what is known of the other poses alone would flatter it. solved() says
@@ -67,8 +67,13 @@ class MachineBlock {
   std::vector<double> root_mean_square() const;
 
  private:
+  std::vector<double> limits_;  ///< [R]
   std::size_t poses_ = 0;
-  std::vector<std::uint8_t> solved_;  ///< [B]
+  std::vector<std::uint8_t> solved_;  ///< [B] 1 where each sample counts
+  std::vector<double> largest_;       ///< [R x B] of the poses where the machine is solved
+  std::vector<double> squares_;       ///< [R x B] sums, likewise
+  std::vector<std::uint8_t> beyond_;  ///< [R x B] 1 where the limit is broken at a pose
+  std::vector<Rejects> at_pose_;      ///< [M x R]
 };
 
 }  // namespace poesy

@@ -49,8 +49,11 @@ class ScoreSums {
   static ScoreSums read(ByteReader& from, std::span<const ErrorScale> errors);
 
  private:
+  std::vector<ErrorScale> errors_;  ///< [P]
   std::uint64_t machines_ = 0;
   std::uint64_t rejects_ = 0;
+  std::vector<double> sums_;     ///< [P] of z^2 - 1 over the rejects
+  std::vector<double> squares_;  ///< [P] of its square
 };
 
 }  // namespace poesy
