@@ -246,8 +246,11 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
 
 Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const auto plan = std::make_shared<const Plan>(study, poses);
-  return {.solves = counted_things(poses.size(), "poses x ") + samples_text(*plan) + " samples of " +
-                    counted_things(plan->factors().size(), "errors together = ") + solves_text(*plan, 1),
+  const bool machines = plan->draws() == Draws::per_machine;
+  return {.solves = counted_things(poses.size(), "poses x ") + samples_text(*plan) +
+                    (machines ? " machines with " : " samples of ") +
+                    counted_things(plan->factors().size(), machines ? "errors = " : "errors together = ") +
+                    solves_text(*plan, 1),
           .memory = monte_carlo_memory(study, *plan),
           .shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model), 1.0)},
           .by_one = {},

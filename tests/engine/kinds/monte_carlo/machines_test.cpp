@@ -147,7 +147,8 @@ TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
       const bool solved = !(pose[1] > 0.0 && errors[0] > FailingModel::kMost);
       for (std::size_t r = 0; r < 2; ++r) {
         double sum = 0.0;
-        for (std::size_t f = 0; f < 3; ++f) sum += test::FakeModel::weight(test::FakeModel::kArm, r, f, pose) * errors[f];
+        for (std::size_t f = 0; f < 3; ++f)
+          sum += test::FakeModel::weight(test::FakeModel::kArm, r, f, pose) * errors[f];
         const bool beyond = std::abs(sum) > study.analysis.limits[r].most;
         at_pose[r * kPoses + m] += beyond || !solved ? 1 : 0;
         bad = bad || (solved && beyond);
