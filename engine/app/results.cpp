@@ -16,6 +16,7 @@
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
+#include "engine/report/display.h"
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
@@ -71,11 +72,28 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
   return kTooManyNotConverged;
 }
 
+ExitCode judge_yield(const YieldVerdict& yield, const std::string& study_path, const std::string& remedy) {
+  using enum YieldVerdict::Decision;
+  const std::string found =
+      fmt::format("the yield is {} ({} to {} at {})", percent_text(yield.value), percent_text(yield.ci_low),
+                  percent_text(yield.ci_high), percent_text(yield.conf_level));
+  if (yield.decision == undecided) {
+    say(Message::warning, fmt::format("{}: {}, which does not tell whether it is {}; take more samples, whose number "
+                                      "may grow with --resume if the checkpoint is kept",
+                                      study_path, found, percent_text(yield.asked)));
+  }
+  if (yield.decision != not_kept) return kDone;
+  say(Message::error,
+      fmt::format("{}: {}, below the {} that is asked for; {}", study_path, found, percent_text(yield.asked), remedy));
+  return kLimitNotKept;
+}
+
 ExitCode judge_limits(const StoredResult& result, const std::string& study_path, const std::string& remedy) {
   const std::optional<Table> table = limits_table(result);
   if (!table) return kDone;
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
+  if (verdicts.yield) return judge_yield(*verdicts.yield, study_path, remedy);
   for (const LimitVerdict& one : verdicts.limits) {
     if (one.passed) continue;
     const NamedUnit& response = result.responses[one.response];

@@ -91,7 +91,8 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
   rest.seed = 0;
   rest.title.clear();
   rest.max_not_converged = 1.0;  // judges the run when it is done
-  rest.analysis.limits.clear();  // likewise
+  // Likewise, but that machines are counted under them.
+  if (study.analysis.draws == Draws::per_pose) rest.analysis.limits.clear();
   rest.analysis.samples = 0;
   return {.poesy_version = poesy_version(),
           .git_commit = git_commit(),

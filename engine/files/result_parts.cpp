@@ -53,20 +53,26 @@ const Axes kLimited{"limited_response"};
 /// In the order of the columns of limits.csv.
 const Fields<LimitVerdict> kLimitFields{
     {"value", &LimitVerdict::value, kLimited, kResponseUnit,
-     "What is compared with it, a magnitude; infinite or NaN where too few samples were solved"},
+     "What is compared with it, a magnitude; infinite or NaN where too few samples were solved, NaN where nothing is "
+     "compared"},
     {"limit", &LimitVerdict::limit, kLimited, kResponseUnit, "The limit"},
     {"passed", &LimitVerdict::passed, kLimited, "1", "1: the limit is kept; 0: it is not"},
-    {"tried", &LimitVerdict::tried, kLimited, "1", "Draws at all poses together; of an evaluation its rows of errors"},
+    {"tried", &LimitVerdict::tried, kLimited, "1",
+     "Draws at all poses together; by yield machines; of an evaluation its rows of errors"},
     {"within", &LimitVerdict::within, kLimited, "1",
-     "Of these, those within the limit, a row at each of its poses; what was not solved is not"},
+     "Of these, those within the limit, a machine or a row at each of its poses; what was not solved is not"},
     {"pose", &LimitVerdict::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
     {"row", &LimitVerdict::row, kLimited, "1",
      "Row of errors, or case, of the value, from 0; -1 where there are none"}};
 
 constexpr std::string_view kLimitsMeaning =
     "How each limit of [analysis.limits] was kept. judge: what is compared with it: rms, the root mean square over the "
-    "samples of all poses; share, what a share of the draws stays within at the worst pose; row, the largest magnitude "
-    "of any row of errors";
+    "samples of all poses; share, what a share of the draws stays within at the worst pose; yield, what the share of "
+    "machines that the study asks for stays within at all poses, each limit taken alone (where it asks for none, a "
+    "limit "
+    "is kept if every machine is within it), while /yield judges all limits together; row, the largest magnitude of "
+    "any "
+    "row of errors";
 
 /// What a convergence says in addition to its course: one number for each quantity, or for each slot.
 Fields<ConvergenceResult> end_fields(const CourseWords& words) {

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/report/display.h"
 #include "engine/report/report_kind.h"
+#include "engine/stats/proportion.h"
 
 namespace poesy {
 namespace {
@@ -41,6 +42,68 @@ std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();
   return (named ? result.row_names[*verdict.row] + ", " : "") + place_text(result, *verdict.pose);
+}
+
+std::string yield_caption(const YieldVerdict& yield) {
+  using enum YieldVerdict::Decision;
+  const std::string found = fmt::format("{} of {} within all limits at all poses", percent_text(yield.value),
+                                        counted(yield.machines, "machine is", "machines are"));
+  const std::string asked = percent_text(yield.asked);
+  switch (yield.decision) {
+    case kept:
+      return fmt::format("PASS: the yield is at least {}: {}", asked, found);
+    case not_kept:
+      return fmt::format("FAIL: the yield is below {}: {}", asked, found);
+    case undecided:
+      return fmt::format("UNDECIDED: so few machines do not tell whether the yield is {}: {}", asked, found);
+    case not_asked:
+      break;
+  }
+  return "Yield: " + found;
+}
+
+/// The share k / n, with its interval.
+void add_share(std::vector<Cell>& row, std::uint64_t good, const YieldVerdict& yield) {
+  const Estimate estimate = proportion(good, yield.machines, yield.conf_level);
+  for (const double share : {estimate.value, estimate.interval.low, estimate.interval.high}) {
+    row.push_back(percent_cell(share));
+  }
+  row.push_back(count_cell(yield.machines - good));
+  row.push_back(count_cell(yield.machines));
+}
+
+/// The yield with its interval, then what each limit alone makes of it.
+Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts) {
+  const YieldVerdict& yield = *verdicts.yield;
+  Table table{.name = "yield",
+              .caption = yield_caption(yield),
+              .columns = {text_column("limit_of", "limit of"), percent_column("yield", "yield"),
+                          percent_column("low", "low"), percent_column("high", "high"),
+                          number_column("rejects", "rejects"), number_column("machines", "machines", "", 2),
+                          number_column("limit", "limit", "", 1), text_column("unit", "unit", 1)},
+              .notes = {fmt::format("yield: the share of the machines that are within the limit at every pose; low, "
+                                    "high: its {} interval (Clopper and Pearson)",
+                                    percent_text(yield.conf_level))}};
+  std::vector<Cell> all{text_cell("all responses")};
+  add_share(all, yield.machines - yield.rejects, yield);
+  all.insert(all.end(), {text_cell(""), text_cell("")});
+  table.rows.push_back(std::move(all));
+  for (const LimitVerdict& one : verdicts.limits) {
+    const Unit& unit = display(result.responses[one.response]);
+    std::vector<Cell> row{text_cell(result.responses[one.response].name)};
+    add_share(row, one.within, yield);
+    row.push_back(number_cell(one.limit / unit.si, kDigits));
+    row.push_back(text_cell(unit.name));
+    table.rows.push_back(std::move(row));
+  }
+  if (yield.unsolved > 0) {
+    table.notes.push_back(fmt::format(
+        "{} of the rejects {} within all limits where {} solved; if that made {} good, the yield would be {}",
+        count_text(yield.unsolved), yield.unsolved == 1 ? "is" : "are", yield.unsolved == 1 ? "it is" : "they are",
+        yield.unsolved == 1 ? "it" : "them",
+        percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines))));
+  }
+  return table;
 }
 
 constexpr std::size_t kMostShown = 5;
@@ -130,6 +193,7 @@ const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response)
 std::optional<Table> limits_table(const StoredResult& result) {
   const std::optional<LimitVerdicts>& verdicts = result.verdicts;
   if (!verdicts) return std::nullopt;
+  if (verdicts->yield) return yield_table(result, *verdicts);
   std::size_t kept = 0;
   Table table{.name = "limits",
               .caption = {},

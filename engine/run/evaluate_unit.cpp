@@ -115,7 +115,7 @@ UnitSolver::UnitSolver(const Plan& plan, const Model& model, std::size_t varied)
       iterations_(Plan::kUnitSamples) {}
 
 void UnitSolver::draw(const WorkUnit& unit, std::size_t slot, std::span<double> row) const {
-  fill_uniforms({plan_->seed(), Purpose::error_samples, plan_->factors()[slot], unit.pose}, unit.first, row);
+  fill_uniforms(plan_->address(slot, unit.pose), unit.first, row);
   plan_->distributions()[slot].transform(row);
 }
 

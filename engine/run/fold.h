@@ -45,7 +45,7 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
 ///     std::size_t begin_round()              numbers the round's pieces of work 0 .. count - 1, and gives count
 ///     Worker worker() const                  solves pieces, and owns the scratch of one thread
 ///     Piece solve(Worker&, std::size_t n)    solves the n-th piece, on any thread
-///     SolveCounts merge(std::size_t n, const Piece&)   takes the n-th piece, in order; how its solves ended
+///     SolveCounts merge(std::size_t n, Piece&&)   takes the n-th piece, in order; how its solves ended
 ///     void write(std::size_t n, const Piece&, ByteWriter&) const   a piece for rank 0, and its way back:
 ///     Piece read(std::size_t n, ByteReader&)
 ///     SolveCounts solved() const             of all that was merged, in earlier runs as well
@@ -67,8 +67,8 @@ bool fold(Work& work, const RunOptions& options) {
     const bool complete = run_in_order(
         count, options, [&] { return work.worker(); },
         [&](auto& worker, std::size_t n) { return work.solve(worker, n); },
-        [&](std::size_t n, const auto& piece) {
-          const SolveCounts& solves = work.merge(n, piece);
+        [&](std::size_t n, auto&& piece) {
+          const SolveCounts solves = work.merge(n, std::forward<decltype(piece)>(piece));
           progress.solves += solves.total();
           progress.not_converged += solves.not_converged();
           if (options.progress) options.progress(progress);

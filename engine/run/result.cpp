@@ -89,6 +89,7 @@ void append_failures(std::size_t slot, PoseIndex pose, const FailedSamples& cell
 }
 
 bool LimitVerdicts::passed() const {
+  if (yield) return yield->decision != YieldVerdict::Decision::not_kept;
   return std::ranges::all_of(limits, [](const LimitVerdict& one) { return one.passed; });
 }
 

@@ -137,14 +137,37 @@ struct LimitVerdict {
   std::optional<std::size_t> row = std::nullopt;   ///< of an evaluation: the row of `value`
 };
 
+/// The share of machines that are within all limits at all poses, for Judge::yield. A machine that is not solved at a
+/// pose is a reject.
+struct YieldVerdict {
+  /// What is shown by the one-sided bounds on the yield (Clopper and Pearson) at conf_level.
+  enum class Decision {
+    not_asked,  ///< no yield was asked for
+    kept,       ///< the lower bound is at least the yield that was asked for
+    not_kept,   ///< the upper bound is below it
+    undecided   ///< the machines are too few to tell
+  };
+  Decision decision = Decision::not_asked;  ///< on `asked`
+  double asked = 0.0;                       ///< 0: none
+  double conf_level = 0.95;                 ///< of the interval, and of each bound
+  double value = 0.0;                       ///< share of the machines that are no rejects
+  double ci_low = 0.0;                      ///< of its two-sided interval
+  double ci_high = 0.0;                     ///< likewise
+  std::uint64_t machines = 0;               ///< tried
+  std::uint64_t rejects = 0;                ///< of these, those that are not within every limit at every pose
+  std::uint64_t unsolved = 0;               ///< of the rejects, those that no solved pose rejects
+};
+
 /// All limits of a study.
 struct LimitVerdicts {
   /// By which number draws are judged; none in an evaluation, whose rows are judged one by one.
   std::optional<Judge> judge = std::nullopt;
   double share = 0.0;                ///< for Judge::share: of the draws at each pose
   std::vector<LimitVerdict> limits;  ///< in the order of the responses
+  /// For Judge::yield, which judges all limits together; what `limits` says of each alone decides nothing then.
+  std::optional<YieldVerdict> yield = std::nullopt;
 
-  /// Whether every limit is kept.
+  /// Whether every limit is kept; by Judge::yield, whether it is not shown that the yield is too low.
   bool passed() const;
 };
 

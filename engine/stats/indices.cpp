@@ -1,10 +1,8 @@
 #include "engine/stats/indices.h"
 
 #include <algorithm>
-#include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <numbers>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
@@ -20,12 +18,6 @@ constexpr std::uint64_t kFewestSamples = 5;
 
 double square(double x) { return x * x; }
 
-/// The normal quantile that leaves out (1 - conf_level) / 2 on either side.
-double two_sided_quantile(double conf_level) {
-  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
-  return std::numbers::sqrt2 * boost::math::erf_inv(conf_level);
-}
-
 /// Standard error of the logarithm of the sample variance, without the small-sample factor (Bonett 2006).
 double log_variance_error(const Moments& response) {
   const auto n = static_cast<double>(response.count());
@@ -35,7 +27,7 @@ double log_variance_error(const Moments& response) {
 Interval local_interval(const Moments& response, double value, double conf_level) {
   if (response.count() >= 2 && value == 0.0) return {0.0, 0.0};
   const auto n = static_cast<double>(response.count());
-  const double z = two_sided_quantile(conf_level);
+  const double z = two_sided_normal_quantile(conf_level);
   if (response.count() < kFewestSamples || n <= z) return kUnknown;
   const double factor = n / (n - z);
   const double half = 0.5 * z * factor * log_variance_error(response);
@@ -130,7 +122,7 @@ double recovered(double of_mean, double of_spread, double correlation) {
 
 /// Mean + spread without sampling noise, and the interval of both. Precondition: every pose is known.
 Estimate without_noise(std::span<const LocalIndex> poses, double conf_level) {
-  const double z = two_sided_quantile(conf_level);
+  const double z = two_sided_normal_quantile(conf_level);
   const PoseStatistics s = statistics_over(poses);
   const double of_mean = z * std::sqrt(s.mean_variance);
   const double scale = std::sqrt(s.mean_variance * s.spread2_variance());

@@ -3,22 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 
 #include "engine/base/contract.h"
 #include "engine/base/instruction_sets.h"
 #include "engine/base/nan.h"
+#include "engine/stats/eight_sums.h"
 
 namespace poesy {
 namespace {
-
-/// Eight sums, so that an addition need not wait for the one before, and that they make whole vectors. Value k goes to
-/// sum k mod 8 on every instruction set.
-constexpr std::size_t kSums = 8;
-using Sums = std::array<double, kSums>;
-
-double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
 POESY_EACH_INSTRUCTION_SET double sum_of(std::span<const double> values) {
   Sums sums{};
@@ -111,6 +106,12 @@ double Moments::variance() const {
 
 double Moments::standard_deviation() const { return std::sqrt(variance()); }
 
+double Moments::skewness() const {
+  if (count_ < 2 || m2_ == 0.0) return kNaN;
+  const auto n = static_cast<double>(count_);
+  return std::sqrt(n) * (m3_ / m2_) / std::sqrt(m2_);
+}
+
 double Moments::kurtosis() const {
   if (count_ < 2 || m2_ == 0.0) return kNaN;
   return static_cast<double>(count_) * (m4_ / m2_) / m2_;
@@ -141,6 +142,11 @@ double student_quantile(double freedom, double conf_level) {
   POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
   const boost::math::students_t student(freedom);
   return boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
+}
+
+double two_sided_normal_quantile(double conf_level) {
+  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
+  return std::numbers::sqrt2 * boost::math::erf_inv(conf_level);
 }
 
 Interval mean_interval(const Moments& moments, double conf_level) {

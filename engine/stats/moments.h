@@ -33,6 +33,8 @@ class Moments {
   double mean() const { return mean_; }           ///< 0 when empty.
   double variance() const;                        ///< Sample variance, divided by count - 1; NaN below two values.
   double standard_deviation() const;              ///< Of the sample (n - 1); NaN with fewer than two values.
+  /// Skewness m3 / m2^(3/2) of the sample (0 for what is symmetric); NaN when the variance is zero or undefined.
+  double skewness() const;
   /// Kurtosis m4 / m2^2 of the sample (3 for a normal); NaN when the variance is zero or undefined.
   double kurtosis() const;
 
@@ -56,6 +58,10 @@ double root_mean_square(double mean, double standard_deviation, std::uint64_t co
 /// What a standard error with so many degrees of freedom is multiplied by on either side of a two-sided interval
 /// (Student's t). Preconditions: freedom > 0, 0 < conf_level < 1.
 double student_quantile(double freedom, double conf_level);
+
+/// The z for which a standard normal lies within +-z with this probability: 1.96 for 0.95.
+/// Precondition: 0 < conf_level < 1.
+double two_sided_normal_quantile(double conf_level);
 
 /// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.
 /// Precondition: 0 < conf_level < 1.

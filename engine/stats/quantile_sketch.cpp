@@ -116,6 +116,14 @@ POESY_EACH_INSTRUCTION_SET void from_planes(std::span<const std::byte> planes, s
   }
 }
 
+/// `size` numbers with the old ones from `offset` on, in a list without room to spare.
+template <class Number>
+std::vector<Number> moved_up(const std::vector<Number>& old, std::size_t offset, std::size_t size) {
+  std::vector<Number> moved(size);
+  std::ranges::copy(old, moved.begin() + static_cast<std::ptrdiff_t>(offset));
+  return moved;
+}
+
 }  // namespace
 
 std::uint64_t quantile_rank(double q, std::uint64_t n) {
@@ -167,48 +175,63 @@ BucketedValues BucketedValues::read(ByteReader& from) {
   return values;
 }
 
+void QuantileSketch::Store::wrap(std::size_t k) {
+  if (wraps.empty()) wraps.resize(low.size());
+  ++wraps[k];
+}
+
+void QuantileSketch::Store::add(std::size_t k, std::uint64_t count) {
+  const std::uint64_t sum = low[k] + count;
+  low[k] = static_cast<std::uint16_t>(sum);
+  if (sum <= std::numeric_limits<std::uint16_t>::max()) return;
+  if (wraps.empty()) wraps.resize(low.size());
+  wraps[k] += sum >> 16U;
+}
+
 void QuantileSketch::Store::reach(std::size_t lowest, std::size_t highest) {
   if (lowest > highest) return;
-  if (counts.empty()) first = lowest;
-  if (lowest < first) {
-    counts.insert(counts.begin(), first - lowest, 0);
-    first = lowest;
-  }
-  if (highest >= first + counts.size()) counts.resize(highest - first + 1);
+  if (low.empty()) first = lowest;
+  const std::size_t begin = std::min(first, lowest);
+  const std::size_t size = std::max(first + low.size(), highest + 1) - begin;
+  if (size == low.size()) return;
+  low = moved_up(low, first - begin, size);
+  if (!wraps.empty()) wraps = moved_up(wraps, first - begin, size);
+  first = begin;
 }
 
 void QuantileSketch::Store::merge(const Store& other) {
-  if (other.counts.empty()) return;
-  reach(other.first, other.first + other.counts.size() - 1);
+  if (other.low.empty()) return;
+  reach(other.first, other.first + other.size() - 1);
   const std::size_t offset = other.first - first;
-  for (std::size_t k = 0; k < other.counts.size(); ++k) counts[offset + k] += other.counts[k];
+  for (std::size_t k = 0; k < other.size(); ++k) add(offset + k, other.count(k));
   total += other.total;
 }
 
 double QuantileSketch::Store::magnitude(std::uint64_t k) const {
   POESY_EXPECTS(k >= 1 && k <= total);
   std::size_t at = 0;
-  for (std::uint64_t below = counts[0]; below < k; below += counts[at]) ++at;
+  for (std::uint64_t below = count(0); below < k; below += count(at)) ++at;
   return middle(first + at);
 }
 
 void QuantileSketch::Store::write(ByteWriter& to) const {
-  to.number(counts.size());
-  if (counts.empty()) return;
+  to.number(size());
+  if (low.empty()) return;
   to.number(first);
-  for (const std::uint64_t count : counts) to.number(count);
+  for (std::size_t k = 0; k < size(); ++k) to.number(count(k));
 }
 
 QuantileSketch::Store QuantileSketch::Store::read(ByteReader& from) {
   Store store;
-  store.counts.resize(from.count(1));
-  if (store.counts.empty()) return store;
+  store.low.resize(from.count(1));
+  if (store.low.empty()) return store;
   store.first = static_cast<std::size_t>(from.number_up_to(kLast));
-  if (store.first < kFirstNormal || store.counts.size() > kLast - store.first + 1) {
+  if (store.first < kFirstNormal || store.size() > kLast - store.first + 1) {
     throw BytesError("a histogram has buckets for numbers that do not exist");
   }
-  for (std::uint64_t& count : store.counts) {
-    count = from.number_up_to(std::numeric_limits<std::uint64_t>::max() - store.total);
+  for (std::size_t k = 0; k < store.size(); ++k) {
+    const std::uint64_t count = from.number_up_to(std::numeric_limits<std::uint64_t>::max() - store.total);
+    store.add(k, count);
     store.total += count;
   }
   return store;
@@ -217,13 +240,16 @@ QuantileSketch::Store QuantileSketch::Store::read(ByteReader& from) {
 void QuantileSketch::add(const BucketedValues& values) {
   if (values.negatives != 0) negative_.reach(values.lowest, values.highest);
   if (values.positives != 0) positive_.reach(values.lowest, values.highest);
-  const std::array<std::uint64_t*, 2> counts{positive_.counts.data(), negative_.counts.data()};
+  const std::array<Store*, 2> stores{&positive_, &negative_};
+  const std::array<std::uint16_t*, 2> counts{positive_.low.data(), negative_.low.data()};
   const std::array<std::size_t, 2> first{positive_.first, negative_.first};
   for (const std::uint32_t bits : values.buckets) {
     const std::uint32_t bucket = bits & ~kSign;
     // No branch on the sign, which is as good as random.
     const std::size_t sign = (bits & kSign) != 0 ? 1 : 0;
-    if (bucket >= kFirstNormal) ++counts[sign][bucket - first[sign]];
+    if (bucket < kFirstNormal) continue;
+    const std::size_t at = bucket - first[sign];
+    if (++counts[sign][at] == 0) stores[sign]->wrap(at);
   }
   negative_.total += values.negatives;
   positive_.total += values.positives;
@@ -268,12 +294,12 @@ std::vector<Bucket> QuantileSketch::buckets() const {
     const std::uint64_t before = filled.empty() ? 0 : filled.back().up_to;
     filled.push_back({std::max(lower, min_), std::min(upper, max_), values, before + values});
   };
-  for (std::size_t k = negative_.counts.size(); k-- > 0;) {
-    add(-edge(negative_.first + k + 1), -edge(negative_.first + k), negative_.counts[k]);
+  for (std::size_t k = negative_.size(); k-- > 0;) {
+    add(-edge(negative_.first + k + 1), -edge(negative_.first + k), negative_.count(k));
   }
   add(0.0, 0.0, zeros_);
-  for (std::size_t k = 0; k < positive_.counts.size(); ++k) {
-    add(edge(positive_.first + k), edge(positive_.first + k + 1), positive_.counts[k]);
+  for (std::size_t k = 0; k < positive_.size(); ++k) {
+    add(edge(positive_.first + k), edge(positive_.first + k + 1), positive_.count(k));
   }
   return filled;
 }

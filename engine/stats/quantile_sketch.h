@@ -44,8 +44,9 @@ struct Bucket {
 /// Quantiles of a stream of numbers without keeping them: a histogram whose buckets are the numbers' own leading bits,
 /// which are sign, exponent and the first eight bits of the fraction. Counts are whole numbers, so merging is exact and
 /// neither the order of merging nor how the stream was cut into pieces changes a bit.
-/// Memory: 8 bytes for each bucket between the smallest and the largest magnitude seen, 256 buckets for each factor of
-/// two, for each sign that was seen; at most 4.2 MB a sign, whatever the numbers are.
+/// Memory: 2 bytes for each bucket between the smallest and the largest magnitude seen, 256 buckets for each factor of
+/// two, for each sign that was seen, and 8 more once a bucket holds 65 536 numbers; at most 5.2 MB a sign, whatever the
+/// numbers are.
 class QuantileSketch {
  public:
   /// quantile(q) differs from the order statistic it stands for by at most this part of it. Exact for zero, and for the
@@ -81,8 +82,15 @@ class QuantileSketch {
   struct Store {
     std::size_t first = 0;
     std::uint64_t total = 0;
-    std::vector<std::uint64_t> counts;
+    std::vector<std::uint16_t> low;    ///< counts modulo 2^16: a study with many poses has thousands of sketches
+    std::vector<std::uint64_t> wraps;  ///< how often each went over; empty as long as none did
 
+    std::size_t size() const { return low.size(); }
+    std::uint64_t count(std::size_t k) const { return low[k] + (wraps.empty() ? 0 : wraps[k] << 16U); }
+    /// Adds to bucket first + k.
+    void add(std::size_t k, std::uint64_t count);
+    /// The 16 bits of bucket first + k went over.
+    void wrap(std::size_t k);
     /// Makes room for the buckets from lowest to highest.
     void reach(std::size_t lowest, std::size_t highest);
     void merge(const Store& other);

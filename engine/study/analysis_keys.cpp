@@ -240,6 +240,13 @@ std::vector<StudyRow> shared_rows() {
           .reader = read_samples,
           .lines = samples_lines,
           .shown = shown_samples},
+      StudyRow{.name = "draws",
+               .value = word_at<Draws>(
+                   {{Draws::per_pose, "anew at each pose, so that poses are independent"},
+                    {Draws::per_machine,
+                     "once for all poses: each sample is a machine with its errors, which has them wherever it goes"}},
+                   &Study::analysis, &Analysis::draws),
+               .meaning = "Where errors are drawn."},
       StudyRow{.name = "conf_level",
                .value = number_at(between_0_and_1("0.95"), &Study::analysis, &Analysis::conf_level),
                .may_stay = true,

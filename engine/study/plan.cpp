@@ -25,6 +25,7 @@ Plan::Plan(const Study& study, PoseSet poses)
       adaptive_(study.analysis.adaptive),
       units_per_cell_(units_for(samples_)),
       seed_(study.seed),
+      draws_(study.analysis.draws),
       solver_(study.solver),
       not_converged_(study.not_converged) {
   for (const FactorIndex factor : factors_) background_[factor.value] = 0.0;

@@ -9,6 +9,7 @@
 
 #include "engine/base/index.h"
 #include "engine/random/distribution.h"
+#include "engine/random/stream.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -48,8 +49,13 @@ class Plan {
   std::size_t samples() const { return samples_; }  ///< At each pose, of one slot.
   /// How a study may come to an end before each cell has samples().
   const std::optional<AdaptiveSamples>& adaptive() const { return adaptive_; }
-  Plan with_samples(std::size_t samples) const;                      ///< The same with another number of samples.
-  std::uint64_t seed() const { return seed_; }                       ///< Of the draws.
+  Plan with_samples(std::size_t samples) const;  ///< The same with another number of samples.
+  std::uint64_t seed() const { return seed_; }   ///< Of the draws.
+  Draws draws() const { return draws_; }         ///< Where they are made anew.
+  /// Of the draws of factors()[slot] at a pose. A machine has the draws of the first pose at every pose.
+  StreamAddress address(std::size_t slot, PoseIndex pose) const {
+    return {seed_, Purpose::error_samples, factors_[slot], draws_ == Draws::per_machine ? PoseIndex(0) : pose};
+  }
   const PoseSet& poses() const { return poses_; }                    ///< In the order of the study.
   std::span<const FactorIndex> factors() const { return factors_; }  ///< That vary, positions in the model's list.
   /// Distribution of each varied factor, in the order of factors().
@@ -70,6 +76,7 @@ class Plan {
   std::optional<AdaptiveSamples> adaptive_;
   std::size_t units_per_cell_;
   std::uint64_t seed_;
+  Draws draws_;
   SolverOptions solver_;
   NotConverged not_converged_;
 };

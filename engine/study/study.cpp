@@ -16,7 +16,8 @@ namespace {
 /// In the order of the enumerations.
 /// @{
 constexpr std::array<std::string_view, 5> kSelectNames{"interior", "file", "boundary", "grid", "trajectory"};
-constexpr std::array<std::string_view, 2> kJudgeNames{"rms", "share"};
+constexpr std::array<std::string_view, 2> kDrawsNames{"per pose", "per machine"};
+constexpr std::array<std::string_view, 3> kJudgeNames{"rms", "share", "yield"};
 constexpr std::array<std::string_view, 2> kNotConvergedNames{"exclude", "include"};
 constexpr std::array<std::string_view, 2> kMethodNames{"newton", "gauss-newton"};
 /// @}
@@ -68,6 +69,7 @@ std::string sizes_text(const std::vector<FactorIndex>& held, const Study& study)
 }  // namespace
 
 std::string_view name(PoseSelection::Select select) { return name_among(kSelectNames, select); }
+std::string_view name(Draws draws) { return name_among(kDrawsNames, draws); }
 std::string_view name(Judge judge) { return name_among(kJudgeNames, judge); }
 std::string_view name(NotConverged policy) { return name_among(kNotConvergedNames, policy); }
 std::string_view name(SolverOptions::Method method) { return name_among(kMethodNames, method); }

@@ -67,10 +67,17 @@ struct ResponseLimit {
   double most;           ///< SI, above zero
 };
 
+/// Where errors that vary together are drawn anew.
+enum class Draws {
+  per_pose,    ///< at each pose: samples of different poses are independent
+  per_machine  ///< once for all poses: sample s is machine s, which has the same errors at every pose
+};
+
 /// By which number of its draws a study's limits are judged; see LimitVerdict.
 enum class Judge {
-  rms,   ///< the response's root mean square over the draws of all poses
-  share  ///< what a share of the draws stays within at the worst pose
+  rms,    ///< the response's root mean square over the draws of all poses
+  share,  ///< what a share of the draws stays within at the worst pose
+  yield   ///< the share of machines within all limits at all poses, for Draws::per_machine
 };
 
 struct StudyKind;
@@ -81,6 +88,7 @@ struct Analysis {
   std::vector<FactorIndex> factors;         ///< that vary, or that are tried; empty where others say it
   std::size_t samples = 1000;               ///< of errors that vary: at each pose
   std::optional<AdaptiveSamples> adaptive;  ///< likewise; then `samples` is their maximum
+  Draws draws = Draws::per_pose;            ///< of errors that vary together
   double conf_level = 0.95;                 ///< of errors that vary
   std::optional<Background> background;     ///< errors that are held
   std::vector<ResponseLimit> limits;        ///< in the order of the model's responses
@@ -123,11 +131,13 @@ struct Study {
   const ModelDescription& model() const { return mechanism.entry->description; }  ///< Of the mechanism.
 };
 
-std::string_view name(PoseSelection::Select select);            ///< As a study file has it.
-std::string_view name(Judge judge);                             ///< As a study file has it.
-inline constexpr std::array kJudges{Judge::rms, Judge::share};  ///< Every one, in the order in which they are listed.
-std::string_view name(NotConverged policy);                     ///< As a study file has it.
-std::string_view name(SolverOptions::Method method);            ///< As a study file has it.
+std::string_view name(PoseSelection::Select select);  ///< As a study file has it.
+std::string_view name(Draws draws);                   ///< As a study file has it.
+std::string_view name(Judge judge);                   ///< As a study file has it.
+/// Every one, in the order in which they are listed.
+inline constexpr std::array kJudges{Judge::rms, Judge::share, Judge::yield};
+std::string_view name(NotConverged policy);           ///< As a study file has it.
+std::string_view name(SolverOptions::Method method);  ///< As a study file has it.
 
 /// The constant errors, [F]: the background's value where it applies, else zero.
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);

@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 
 from poesy_program import PROGRAM, main
-from resumption import CASES, COUPLING, FIDELITIES, IDENTIFICATION, MONTE_CARLO, SENSITIVITY, ResumptionTest
+from resumption import CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO, SENSITIVITY, ResumptionTest
 
 MPIRUN = shutil.which("mpirun")
 HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
@@ -20,11 +20,13 @@ ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
 SMALLER = {
     "sensitivity": SENSITIVITY,
     "monte-carlo": MONTE_CARLO,
+    "machines": MACHINES,
     "evaluate": CASES.replace("count = 4000", "count = 300"),
     "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
     "coupling": COUPLING.replace("count = 20000", "count = 2000"),
     "fidelities": FIDELITIES,
     "adaptive sensitivity": SENSITIVITY.replace("samples = 12300", ADAPTIVE),
+    "adaptive machines": MACHINES.replace("samples = 12300", ADAPTIVE),
     "adaptive monte-carlo": MONTE_CARLO.replace("samples = 12300", ADAPTIVE.replace("0.01", "0.003")),
 }
 

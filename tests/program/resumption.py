@@ -39,6 +39,10 @@ kind = "monte-carlo"
 factors = "deforming"
 samples = 12300
 """
+MACHINES = MONTE_CARLO + """\
+draws = "per machine"
+limits.linear_deformation = "0.5 mm"
+"""
 CASES = HEAD + """\
 [poses]
 count = 4000
@@ -71,7 +75,7 @@ poses = { count = 20 }
 errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
 analysis = { kind = "sensitivity", samples = 12300 }
 """
-STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "evaluate": CASES, "identification": IDENTIFICATION,
+STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
 
 

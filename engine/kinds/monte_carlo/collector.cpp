@@ -7,20 +7,12 @@
 #include <utility>
 
 #include "engine/base/contract.h"
-#include "engine/base/nan.h"
-#include "engine/run/evaluation.h"
-#include "engine/stats/buckets.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
 
 constexpr std::uint64_t kKind = 2;  ///< no other state begins with this number
-
-constexpr std::size_t kHistogramBins = 128;
-
-/// NaN where nothing counts.
-double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }
 
 /// Calls visit(numbers) with all that a finished pose of a result knows from a response's sketch.
 template <class Result, class Visit>
@@ -41,24 +33,6 @@ void check_whole(const SolveCounts& solves, std::size_t most_samples) {
   if (total == 0 || total % Plan::kUnitSamples != 0 || total > most_samples) {
     throw BytesError("has a pose that is no number of whole units");
   }
-}
-
-/// Samples whose magnitude is within a limit; a bucket that the limit divides counts as its middle lies.
-std::uint64_t count_within(const QuantileSketch& samples, double limit) {
-  std::uint64_t within = 0;
-  for (const Bucket& bucket : samples.buckets()) {
-    const double middle = 0.5 * bucket.lower + 0.5 * bucket.upper;
-    if (std::abs(middle) <= limit) within += bucket.count;
-  }
-  return within;
-}
-
-/// What the share of the draws stays within at the worst pose, into `value` and `pose`.
-void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
-  const std::span at_poses = std::span(found.share_magnitude).subspan(verdict.response * found.poses, found.poses);
-  const auto worst = std::ranges::max_element(at_poses);
-  verdict.value = *worst;
-  verdict.pose = static_cast<std::size_t>(worst - at_poses.begin());
 }
 
 }  // namespace
@@ -103,25 +77,9 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
       keep_checkpoint_(keep_checkpoint),
       sketches_(responses),
       moments_(plan.poses().size() * responses),
+      columns_(plan.poses().size(), responses, analysis),
       failed_(plan.poses().size()),
-      kept_(plan.poses().size()) {
-  result_.responses = responses;
-  result_.poses = plan.poses().size();
-  result_.conf_level = analysis.conf_level;
-  result_.quantile_relative_error = QuantileSketch::kRelativeError;
-  result_.levels = asked_.quantiles;
-  const std::size_t cells = responses * result_.poses;
-  for (std::vector<double>* values : {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std,
-                                      &result_.min, &result_.max, &result_.rms}) {
-    values->resize(cells);
-  }
-  if (asked_.judge == Judge::share) result_.share_magnitude.resize(cells);
-  result_.count.resize(cells);
-  for (std::vector<double>* values : {&result_.quantiles, &result_.quantiles_ci_low, &result_.quantiles_ci_high}) {
-    values->resize(cells * result_.levels.size());
-  }
-  result_.solves.resize(result_.poses);
-}
+      kept_(plan.poses().size()) {}
 
 void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
   if (at_pose_.solves.total() == 0) {
@@ -158,55 +116,18 @@ void MonteCarloCollector::set_kept(std::size_t pose, Kept kept) {
 }
 
 void MonteCarloCollector::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
-  const std::size_t cell = response * result_.poses + pose;
-  const Interval interval = mean_interval(moments, result_.conf_level);
-  result_.mean[cell] = mean_of(moments);
-  result_.mean_ci_low[cell] = interval.low;
-  result_.mean_ci_high[cell] = interval.high;
-  result_.std[cell] = moments.standard_deviation();
-  result_.rms[cell] = root_mean_square(moments.mean(), moments.standard_deviation(), moments.count());
-  result_.count[cell] = moments.count();
+  columns_.set_moments(response, pose, moments);
   moments_[pose * responses_ + response] = moments;
-}
-
-const std::vector<RankInterval>& MonteCarloCollector::ranks_of(std::uint64_t samples) {
-  if (ranks_.empty() || ranked_samples_ != samples) {
-    ranks_.clear();
-    for (const double level : result_.levels) {
-      ranks_.push_back(quantile_ranks(samples, level, result_.conf_level));
-    }
-    ranked_samples_ = samples;
-  }
-  return ranks_;
-}
-
-void MonteCarloCollector::set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch) {
-  const std::size_t cell = response * result_.poses + pose;
-  const std::vector<Bucket> buckets = sketch.buckets();
-  const std::vector<RankInterval>& ranks = ranks_of(sketch.count());
-  result_.min[cell] = sketch.min();
-  result_.max[cell] = sketch.max();
-  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
-    const std::size_t at = cell * result_.levels.size() + q;
-    const Interval interval = quantile_interval(buckets, ranks[q]);
-    result_.quantiles[at] = sketch.quantile(result_.levels[q]);
-    result_.quantiles_ci_low[at] = interval.low;
-    result_.quantiles_ci_high[at] = interval.high;
-  }
-  if (asked_.judge != Judge::share) return;
-  const std::uint64_t rank = quantile_rank(asked_.share, at_pose_.solves.total());
-  result_.share_magnitude[cell] =
-      rank <= sketch.count() ? sketch.magnitudes().order_statistic(rank) : std::numeric_limits<double>::infinity();
 }
 
 void MonteCarloCollector::finish_pose() {
   for (std::size_t r = 0; r < responses_; ++r) {
     const auto& [moments, sketch] = at_pose_.responses[r];
     set_moments(r, open_.value, moments);
-    set_quantiles(r, open_.value, sketch);
+    columns_.set_quantiles(r, open_.value, sketch, at_pose_.solves.total());
     sketches_[r].merge(sketch);
   }
-  result_.solves[open_.value] = at_pose_.solves;
+  columns_.result().solves[open_.value] = at_pose_.solves;
   failed_[open_.value] = std::move(at_pose_.failed);
   at_pose_ = {};
 }
@@ -221,7 +142,7 @@ SolveCounts MonteCarloCollector::total() const {
   SolveCounts sum = at_pose_.solves;
   for (std::size_t m = 0; m < kept_.size(); ++m) {
     if (is_finished(m)) {
-      sum.merge(result_.solves[m]);
+      sum.merge(columns_.result().solves[m]);
     } else if (!is_open(m)) {
       sum.merge(kept_[m].solves);
     }
@@ -229,48 +150,27 @@ SolveCounts MonteCarloCollector::total() const {
   return sum;
 }
 
-void MonteCarloCollector::set_overall(std::size_t response, const Moments& moments) {
-  const QuantileSketch& sketch = sketches_[response];
-  result_.overall_mean.push_back(mean_of(moments));
-  result_.overall_std.push_back(moments.standard_deviation());
-  result_.overall_rms.push_back(root_mean_square(moments.mean(), moments.standard_deviation(), moments.count()));
-  result_.overall_min.push_back(sketch.min());
-  result_.overall_max.push_back(sketch.max());
-  result_.overall_count.push_back(moments.count());
-  const std::vector<Bucket> buckets = sketch.buckets();
-  for (std::size_t q = 0; q < result_.levels.size(); ++q) {
-    const Interval interval = quantile_interval(buckets, ranks_of(sketch.count())[q]);
-    result_.overall_quantiles.push_back(sketch.quantile(result_.levels[q]));
-    result_.overall_quantiles_ci_low.push_back(interval.low);
-    result_.overall_quantiles_ci_high.push_back(interval.high);
-  }
-  Histogram bins = buckets.empty() ? Histogram{std::vector<double>(kHistogramBins + 1, kNaN), {}}
-                                   : histogram(buckets, kHistogramBins);
-  bins.counts.resize(kHistogramBins);
-  result_.histogram_edges.insert(result_.histogram_edges.end(), bins.edges.begin(), bins.edges.end());
-  result_.histogram_counts.insert(result_.histogram_counts.end(), bins.counts.begin(), bins.counts.end());
-}
-
 MonteCarloResult MonteCarloCollector::result() && {
+  MonteCarloResult& found = columns_.result();
   for (std::size_t r = 0; r < responses_; ++r) {
     Moments overall;
-    for (std::size_t m = 0; m < result_.poses; ++m) {
+    for (std::size_t m = 0; m < found.poses; ++m) {
       POESY_EXPECTS(is_finished(m));
       overall.merge(moments_[m * responses_ + r]);
     }
-    set_overall(r, overall);
+    columns_.set_overall(overall, sketches_[r], sketches_[r].count());
   }
-  for (std::size_t m = 0; m < result_.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], result_.failures);
-  if (!limits_.empty()) result_.verdicts = judge_draws(limits_, asked_.judge, asked_.share, result_, sketches_);
-  return std::move(result_);
+  for (std::size_t m = 0; m < found.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], found.failures);
+  if (!limits_.empty()) found.verdicts = judge_draws(limits_, asked_.judge, asked_.share, found, sketches_);
+  return std::move(found);
 }
 
 void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const {
   for (std::size_t r = 0; r < responses_; ++r) {
     moments_[pose * responses_ + r].write(to);
-    visit_sketched(result_, r, pose, [&](std::span<const double> numbers) { to.reals(numbers); });
+    visit_sketched(columns_.result(), r, pose, [&](std::span<const double> numbers) { to.reals(numbers); });
   }
-  result_.solves[pose].write(to);
+  columns_.result().solves[pose].write(to);
   failed_[pose].write(to);
 }
 
@@ -278,21 +178,22 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
   if (is_finished(pose) || is_open(pose)) throw BytesError("has a pose twice");
   for (std::size_t r = 0; r < responses_; ++r) {
     set_moments(r, pose, Moments::read(from));
-    visit_sketched(result_, r, pose, [&](std::span<double> numbers) { from.reals(numbers); });
+    visit_sketched(columns_.result(), r, pose, [&](std::span<double> numbers) { from.reals(numbers); });
   }
-  result_.solves[pose] = SolveCounts::read(from);
-  if (result_.solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
-  failed_[pose] = FailedSamples::read(from, result_.solves[pose].not_converged(), 0, result_.solves[pose].total());
+  columns_.result().solves[pose] = SolveCounts::read(from);
+  if (columns_.result().solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
+  failed_[pose] = FailedSamples::read(from, columns_.result().solves[pose].not_converged(), 0,
+                                      columns_.result().solves[pose].total());
 }
 
 Bytes MonteCarloCollector::state() const {
   ByteWriter to;
   to.reserve(kept_bytes_ + kept_bytes_ / 4);  // what is kept, and some more
-  for (const std::uint64_t number :
-       std::array<std::uint64_t, 5>{kKind, responses_, result_.poses, result_.levels.size(), plan_->samples()}) {
+  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, responses_, columns_.result().poses,
+                                                                 columns_.result().levels.size(), plan_->samples()}) {
     to.number(number);
   }
-  for (std::size_t m = 0; m < result_.poses; ++m) {
+  for (std::size_t m = 0; m < columns_.result().poses; ++m) {
     to.number(is_finished(m) ? 1 : 0);
     if (is_finished(m)) write_finished(to, m);
     to.block(kept_[m].bytes);
@@ -312,17 +213,17 @@ void MonteCarloCollector::restore(std::span<const std::byte> state) {
 
 void MonteCarloCollector::restore_one(ByteReader& from) {
   for (const std::uint64_t expected :
-       std::array<std::uint64_t, 4>{kKind, responses_, result_.poses, result_.levels.size()}) {
+       std::array<std::uint64_t, 4>{kKind, responses_, columns_.result().poses, columns_.result().levels.size()}) {
     if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
   }
   const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
   if (samples == 0) throw BytesError("has no samples");
   const bool shorter = samples < plan_->samples();
-  for (std::size_t m = 0; m < result_.poses; ++m) {
+  for (std::size_t m = 0; m < columns_.result().poses; ++m) {
     const bool finished = from.number_up_to(1) == 1;
     if (finished) read_finished(from, m, samples);
     read_kept(from, m, finished ? samples : samples - 1);
-    if (shorter) result_.solves[m] = {};
+    if (shorter) columns_.result().solves[m] = {};
   }
   for (QuantileSketch& sketch : sketches_) {
     const QuantileSketch read = QuantileSketch::read(from);
@@ -333,7 +234,7 @@ void MonteCarloCollector::restore_one(ByteReader& from) {
 
 void MonteCarloCollector::read_open(ByteReader& from, std::size_t samples) {
   if (at_pose_.solves.total() > 0) throw BytesError("has two unfinished poses");
-  open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(result_.poses - 1)));
+  open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(columns_.result().poses - 1)));
   if (is_finished(open_.value)) throw BytesError("has a pose twice");
   at_pose_ = PoseSamples::read(from, responses_);
   check_whole(at_pose_.solves, samples - 1);
@@ -350,24 +251,6 @@ void MonteCarloCollector::read_kept(ByteReader& from, std::size_t pose, std::siz
   unit.expect_end();
   check_whole(solves, most_samples);
   set_kept(pose, {solves, Bytes(bytes.begin(), bytes.end())});
-}
-
-LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
-                          const MonteCarloResult& found, std::span<const QuantileSketch> overall) {
-  LimitVerdicts verdicts{.judge = judge, .share = share, .limits = {}};
-  const std::uint64_t tried = found.total().total();
-  for (const ResponseLimit& limit : limits) {
-    LimitVerdict verdict{.response = limit.response, .limit = limit.most, .tried = tried};
-    verdict.within = count_within(overall[limit.response], limit.most);
-    if (judge == Judge::rms) {
-      verdict.value = found.overall_rms[limit.response];
-    } else {
-      take_worst_pose(found, verdict);
-    }
-    verdict.passed = verdict.value <= limit.most;
-    verdicts.limits.push_back(verdict);
-  }
-  return verdicts;
 }
 
 }  // namespace poesy

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
+#include "engine/kinds/monte_carlo/columns.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
-#include "engine/stats/buckets.h"
 #include "engine/stats/quantile_sketch.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
@@ -54,7 +54,7 @@ class MonteCarloCollector {
   /// Over all that was added.
   SolveCounts total() const;
   /// Of the finished poses; without the overall numbers.
-  const MonteCarloResult& finished() const { return result_; }
+  const MonteCarloResult& finished() const { return columns_.result(); }
   /// Precondition: every unit was added.
   MonteCarloResult result() &&;
 
@@ -72,15 +72,9 @@ class MonteCarloCollector {
     Bytes bytes;  ///< as PoseSamples::write gives them
   };
 
-  bool is_finished(std::size_t pose) const { return result_.solves[pose].total() > 0; }
+  bool is_finished(std::size_t pose) const { return columns_.result().solves[pose].total() > 0; }
   bool is_open(std::size_t pose) const { return pose == open_.value && at_pose_.solves.total() > 0; }
   void finish_pose();
-  /// What follows from a sketch of a response at a pose.
-  void set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch);
-  /// The ranks for quantile intervals of so many samples, [Q].
-  const std::vector<RankInterval>& ranks_of(std::uint64_t samples);
-  /// What follows from the samples of all poses together.
-  void set_overall(std::size_t response, const Moments& moments);
   /// What follows from the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
   /// Keeps the open pose's samples, which make up whole units so far, if there is room for them.
@@ -101,21 +95,10 @@ class MonteCarloCollector {
   PoseSamples at_pose_;                   ///< its samples
   std::vector<QuantileSketch> sketches_;  ///< [R] of the finished poses together
   std::vector<Moments> moments_;          ///< [M x R] of the finished poses
-  MonteCarloResult result_;               ///< of the finished poses
-  std::uint64_t ranked_samples_ = 0;      ///< number of samples of which ranks_ are
-  std::vector<RankInterval> ranks_;       ///< [Q]
+  MonteCarloColumns columns_;             ///< of the finished poses
   std::vector<FailedSamples> failed_;     ///< [M] of the finished poses
   std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; others from a shorter study
   std::size_t kept_bytes_ = 0;
 };
-
-/// Judges the limits of a Monte Carlo study by what it found. A limit is kept
-/// - by Judge::rms, if the response's root mean square over the samples of all poses that count is within it;
-/// - by Judge::share, if at every pose at least that share of all draws is within it: if the largest of the poses'
-///   share_magnitude is. Draws that do not count are not within it.
-/// overall: [R], the samples of all poses that count. Numbers from a sketch are off by its kRelativeError at most.
-/// Precondition: found.overall_rms is there, and found.share_magnitude where it is needed.
-LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
-                          const MonteCarloResult& found, std::span<const QuantileSketch> overall);
 
 }  // namespace poesy

@@ -3,7 +3,9 @@
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
 #include "engine/kinds/monte_carlo/kind.h"
+#include "engine/kinds/monte_carlo/machine_fields.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/yield.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -176,7 +178,11 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
     result.file().set_attribute("/monte_carlo/share_magnitude", "share",
                                 asked_of<MonteCarloOptions>(study.analysis).share);
   }
+  if (found.machines) write_machines(result, *found.machines);
   add_limits(result, study.model(), found.verdicts);
+  if (found.verdicts && found.verdicts->yield) {
+    result.file().set_attribute("/limits", "yield", found.verdicts->yield->asked);
+  }
   add_convergence(result, kConvergence, found.convergence);
   add_solver(result, kByPose, found.solves);
   add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
@@ -193,6 +199,11 @@ void read(const h5::File& file, StoredResult& result) {
   }
   fill_in_root_mean_squares(found);
   result.verdicts = read_limits(file, result);
+  found.machines = read_machines(file);
+  if (result.verdicts && result.verdicts->judge == Judge::yield) {
+    if (!found.machines || !found.machines->yield) throw h5::Error("/limits judges a yield that is not there");
+    result.verdicts->yield = judge_yield(*found.machines->yield, file.attribute<double>("/limits", "yield").at(0));
+  }
   result.convergence = read_convergence(file, kConvergence);
   found.solves = read_solver(file, kByPose);
   result.varied = {std::string(kAllFactors)};
@@ -208,6 +219,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   if (!found.histogram_counts.empty()) {
     for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(histogram_table(result, r));
   }
+  if (found.machines) append_machine_tables(tables, result);
   append_limit_table(tables, result);
   CsvTable solves = lines_of_poses(result, "not_converged");
   append_solve_columns(solves, found.solves);

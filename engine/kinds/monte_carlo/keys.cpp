@@ -1,13 +1,14 @@
 #include <array>
 
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/stats/proportion.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 8> kMonteCarloKeys{"factors", "samples", "conf_level", "quantiles",
-                                                          "limits",  "judge",   "share",      "background"};
+constexpr std::array<std::string_view, 10> kMonteCarloKeys{"factors", "samples", "draws", "conf_level", "quantiles",
+                                                           "limits",  "judge",   "share", "yield",      "background"};
 
 /// Shares between 0 and 1, ascending.
 KeyValue<MonteCarloOptions> quantiles() {
@@ -37,13 +38,19 @@ KeyValue<MonteCarloOptions> judge() {
         "the response's root mean square over the draws of all poses is within the limit; draws that were not solved "
         "are left out"},
        {Judge::share,
-        "at every pose at least a share of the draws is within the limit; draws that were not solved are not"}},
+        "at every pose at least a share of the draws is within the limit; draws that were not solved are not"},
+       {Judge::yield,
+        "of the machines at least a share, yield, is within all limits at every pose; machines that were not solved at "
+        "a pose are not. For draws = \"per machine\""}},
       &MonteCarloOptions::judge);
 }
 
+/// Where the study says nothing else.
+Judge usual_judge(const Analysis& analysis) { return analysis.draws == Draws::per_machine ? Judge::yield : Judge::rms; }
+
 std::string judge_line(const Study& study) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
-  const bool idle = asked.judge == Judge::rms && study.analysis.limits.empty();
+  const bool idle = asked.judge == usual_judge(study.analysis) && study.analysis.limits.empty();
   return idle ? "" : "judge = " + in_quotes(name(asked.judge)) + "\n";
 }
 
@@ -54,37 +61,87 @@ std::string share_line(const Study& study) {
   return asked.judge == Judge::share ? "share = " + shortest(asked.share) + "\n" : "";
 }
 
-std::vector<StudyRow> monte_carlo_rows() {
-  return {StudyRow{.name = "quantiles",
-                   .value = asked_value(quantiles()),
-                   .meaning = "Shares of the samples that lie below, ascending."},
-          StudyRow{.name = "judge",
-                   .value = asked_value(judge()),
-                   .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)",
-                   .lines = judge_line,
-                   .commented = true},
-          StudyRow{.name = "share",
-                   .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::share)),
-                   .usual = "",
-                   .example = "0.9973",
-                   .meaning = "With judge = \"share\", and required there: the share of the draws.",
-                   .lines = share_line,
-                   .commented = true}};
+std::string yield_line(const Study& study) {
+  const double asked = asked_of<MonteCarloOptions>(study.analysis).yield;
+  return asked > 0.0 ? "yield = " + shortest(asked) + "\n" : "";
 }
 
-void check_judge(Study& study, const Reading& reading) {
-  const StudySection section = reading.root.section("analysis");
+std::vector<StudyRow> monte_carlo_rows() {
+  return {
+      StudyRow{.name = "quantiles",
+               .value = asked_value(quantiles()),
+               .meaning = "Shares of the samples that lie below, ascending."},
+      StudyRow{.name = "judge",
+               .value = asked_value(judge()),
+               .usual = "`\"rms\"`; with draws = \"per machine\" `\"yield\"`",
+               .example = "\"rms\"",
+               .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)",
+               .lines = judge_line,
+               .commented = true},
+      StudyRow{.name = "share",
+               .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::share)),
+               .usual = "",
+               .example = "0.9973",
+               .meaning = "With judge = \"share\", and required there: the share of the draws.",
+               .lines = share_line,
+               .commented = true},
+      StudyRow{.name = "yield",
+               .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::yield)),
+               .usual = "none: the yield is found, and not judged",
+               .example = "0.9973",
+               .meaning = "With judge = \"yield\": the share of the machines that must be within all limits. PASS or "
+                          "FAIL where conf_level of one-sided bounds show it, else undecided.",
+               .lines = yield_line,
+               .commented = true}};
+}
+
+void check_share(const Study& study, const StudySection& section) {
   const auto judge = section.find("judge");
   const auto share = section.find("share");
-  const bool by_share = asked_of<MonteCarloOptions>(study.analysis).judge == Judge::share;
-  if (by_share && !share) {
+  const Judge by = asked_of<MonteCarloOptions>(study.analysis).judge;
+  if (by == Judge::share && !share) {
     judge->fail(
         "is \"share\", but analysis.share is missing",
         "write the share of the draws, e.g. share = " + row_of(analysis_keys(*study.analysis.kind), "share").example);
   }
-  if (!by_share && share) {
-    share->fail("is set, but analysis.judge is \"rms\"", "write judge = \"share\", or leave it out");
+  if (by != Judge::share && share) {
+    share->fail("is set, but analysis.judge is " + in_quotes(name(by)), "write judge = \"share\", or leave it out");
   }
+}
+
+/// Refuses a yield that is not judged, and one that so many machines cannot show even if all are good.
+void check_yield(const Study& study, const StudySection& section) {
+  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const auto yield = section.find("yield");
+  if (!yield) return;
+  if (asked.judge != Judge::yield) {
+    yield->fail("is set, but analysis.judge is " + in_quotes(name(asked.judge)),
+                study.analysis.draws == Draws::per_machine
+                    ? "leave judge or yield out"
+                    : "write draws = \"per machine\", which judges by the yield, or leave it out");
+  }
+  if (!section.find("limits")) {
+    yield->fail("is set, but the study states no limit", "write [analysis.limits], or leave it out");
+  }
+  const std::uint64_t needed = trials_without_failure(asked.yield, study.analysis.conf_level);
+  if (study.analysis.samples >= needed) return;
+  yield->fail("is " + shortest(asked.yield) + ", which " + std::to_string(study.analysis.samples) +
+                  " machines cannot show at a confidence of " + shortest(study.analysis.conf_level) +
+                  " even if all of them are good",
+              "take " + std::to_string(needed) + " samples or more, or ask for a smaller yield");
+}
+
+void complete(Study& study, const Reading& reading) {
+  const StudySection section = reading.root.section("analysis");
+  const auto judge = section.find("judge");
+  MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  if (!judge) asked.judge = usual_judge(study.analysis);
+  if (asked.judge == Judge::yield && study.analysis.draws == Draws::per_pose) {
+    judge->fail("is \"yield\", but errors are drawn anew at each pose, so there are no machines",
+                "write draws = \"per machine\"");
+  }
+  check_share(study, section);
+  check_yield(study, section);
   if (judge && !section.find("limits")) {
     judge->fail("is set, but the study states no limit", "write [analysis.limits], or leave it out");
   }
@@ -102,7 +159,7 @@ const StudyKind kMonteCarloStudy{.name = "monte-carlo",
                                  .keys = kMonteCarloKeys,
                                  .varies = Varies::together,
                                  .rows = monte_carlo_rows,
-                                 .complete = check_judge,
+                                 .complete = complete,
                                  .at_pose = monte_carlo_at_pose};
 
 }  // namespace poesy

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/monte_carlo/kind.h"
+#include "engine/kinds/monte_carlo/machine_report.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
@@ -251,6 +253,7 @@ void add_how_large(const StoredResult& result, std::span<const Table> tables, Pa
   Section& section = page.add_section("how-large", "How large are the deviations");
   section.paragraph(fmt::format("All {} vary at once.", counted(result.factors.size(), "error", "errors")));
   section.table(tables, "overall");
+  if (found.machines) section.table(tables, "machines");
   for (const std::size_t r : headline_order(result)) {
     if (found.histogram_counts.empty() || found.overall_count[r] == 0) continue;
     add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, page.figures.pool),
@@ -289,6 +292,7 @@ void add_where(const StoredResult& result, Page& page) {
     fields.push_back({response.name + ", standard deviation", unit,
                       add("std", std::span(found.std).subspan(r * found.poses, found.poses))});
   }
+  if (found.machines) std::ranges::move(reject_fields(result, figures), std::back_inserter(fields));
   fields.push_back(figures.not_converged(tally(result).shares_by_pose()));
   figures.add_condition(fields);
   Section& section = page.add_section("where", "Where in the workspace");
@@ -328,6 +332,7 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
   if (monte_carlo_of(result).poses == 0 || monte_carlo_of(result).levels.empty()) return;
   add_limits(tables, page);
+  if (monte_carlo_of(result).machines) add_machine_sections(result, tables, page);
   add_how_large(result, tables, page);
   add_where(result, page);
   add_how_sure(result, tables, page);
@@ -373,6 +378,7 @@ std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOpt
   if (found.poses > 0 && !found.levels.empty()) {
     tables.push_back(overall_table(result));
     tables.push_back(poses_table(result));
+    if (found.machines) std::ranges::move(machine_tables(result), std::back_inserter(tables));
   }
   return tables;
 }

@@ -15,12 +15,75 @@ namespace poesy {
 /// What a Monte Carlo study alone asks.
 struct MonteCarloOptions {
   std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< shares of samples below, ascending
-  Judge judge = Judge::rms;                        ///< of the limits
+  Judge judge = Judge::rms;                        ///< of the limits; yield where a study with machines says nothing
   double share = 0.0;                              ///< for Judge::share: of the draws at each pose
+  double yield = 0.0;                              ///< for Judge::yield: of the machines; 0: none is asked for
 };
 
 /// The kind of study in which all errors vary together.
 extern const StudyKind kMonteCarloStudy;
+
+/// One number of each machine: over those that are solved at each pose. R responses, Q quantiles, B bins; SI.
+struct MachineValues {
+  std::vector<double> mean;                     ///< [R] over the machines
+  std::vector<double> mean_ci_low;              ///< [R] Student's interval
+  std::vector<double> mean_ci_high;             ///< [R] likewise
+  std::vector<double> std;                      ///< [R] sample standard deviation
+  std::vector<double> min;                      ///< [R]
+  std::vector<double> max;                      ///< [R]
+  std::vector<std::uint64_t> count;             ///< [R] machines behind these
+  std::vector<double> quantiles;                ///< [R x Q]
+  std::vector<double> quantiles_ci_low;         ///< [R x Q] as MonteCarloResult has them
+  std::vector<double> quantiles_ci_high;        ///< [R x Q] likewise
+  std::vector<double> histogram_edges;          ///< [R x (B + 1)]
+  std::vector<std::uint64_t> histogram_counts;  ///< [R x B]
+};
+
+/// The share of machines that are within every limit at every pose. A machine that is not solved at a pose is a reject,
+/// unless said otherwise. Intervals: Clopper and Pearson, two-sided, at conf_level. NaN for a response without a limit.
+struct YieldResult {
+  double conf_level = 0.95;                      ///< of all intervals
+  double value = 0.0;                            ///< the yield
+  double ci_low = 0.0;                           ///< of it
+  double ci_high = 0.0;                          ///< of it
+  std::uint64_t rejects = 0;                     ///< machines that are not within every limit at every pose
+  std::uint64_t machines = 0;                    ///< that were tried
+  std::uint64_t unsolved = 0;                    ///< of these, those with a pose that is not solved
+  double unsolved_pass = 0.0;                    ///< the yield if samples that are not solved were within every limit
+  double unsolved_pass_ci_low = 0.0;             ///< of it
+  double unsolved_pass_ci_high = 0.0;            ///< of it
+  std::uint64_t unsolved_pass_rejects = 0;       ///< then
+  std::vector<double> by_response = {};          ///< [R] share of the machines that are within this limit at every pose
+  std::vector<double> by_response_ci_low = {};   ///< [R]
+  std::vector<double> by_response_ci_high = {};  ///< [R]
+  std::vector<double> worst_pose_share =
+      {};                             ///< [R x M] share of the machines that are not within this limit at the pose
+  std::vector<double> gradient = {};  ///< [P] of the yield by the sigma of each error; NaN where it has no score
+  std::vector<double> gradient_ci_low = {};   ///< [P] central limit theorem
+  std::vector<double> gradient_ci_high = {};  ///< [P]
+};
+
+/// How much of the scatter of each response an error makes alone: P errors, E bins.
+struct MainEffects {
+  std::vector<double> s1;          ///< [R x P] first-order index
+  std::vector<double> s1_ci_low;   ///< [R x P]
+  std::vector<double> s1_ci_high;  ///< [R x P]
+  std::vector<double> mean;        ///< [R x P x E] of the response while the error is in the bin
+  std::vector<double> ci_low;      ///< [R x P x E]
+  std::vector<double> ci_high;     ///< [R x P x E]
+};
+
+/// What a Monte Carlo study of machines found in addition.
+struct MachineResult {
+  double conf_level = 0.95;             ///< of all intervals
+  MachineValues largest;                ///< of each machine its largest magnitude over the poses
+  MachineValues rms;                    ///< of each machine its root mean square over the poses
+  std::optional<YieldResult> yield;     ///< where the study states limits
+  std::vector<std::uint64_t> s1_poses;  ///< over which effects.s1 adds up
+  std::vector<double> bin_error;        ///< [P x E] mean of the error in its bin
+  MainEffects effects;                  ///< s1: added up over s1_poses; curves: of the machines' means over all poses
+  MainEffects effects_on_largest;       ///< of the machines' largest magnitudes
+};
 
 /// What a Monte Carlo study found, all errors varying together: R responses, M poses, Q quantiles; SI; NaN where
 /// undefined. The overall numbers are over the samples of all poses together.
@@ -66,6 +129,9 @@ struct MonteCarloResult {
   std::optional<ConvergenceResult> convergence;
   /// Where it states limits.
   std::optional<LimitVerdicts> verdicts;
+
+  /// Where errors are drawn per machine.
+  std::optional<MachineResult> machines;
 
   /// Over all poses.
   SolveCounts total() const { return total_of(solves); }

@@ -1,8 +1,12 @@
 #include "engine/kinds/monte_carlo/kind.h"
 
+#include <bit>
 #include <utility>
 
 #include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/machine_collector.h"
+#include "engine/kinds/monte_carlo/machine_table.h"
+#include "engine/kinds/monte_carlo/machine_unit.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
@@ -24,6 +28,14 @@ std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   return means;
 }
 
+/// Adaptive samples are for the means of the headline.
+Rounds::Rule rule_of(const Model& model, const Analysis& analysis) {
+  const ModelDescription& description = model.description();
+  const std::size_t responses = description.responses.size();
+  return {responses, description.headline.empty() ? all_positions(responses) : description.headline,
+          analysis.conf_level, std::vector<double>(responses, 0.0)};
+}
+
 /// The draws of all errors together, pose by pose, in rounds: the work of fold(). Each round has a collector of its
 /// own, which begins with what the one before kept.
 class PoseWork {
@@ -35,9 +47,7 @@ class PoseWork {
         responses_(model.description().responses.size()),
         shard_(options.shard.value_or(Shard())),
         keep_checkpoint_(options.keep_checkpoint || plan.adaptive()),
-        rule_{responses_,
-              model.description().headline.empty() ? all_positions(responses_) : model.description().headline,
-              analysis.conf_level, std::vector<double>(responses_, 0.0)},
+        rule_(rule_of(model, analysis)),
         rounds_(plan, rule_) {
     collect({});
   }
@@ -102,6 +112,86 @@ class PoseWork {
   std::optional<PendingUnits> pending_;  ///< of this round
 };
 
+/// The machines of a study that draws errors per machine, unit by unit at all poses, in rounds: the work of fold().
+class MachineWork {
+ public:
+  MachineWork(const Plan& plan, const Model& model, const Analysis& analysis, const RunOptions& options)
+      : plan_(plan),
+        model_(model),
+        analysis_(analysis),
+        table_(plan, model.description().responses.size(), analysis),
+        units_(options.shard.value_or(Shard()).of(table_.units())),
+        rule_(rule_of(model, analysis)),
+        rounds_(plan, rule_),
+        collect_(table_, analysis, units_) {}
+
+  MachineWork(const MachineWork&) = delete;
+  MachineWork& operator=(const MachineWork&) = delete;
+
+  std::size_t begin_round() {
+    first_ = collect_.next();
+    const std::size_t wanted = MachineTable::units_for(rounds_.samples(0), plan_.poses().size());
+    end_ = std::max(first_, std::min(wanted, units_.end));
+    return end_ - first_;
+  }
+  MachineUnitEvaluator worker() const { return {table_, model_}; }
+  MachineUnit solve(MachineUnitEvaluator& evaluate, std::size_t n) const { return evaluate(first_ + n); }
+  SolveCounts merge(std::size_t n, MachineUnit&& found) {
+    const SolveCounts solves = found.total;
+    collect_.add(first_ + n, std::move(found));
+    return solves;
+  }
+  static void write(std::size_t, const MachineUnit& found, ByteWriter& to) { found.write(to); }
+  MachineUnit read(std::size_t n, ByteReader& from) const {
+    const WorkUnit unit = table_.unit(first_ + n);
+    return MachineUnit::read(from, table_, unit.first.value, unit.count);
+  }
+  SolveCounts solved() const { return collect_.total(); }
+  std::uint64_t left() const {
+    if (first_ == end_) return rounds_.expected_left(solved(), 0);
+    const WorkUnit last = table_.unit(end_ - 1);
+    const std::size_t machines = last.first.value + last.count - table_.unit(first_).first.value;
+    return rounds_.expected_left(solved(), std::uint64_t{machines} * plan_.poses().size());
+  }
+  Bytes state() const { return rounds_.state_before(collect_.state()); }
+  void restore(std::span<const std::byte> state) {
+    rounds_ = Rounds(plan_, rule_);
+    ByteReader from(state);
+    rounds_.restore(from);
+    if (from.left() == 0) throw BytesError("is cut off");
+    collect_ = MachineCollector(table_, analysis_, units_);
+    collect_.restore(state.last(from.left()));
+  }
+  bool next_round() {
+    return rounds_.go_on([&](std::size_t) { return collect_.overall_means(); });
+  }
+
+  /// Precondition: every unit was merged, and no round follows.
+  MonteCarloResult result() && {
+    MonteCarloResult result = std::move(collect_).result();
+    result.convergence = rounds_.result();
+    return result;
+  }
+
+ private:
+  const Plan& plan_;
+  const Model& model_;
+  const Analysis& analysis_;
+  MachineTable table_;
+  NumberRange units_;  ///< of the shard, or all
+  Rounds::Rule rule_;
+  Rounds rounds_;
+  MachineCollector collect_;
+  std::size_t first_ = 0;  ///< unit of this round
+  std::size_t end_ = 0;    ///< of this round
+};
+
+/// A study of machines divides between its units, any other at its poses.
+std::size_t most_shards(const Study& study, std::size_t poses) {
+  if (study.analysis.draws == Draws::per_pose) return shards_by_pose(study, poses);
+  return MachineTable::units_for(study.analysis.samples, poses);
+}
+
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
   auto result = run_monte_carlo(plan, run.model, run.study.analysis, run.options);
@@ -109,6 +199,27 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   StudyResult found{{}, result->verdicts, {}};
   found.found = *std::move(result);
   return found;
+}
+
+/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places in
+/// the tree, and what pieces in flight hold.
+MemoryOutlook machine_memory(const Study& study, const Plan& plan) {
+  constexpr std::size_t kSketch = 20'000;
+  constexpr std::size_t kPackedSketch = 6000;
+  constexpr std::size_t kInFlight = 8;
+  const std::size_t responses = study.model().responses.size();
+  const std::size_t errors = plan.factors().size();
+  const std::size_t cells = plan.poses().size() * responses;
+  const MachineTable table(plan, responses, study.analysis);
+  const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512;
+  const std::size_t nodes = std::bit_width(table.units()) * sums;
+  const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(std::uint32_t);
+  const std::size_t numbers = (cells + 6 * responses * errors * (1 + kEffectBins)) * sizeof(double);
+  return {cells * kSketch + nodes + kInFlight * piece, cells * kPackedSketch + nodes, numbers, numbers};
+}
+
+MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
+  return {a.accumulators + b.accumulators, a.state + b.state, a.result + b.result, a.file + b.file};
 }
 
 MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
@@ -122,6 +233,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
                               responses * (kStoredMoments + (2 + of_sketch) * sizeof(double)) + kStoredSolves,
                               numbers + sizeof(SolveCounts), numbers + kSolverColumns};
   MemoryOutlook memory = times(plan.poses().size(), of_pose);
+  if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, plan));
   if (!plan.adaptive()) return memory;
   // Packed sketches of finished poses, for the next round.
   constexpr std::size_t kPackedSketch = 6000;
@@ -134,8 +246,11 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
 
 Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const auto plan = std::make_shared<const Plan>(study, poses);
-  return {.solves = counted_things(poses.size(), "poses x ") + samples_text(*plan) + " samples of " +
-                    counted_things(plan->factors().size(), "errors together = ") + solves_text(*plan, 1),
+  const bool machines = plan->draws() == Draws::per_machine;
+  return {.solves = counted_things(poses.size(), "poses x ") + samples_text(*plan) +
+                    (machines ? " machines with " : " samples of ") +
+                    counted_things(plan->factors().size(), machines ? "errors = " : "errors together = ") +
+                    solves_text(*plan, 1),
           .memory = monte_carlo_memory(study, *plan),
           .shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model), 1.0)},
           .by_one = {},
@@ -146,13 +261,16 @@ Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSe
 
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options) {
-  PoseWork work(plan, model, analysis, options);
-  if (!fold(work, options) || options.shard) return std::nullopt;
-  return std::move(work).result();
+  const auto run = [&](auto work) -> std::optional<MonteCarloResult> {
+    if (!fold(work, options) || options.shard) return std::nullopt;
+    return std::move(work).result();
+  };
+  if (plan.draws() == Draws::per_machine) return run(MachineWork(plan, model, analysis, options));
+  return run(PoseWork(plan, model, analysis, options));
 }
 
 constinit const Kind kMonteCarloKind{.study = kMonteCarloStudy,
-                                     .run = {run_study_of_kind, monte_carlo_outlook, shards_by_pose},
+                                     .run = {run_study_of_kind, monte_carlo_outlook, most_shards},
                                      .file = kMonteCarloFile,
                                      .report = kMonteCarloReport};
 

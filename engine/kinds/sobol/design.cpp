@@ -43,8 +43,9 @@ void PanelDesign::fill(PanelSample which, std::size_t slot, const PanelUnit& uni
   } else if (const auto* const points = std::get_if<ScrambledSobol>(&points_)) {
     points->fill(column, first, uniforms);
   } else {
-    const Purpose purpose = which == PanelSample::A ? Purpose::error_samples : Purpose::second_error_samples;
-    fill_uniforms({plan_->seed(), purpose, plan_->factors()[slot], PoseIndex(0)}, first, uniforms);
+    StreamAddress address = plan_->address(slot, PoseIndex(0));
+    if (which == PanelSample::B) address.purpose = Purpose::second_error_samples;
+    fill_uniforms(address, first, uniforms);
   }
 }
 

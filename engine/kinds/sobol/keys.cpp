@@ -175,6 +175,7 @@ void check_replicates(const Study& study, const StudySection& analysis) {
 
 void check_sobol(Study& study, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
+  study.analysis.draws = Draws::per_machine;
   if (study.analysis.adaptive && asked_of<SobolOptions>(study.analysis).design != Design::random) {
     analysis.require("samples").fail("is a table, but analysis.design is not \"random\"",
                                      "write a number, e.g. samples = 4096");

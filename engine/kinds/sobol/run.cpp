@@ -244,6 +244,7 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
     append_pairs(panel, std::span(sums.pairs).subspan(r * panel.pairs.size(), panel.pairs.size()), level, found);
   }
   found.solves = sums.solves;
+  if (asked_of<SobolOptions>(study.analysis).design != Design::random) return found;  // others have no addresses
   for (std::size_t m = 0; m < panel.poses; ++m) append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
   return found;
 }

@@ -177,8 +177,10 @@ Section& add_how_sure(Page& page, std::string heading, double conf_level) {
 }
 
 void add_limits(std::span<const Table> tables, Page& page) {
-  if (std::ranges::find(tables, "limits", &Table::name) == tables.end()) return;
-  page.add_section("limits", "Are the limits kept").table(tables, "limits");
+  for (const char* name : {"yield", "limits"}) {
+    if (std::ranges::find(tables, name, &Table::name) == tables.end()) continue;
+    page.add_section("limits", "Are the limits kept").table(tables, name);
+  }
 }
 
 void add_figure(Page& page, Section& section, const std::string& key, Figure figure, std::string_view caption) {

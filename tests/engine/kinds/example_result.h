@@ -13,6 +13,7 @@
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluation.h"
+#include "engine/stats/main_effects.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"
 
@@ -143,6 +144,67 @@ class Example {
     return result;
   }
 
+  /// The same of 200 machines, judged by their yield; the second response has a limit.
+  MonteCarloResult machines() {
+    MonteCarloResult result = monte_carlo();
+    study.analysis.draws = Draws::per_machine;
+    MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+    asked.judge = Judge::yield;
+    asked.yield = 0.9;
+    asked.share = 0.0;
+    study.analysis.limits = {{1, 0.25}};
+    result.share_magnitude.clear();
+    MachineResult& found = result.machines.emplace();
+    found.conf_level = result.conf_level;
+    double next = 1000.0;
+    const auto fill = [&](std::vector<double>& values, std::size_t length) {
+      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
+      values.back() = std::numeric_limits<double>::quiet_NaN();
+    };
+    for (MachineValues* values : {&found.largest, &found.rms}) {
+      for (auto* list :
+           {&values->mean, &values->mean_ci_low, &values->mean_ci_high, &values->std, &values->min, &values->max}) {
+        fill(*list, 2);
+      }
+      values->count = {200, 198};
+      for (auto* list : {&values->quantiles, &values->quantiles_ci_low, &values->quantiles_ci_high}) fill(*list, 4);
+      values->histogram_edges = result.histogram_edges;
+      values->histogram_counts = result.histogram_counts;
+    }
+    found.s1_poses = {0, 2};
+    fill(found.bin_error, 2 * kEffectBins);
+    for (MainEffects* effects : {&found.effects, &found.effects_on_largest}) {
+      for (auto* list : {&effects->s1, &effects->s1_ci_low, &effects->s1_ci_high}) fill(*list, 4);
+      for (auto* list : {&effects->mean, &effects->ci_low, &effects->ci_high}) fill(*list, 4 * kEffectBins);
+    }
+    YieldResult& yield = found.yield.emplace();
+    yield.conf_level = result.conf_level;
+    yield.value = 0.75;
+    yield.ci_low = 0.7;
+    yield.ci_high = 0.8;
+    yield.rejects = 50;
+    yield.machines = 200;
+    yield.unsolved = 2;
+    yield.unsolved_pass = 0.755;
+    yield.unsolved_pass_ci_low = 0.705;
+    yield.unsolved_pass_ci_high = 0.805;
+    yield.unsolved_pass_rejects = 49;
+    for (auto* list : {&yield.by_response, &yield.by_response_ci_low, &yield.by_response_ci_high}) fill(*list, 2);
+    fill(yield.worst_pose_share, 2 * kPoses);
+    for (auto* list : {&yield.gradient, &yield.gradient_ci_low, &yield.gradient_ci_high}) fill(*list, 2);
+    result.verdicts = {.judge = Judge::yield,
+                       .limits = {{.response = 1,
+                                   .limit = 0.25,
+                                   .value = 0.5,
+                                   .passed = false,
+                                   .tried = 200,
+                                   .within = 150,
+                                   .pose = {},
+                                   .row = {}}},
+                       .yield = YieldVerdict{.asked = 0.9}};
+    return result;
+  }
+
   /// Of both responses: the first is kept, the second is not, at the last pose.
   static LimitVerdicts verdicts() {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -269,6 +331,10 @@ class Example {
   }
   void write_monte_carlo(const std::string& path) {
     const MonteCarloResult result = monte_carlo();
+    poesy::write_result(path, study, poses, result, facts);
+  }
+  void write_machines(const std::string& path) {
+    const MonteCarloResult result = machines();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_coupling(const std::string& path) {

@@ -1,4 +1,4 @@
-#include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/columns.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluation.h"
 

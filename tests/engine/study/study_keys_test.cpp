@@ -105,6 +105,9 @@ std::vector<std::string> studies() {
           head +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
               "judge = \"share\"\nshare = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
+              "judge = \"yield\"\nyield = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
           head + "[poses]\nselect = \"boundary\"\ncount = 3\n" + box +
               "[analysis]\nkind = \"identification\"\nfactors = \"all\"\npose_share = 0.9\n"
               "groups = [{ name = \"small\", linear = \"2 mm\", angular = \"2 deg\" }]\n",

@@ -53,6 +53,7 @@ void expect_same(const MonteCarloOptions& a, const MonteCarloOptions& b) {
   EXPECT_EQ(a.quantiles, b.quantiles);
   EXPECT_EQ(a.judge, b.judge);
   EXPECT_EQ(a.share, b.share);
+  EXPECT_EQ(a.yield, b.yield);
 }
 
 template <class Options>
@@ -96,6 +97,7 @@ void expect_same(const Study& a, const Study& b) {
   EXPECT_EQ(a.analysis.factors, b.analysis.factors);
   EXPECT_EQ(a.analysis.samples, b.analysis.samples);
   EXPECT_EQ(a.analysis.conf_level, b.analysis.conf_level);
+  EXPECT_EQ(a.analysis.draws, b.analysis.draws);
   EXPECT_EQ(background_errors(a.analysis.background, a.model()), background_errors(b.analysis.background, b.model()));
   ASSERT_EQ(a.analysis.limits.size(), b.analysis.limits.size());
   for (std::size_t k = 0; k < a.analysis.limits.size(); ++k) {
@@ -135,13 +137,15 @@ INSTANTIATE_TEST_SUITE_P(
                        "background = { factors = [\"delta_2\", \"delta_1\"], linear = \"-1 um\" }\n"),
         shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\njudge = \"share\"\nshare = 0.9973\n"
                        "[analysis.limits]\nangular_deformation = \"0.1 deg\"\n"),
+        shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
+                       "yield = 0.99\n[analysis.limits]\nangular_deformation = \"0.1 deg\"\n"),
         shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"evaluate\"\n"
                        "limits = { angular_deformation = \"0.1 deg\" }\n"
                        "cases = [{ errors = { linear = \"1 mm\" } }]\n"),
         "title = \"quotes \\\" backslash \\\\ line \\n control \\u0001\\u007f and \xC2\xB5\"\n" +
             shortest_study("[poses]\ncount = 3\n")),
     test::named({"Whole", "Shortest", "Limits", "Boundary", "Grid", "GridCounts", "File", "Override", "Background",
-                 "LimitsByShare", "LimitsOfCases", "Title"}));
+                 "LimitsByShare", "LimitsByYield", "LimitsOfCases", "Title"}));
 
 TEST(ResolvedTextOf, TheShortestStudyShowsEveryDefault) {
   EXPECT_EQ(resolved_text(study_of(shortest_study("[poses]\ncount = 3\n"))), R"(format = "poesy-study"

@@ -106,6 +106,69 @@ TEST_F(MonteCarloFile, KeepsItsVerdicts) {
   }
 }
 
+void expect_same(const MachineValues& found, const MachineValues& expected) {
+  for (const auto member :
+       {&MachineValues::mean, &MachineValues::mean_ci_low, &MachineValues::mean_ci_high, &MachineValues::std,
+        &MachineValues::min, &MachineValues::max, &MachineValues::quantiles, &MachineValues::quantiles_ci_low,
+        &MachineValues::quantiles_ci_high, &MachineValues::histogram_edges}) {
+    expect_same(found.*member, expected.*member);
+  }
+  EXPECT_EQ(found.count, expected.count);
+  EXPECT_EQ(found.histogram_counts, expected.histogram_counts);
+}
+
+void expect_same(const MainEffects& found, const MainEffects& expected) {
+  for (const auto member : {&MainEffects::s1, &MainEffects::s1_ci_low, &MainEffects::s1_ci_high, &MainEffects::mean,
+                            &MainEffects::ci_low, &MainEffects::ci_high}) {
+    expect_same(found.*member, expected.*member);
+  }
+}
+
+void expect_same(const YieldResult& found, const YieldResult& expected) {
+  for (const auto member :
+       {&YieldResult::conf_level, &YieldResult::value, &YieldResult::ci_low, &YieldResult::ci_high,
+        &YieldResult::unsolved_pass, &YieldResult::unsolved_pass_ci_low, &YieldResult::unsolved_pass_ci_high}) {
+    EXPECT_EQ(found.*member, expected.*member);
+  }
+  for (const auto member :
+       {&YieldResult::rejects, &YieldResult::machines, &YieldResult::unsolved, &YieldResult::unsolved_pass_rejects}) {
+    EXPECT_EQ(found.*member, expected.*member);
+  }
+  for (const auto member : {&YieldResult::by_response, &YieldResult::by_response_ci_low,
+                            &YieldResult::by_response_ci_high, &YieldResult::worst_pose_share, &YieldResult::gradient,
+                            &YieldResult::gradient_ci_low, &YieldResult::gradient_ci_high}) {
+    expect_same(found.*member, expected.*member);
+  }
+}
+
+TEST_F(MonteCarloFile, KeepsWhatMachinesDid) {
+  example_.write_machines(path_);
+  const MachineResult written = *example_.machines().machines;
+  const StoredResult stored = read_result(path_);
+  ASSERT_TRUE(monte_carlo_of(stored).machines);
+  const MachineResult& found = *monte_carlo_of(stored).machines;
+  EXPECT_EQ(found.conf_level, written.conf_level);
+  EXPECT_EQ(found.s1_poses, written.s1_poses);
+  expect_same(found.bin_error, written.bin_error);
+  expect_same(found.largest, written.largest);
+  expect_same(found.rms, written.rms);
+  expect_same(found.effects, written.effects);
+  expect_same(found.effects_on_largest, written.effects_on_largest);
+  expect_same(*found.yield, *written.yield);
+  ASSERT_TRUE(stored.verdicts && stored.verdicts->yield);
+  const YieldVerdict& verdict = *stored.verdicts->yield;
+  EXPECT_EQ(verdict.asked, 0.9);
+  EXPECT_EQ(verdict.decision, YieldVerdict::Decision::not_kept);
+  EXPECT_EQ(verdict.unsolved, 1u);
+  EXPECT_FALSE(stored.verdicts->passed());
+  EXPECT_TRUE(verify_result(path_).matches());
+  const h5::File file = h5::File::open(path_);
+  EXPECT_EQ(file.shape("/yield/gradient"), (h5::Shape{2}));
+  EXPECT_EQ(file.shape("/yield/worst_pose_share"), (h5::Shape{2, kPoses}));
+  EXPECT_EQ(file.shape("/monte_carlo/main_effect/mean"), (h5::Shape{2, 2, kEffectBins}));
+  EXPECT_EQ(file.shape("/monte_carlo/S1"), (h5::Shape{2, 2}));
+}
+
 /// It was written before there were root mean squares, intervals of quantiles, histograms and limits.
 TEST(OlderMonteCarloFile, IsReadWithoutWhatItDoesNotHave) {
   const StoredResult stored = read_result(POESY_TEST_DATA "/monte_carlo_0_1.h5");

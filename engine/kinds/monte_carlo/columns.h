@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/stats/buckets.h"
+#include "engine/stats/moments.h"
+#include "engine/stats/quantile_sketch.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// The numbers of a Monte Carlo result that follow from the samples at one pose, and of all poses together.
+class MonteCarloColumns {
+ public:
+  MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis);
+
+  MonteCarloResult& result() { return result_; }              ///< With what was set.
+  const MonteCarloResult& result() const { return result_; }  ///< Likewise.
+
+  /// Sets what follows from the moments of a response at a pose.
+  void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
+  /// Sets what follows from their sketch. tried: all samples, among them those that do not count.
+  void set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch, std::uint64_t tried);
+  /// Sets what follows from the samples of all poses together; responses come in order. independent: how many of them
+  /// are independent of each other: all, or the machines that were used at all poses. Quantiles then have the interval
+  /// for samples that say nothing new at another pose, which is never too narrow.
+  void set_overall(const Moments& moments, const QuantileSketch& sketch, std::uint64_t independent);
+
+ private:
+  /// The ranks for quantile intervals of so many samples, [Q].
+  const std::vector<RankInterval>& ranks_of(std::uint64_t samples);
+
+  MonteCarloOptions asked_;
+  MonteCarloResult result_;
+  std::uint64_t ranked_samples_ = 0;  ///< number of samples of which ranks_ are
+  std::vector<RankInterval> ranks_;   ///< [Q]
+};
+
+/// Bins of the histograms of a result.
+inline constexpr std::size_t kHistogramBins = 128;
+
+/// Appends the histogram of a sketch; NaN edges where it is empty.
+void append_histogram(const QuantileSketch& sketch, std::vector<double>& edges, std::vector<std::uint64_t>& counts);
+
+/// Judges the limits of a Monte Carlo study by what it found. A limit is kept
+/// - by Judge::rms, if the response's root mean square over the samples of all poses that count is within it;
+/// - by Judge::share, if at every pose at least that share of all draws is within it: if the largest of the poses'
+///   share_magnitude is. Draws that do not count are not within it.
+/// overall: [R], the samples of all poses that count. Numbers from a sketch are off by its kRelativeError at most.
+/// Preconditions: found.overall_rms is there, and found.share_magnitude where it is needed; judge is no other one.
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
+                          const MonteCarloResult& found, std::span<const QuantileSketch> overall);
+
+}  // namespace poesy

@@ -1,0 +1,223 @@
+#include "engine/kinds/monte_carlo/machine_collector.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
+#include "engine/kinds/monte_carlo/columns.h"
+#include "engine/kinds/monte_carlo/yield.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::uint64_t kKind = 3;  ///< no other state begins with this number
+
+}  // namespace
+
+MachineCollector::Counts::Counts(std::size_t responses, std::size_t poses)
+    : at_pose(poses * responses), largest(responses), rms(responses), solves(poses), failed(poses) {}
+
+void MachineCollector::Counts::add(const MachineUnit& unit) {
+  for (std::size_t k = 0; k < at_pose.size(); ++k) at_pose[k].add(unit.at_pose[k]);
+  for (std::size_t r = 0; r < largest.size(); ++r) {
+    largest[r].add(unit.largest[r]);
+    rms[r].add(unit.rms[r]);
+  }
+  for (std::size_t m = 0; m < solves.size(); ++m) {
+    solves[m].merge(unit.solves[m]);
+    failed[m].merge(unit.failed[m]);
+  }
+  machines.merge(unit.counts);
+}
+
+void MachineCollector::Counts::merge(const Counts& later) {
+  for (std::size_t k = 0; k < at_pose.size(); ++k) at_pose[k].merge(later.at_pose[k]);
+  for (std::size_t r = 0; r < largest.size(); ++r) {
+    largest[r].merge(later.largest[r]);
+    rms[r].merge(later.rms[r]);
+  }
+  for (std::size_t m = 0; m < solves.size(); ++m) {
+    solves[m].merge(later.solves[m]);
+    failed[m].merge(later.failed[m]);
+  }
+  machines.merge(later.machines);
+}
+
+void MachineCollector::Counts::write(ByteWriter& to) const {
+  for (const auto* sketches : {&at_pose, &largest, &rms}) {
+    for (const QuantileSketch& sketch : *sketches) sketch.write(to);
+  }
+  for (std::size_t m = 0; m < solves.size(); ++m) {
+    solves[m].write(to);
+    failed[m].write(to);
+  }
+  machines.write(to);
+}
+
+MachineCollector::Counts MachineCollector::Counts::read(ByteReader& from, std::size_t responses, std::size_t poses,
+                                                        std::size_t first, std::size_t end) {
+  Counts counts(responses, poses);
+  for (auto* sketches : {&counts.at_pose, &counts.largest, &counts.rms}) {
+    for (QuantileSketch& sketch : *sketches) sketch = QuantileSketch::read(from);
+  }
+  for (std::size_t m = 0; m < poses; ++m) {
+    counts.solves[m] = SolveCounts::read(from);
+    if (counts.solves[m].total() != end - first) throw BytesError("has a pose with other machines");
+    counts.failed[m] = FailedSamples::read(from, counts.solves[m].not_converged(), first, end);
+  }
+  counts.machines = MachineCounts::read(from, responses, poses);
+  if (counts.machines.machines != end - first) throw BytesError("has counts of other machines");
+  return counts;
+}
+
+MachineCollector::MachineCollector(const MachineTable& table, const Analysis& analysis, const NumberRange& units)
+    : table_(&table), analysis_(&analysis), units_(units), counts_(table.responses(), table.plan().poses().size()) {}
+
+std::size_t MachineCollector::next() const {
+  if (tail_) return table_->units();
+  return sums_.empty() ? units_.first : sums_.end();
+}
+
+void MachineCollector::add(std::size_t n, MachineUnit&& unit) {
+  POESY_EXPECTS(n == next() && units_.holds(n));
+  if (!table_->is_whole(n)) {
+    tail_ = std::move(unit);
+    return;
+  }
+  counts_.add(unit);
+  sums_.add(n, *std::move(unit.sums));
+}
+
+SolveCounts MachineCollector::total() const {
+  SolveCounts sum = total_of(counts_.solves);
+  if (tail_) sum.merge(tail_->total);
+  return sum;
+}
+
+std::vector<Estimate> MachineCollector::overall_means() const {
+  if (sums_.empty()) return std::vector<Estimate>(table_->responses(), {kNaN, {kNaN, kNaN}});
+  const std::vector<Moments> means = sums_.total().mean;
+  std::vector<Estimate> estimates;
+  for (const Moments& mean : means) estimates.push_back({mean.mean(), mean_interval(mean, analysis_->conf_level)});
+  return estimates;
+}
+
+void MachineCollector::set_columns(const MachineSums& sums, MonteCarloResult& found, MonteCarloColumns& columns) const {
+  const std::size_t responses = table_->responses();
+  for (std::size_t m = 0; m < poses(); ++m) {
+    found.solves[m] = counts_.solves[m];
+    append_failures(0, PoseIndex(m), counts_.failed[m], found.failures);
+  }
+  for (std::size_t r = 0; r < responses; ++r) {
+    Moments moments;
+    QuantileSketch sketch;
+    for (std::size_t m = 0; m < poses(); ++m) {
+      const std::size_t k = m * responses + r;
+      columns.set_moments(r, m, sums.at_pose[k]);
+      columns.set_quantiles(r, m, counts_.at_pose[k], counts_.solves[m].total());
+      moments.merge(sums.at_pose[k]);
+      sketch.merge(counts_.at_pose[k]);
+    }
+    columns.set_overall(moments, sketch, counts_.machines.machines);
+  }
+}
+
+MachineResult MachineCollector::machines(const MachineSums& sums) const {
+  const std::size_t responses = table_->responses();
+  const std::size_t at_poses = table_->effect_poses().size();
+  const std::span effects(sums.effects);
+  MachineResult found;
+  found.conf_level = analysis_->conf_level;
+  found.largest = machine_values(sums.largest, counts_.largest, *analysis_);
+  found.rms = machine_values(sums.rms, counts_.rms, *analysis_);
+  for (const PoseIndex pose : table_->effect_poses()) found.s1_poses.push_back(pose.value);
+  for (const BinSpread& spread : table_->spreads()) {
+    found.bin_error.insert(found.bin_error.end(), spread.mean.begin(), spread.mean.end());
+  }
+  found.effects =
+      main_effects(effects.first(at_poses), effects[at_poses], table_->spreads(), responses, analysis_->conf_level);
+  found.effects_on_largest = main_effects(effects.subspan(at_poses + 1, 1), effects[at_poses + 1], table_->spreads(),
+                                          responses, analysis_->conf_level);
+  if (sums.scores) found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
+  return found;
+}
+
+MonteCarloResult MachineCollector::result() && {
+  if (tail_) {
+    counts_.add(*tail_);
+    sums_.add(table_->units() - 1, *std::move(tail_->sums));
+    tail_.reset();
+  }
+  const MachineSums sums = sums_.empty() ? MachineSums(*table_) : std::move(sums_).total();
+  MonteCarloColumns columns(poses(), table_->responses(), *analysis_);
+  MonteCarloResult& found = columns.result();
+  set_columns(sums, found, columns);
+  found.machines = machines(sums);
+  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(*analysis_);
+  if (analysis_->limits.empty()) return std::move(found);
+  if (asked.judge == Judge::yield) {
+    found.verdicts =
+        judge_machines(analysis_->limits, asked.yield, *found.machines->yield, counts_.machines, counts_.largest);
+    return std::move(found);
+  }
+  std::vector<QuantileSketch> overall(table_->responses());
+  for (std::size_t k = 0; k < counts_.at_pose.size(); ++k) overall[k % overall.size()].merge(counts_.at_pose[k]);
+  found.verdicts = judge_draws(analysis_->limits, asked.judge, asked.share, found, overall);
+  return std::move(found);
+}
+
+Bytes MachineCollector::state() const {
+  ByteWriter to;
+  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, table_->responses(), poses(),
+                                                                 table_->scales().size(), table_->plan().samples()}) {
+    to.number(number);
+  }
+  to.number(sums_.empty() ? 0 : 1);
+  if (!sums_.empty()) {
+    sums_.write(to);
+    to.number(sums_.first());
+    to.number(sums_.end());
+    counts_.write(to);
+  }
+  to.number(tail_ ? 1 : 0);
+  if (tail_) tail_->write(to);
+  return to.take();
+}
+
+void MachineCollector::restore(std::span<const std::byte> state) {
+  ByteReader from(state);
+  while (from.left() > 0) restore_one(from);
+}
+
+void MachineCollector::restore_one(ByteReader& from) {
+  for (const std::uint64_t expected :
+       std::array<std::uint64_t, 4>{kKind, table_->responses(), poses(), table_->scales().size()}) {
+    if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
+  }
+  if (tail_) throw BytesError("goes on after the last machine");
+  const auto samples = static_cast<std::size_t>(from.number_up_to(table_->plan().samples()));
+  const std::size_t each = MachineTable::unit_machines(poses());
+  if (from.number_up_to(1) == 1) {
+    const std::size_t before = next();
+    sums_.read(from, samples / each, [&](ByteReader& bytes, std::size_t, std::size_t leaves) {
+      MachineSums sums = MachineSums::read(bytes, *table_);
+      if (sums.effects.front().samples() > leaves * each) throw BytesError("has sums of other machines");
+      return sums;
+    });
+    const auto first = static_cast<std::size_t>(from.number_up_to(samples / each));
+    const auto end = static_cast<std::size_t>(from.number_up_to(samples / each));
+    if (first != before || end != sums_.end() || first >= end) throw BytesError("has sums of other machines");
+    counts_.merge(Counts::read(from, table_->responses(), poses(), first * each, end * each));
+  }
+  if (from.number_up_to(1) == 0) return;
+  const bool same = samples == table_->plan().samples();
+  if (samples % each == 0) throw BytesError("has a last unit that is whole");
+  MachineUnit tail = MachineUnit::read(from, *table_, samples / each * each, samples % each);
+  if (!same) return;
+  if (next() != samples / each) throw BytesError("lacks units before the last");
+  tail_ = std::move(tail);
+}
+
+}  // namespace poesy

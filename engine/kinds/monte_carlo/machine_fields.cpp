@@ -1,0 +1,268 @@
+#include "engine/kinds/monte_carlo/machine_fields.h"
+
+#include <algorithm>
+
+#include "engine/base/units.h"
+#include "engine/files/result_parts.h"
+#include "engine/stats/main_effects.h"
+
+namespace poesy {
+namespace {
+
+const Axes kByResponseQuantile{"response", "quantile"};
+const Axes kByFactorBin{"factor", "effect_bin"};
+const Axes kByResponseFactorBin{"response", "factor", "effect_bin"};
+const Axes kByEffectPose{"effect_pose"};
+
+/// What a machine that is not solved at every pose has.
+const std::string kOfSolved = " over the machines that are solved at every pose";
+
+/// One number of each machine. `what`: "largest magnitude over the poses".
+Group<MachineValues> values_group(const std::string& path, const std::string& what) {
+  using Values = MachineValues;
+  const std::string of = "of the machines' " + what + ",";
+  return {path,
+          "The distribution " + of + kOfSolved,
+          {},
+          {},
+          {{"mean", &Values::mean, kByResponse, kResponseUnit, "Mean " + of + kOfSolved},
+           {"mean_ci_low", &Values::mean_ci_low, kByResponse, kResponseUnit,
+            "Lower end of Student's interval of the mean; machines are independent of each other"},
+           {"mean_ci_high", &Values::mean_ci_high, kByResponse, kResponseUnit,
+            "Upper end of Student's interval of the mean"},
+           {"std", &Values::std, kByResponse, kResponseUnit, "Sample standard deviation"},
+           {"min", &Values::min, kByResponse, kResponseUnit, "Smallest of any machine"},
+           {"max", &Values::max, kByResponse, kResponseUnit, "Largest of any machine"},
+           {"count", &Values::count, kByResponse, "1", "Machines behind these: solved at every pose"},
+           {"quantiles", &Values::quantiles, kByResponseQuantile, kResponseUnit,
+            "Order statistic of rank ceil(q n) of n machines, as /monte_carlo/quantiles"},
+           {"quantiles_ci_low", &Values::quantiles_ci_low, kByResponseQuantile, kResponseUnit,
+            "Lower end of an interval for the quantile of the distribution, from order statistics (binomial)"},
+           {"quantiles_ci_high", &Values::quantiles_ci_high, kByResponseQuantile, kResponseUnit,
+            "Upper end of an interval for the quantile of the distribution, from order statistics (binomial)"},
+           {"histogram_edges",
+            &Values::histogram_edges,
+            {"response", "edge"},
+            kResponseUnit,
+            "Edges of the bins, as /monte_carlo/histogram_edges"},
+           {"histogram_counts",
+            &Values::histogram_counts,
+            {"response", "bin"},
+            "1",
+            "Machines in each bin, as /monte_carlo/histogram_counts"}}};
+}
+
+const Group<MachineValues> kLargest = values_group("/machines/largest", "largest magnitude over the poses");
+const Group<MachineValues> kRms = values_group("/machines/rms", "root mean square over the poses");
+
+const std::vector<Attribute<YieldResult>> kYieldInterval{{"conf_level", &YieldResult::conf_level}};
+const std::string kPearson = " end of the two-sided interval of Clopper and Pearson";
+
+const Group<YieldResult> kYield{
+    "/yield",
+    "The share of machines, each one set of errors, that are within every limit at every pose. A machine that is not "
+    "solved at a pose is a reject, unless said otherwise",
+    kYieldInterval,
+    {},
+    {{"value", &YieldResult::value, {}, "1", "The yield: share of the machines that are no rejects"},
+     {"ci_low", &YieldResult::ci_low, {}, "1", "Lower" + kPearson},
+     {"ci_high", &YieldResult::ci_high, {}, "1", "Upper" + kPearson},
+     {"rejects", &YieldResult::rejects, {}, "1", "Machines that are not within every limit at every pose"},
+     {"machines", &YieldResult::machines, {}, "1", "Machines that were tried"},
+     {"unsolved", &YieldResult::unsolved, {}, "1", "Of these, machines with a pose that is not solved"},
+     {"unsolved_pass",
+      &YieldResult::unsolved_pass,
+      {},
+      "1",
+      "The yield if samples that are not solved were within every limit"},
+     {"unsolved_pass_ci_low", &YieldResult::unsolved_pass_ci_low, {}, "1", "Lower" + kPearson},
+     {"unsolved_pass_ci_high", &YieldResult::unsolved_pass_ci_high, {}, "1", "Upper" + kPearson},
+     {"unsolved_pass_rejects", &YieldResult::unsolved_pass_rejects, {}, "1", "The rejects if they were"},
+     {"by_response", &YieldResult::by_response, kByResponse, "1",
+      "Share of the machines that are within the limit of this response at every pose; NaN for a response without a "
+      "limit"},
+     {"by_response_ci_low", &YieldResult::by_response_ci_low, kByResponse, "1", "Lower" + kPearson},
+     {"by_response_ci_high", &YieldResult::by_response_ci_high, kByResponse, "1", "Upper" + kPearson},
+     {"worst_pose_share", &YieldResult::worst_pose_share, kByResponsePose, "1",
+      "Share of the machines that are not within the limit of this response at this pose; NaN for a response without a "
+      "limit"},
+     {"gradient", &YieldResult::gradient, kByFactor, "SI: 1 / factor unit",
+      "What the yield changes by for each unit of the error's sigma (likelihood ratio); NaN for errors that are not "
+      "made of a normal, and where there are no rejects to tell"},
+     {"gradient_ci_low", &YieldResult::gradient_ci_low, kByFactor, "SI: 1 / factor unit",
+      "Lower end of its interval (central limit theorem)"},
+     {"gradient_ci_high", &YieldResult::gradient_ci_high, kByFactor, "SI: 1 / factor unit",
+      "Upper end of its interval (central limit theorem)"}}};
+
+/// S1, its interval.
+Fields<MainEffects> index_fields(const std::string& what) {
+  return {{"S1", &MainEffects::s1, kByResponseFactor, "1", "First-order index " + what},
+          {"S1_ci_low", &MainEffects::s1_ci_low, kByResponseFactor, "1", "Lower end of its interval"},
+          {"S1_ci_high", &MainEffects::s1_ci_high, kByResponseFactor, "1", "Upper end of its interval"}};
+}
+
+const Fields<MainEffects> kIndices = index_fields(
+    "Var(E[y | error]) / Var(y): both added up over the poses effect_pose, at which the same machines are, before they "
+    "are divided");
+const Fields<MainEffects> kIndicesOfLargest = index_fields("of the machines' largest magnitudes over all poses");
+
+Group<MainEffects> curves_group(const std::string& path, const std::string& what) {
+  return {path,
+          "Main effects: " + what + ", while an error is in each bin of equal probability and all others vary",
+          {},
+          {},
+          {{"mean", &MainEffects::mean, kByResponseFactorBin, kResponseUnit, "Mean over the machines in the bin"},
+           {"ci_low", &MainEffects::ci_low, kByResponseFactorBin, kResponseUnit, "Lower end of Student's interval"},
+           {"ci_high", &MainEffects::ci_high, kByResponseFactorBin, kResponseUnit, "Upper end of Student's interval"}}};
+}
+
+const Group<MainEffects> kCurves = curves_group("/monte_carlo/main_effect", "the mean over all poses of each response");
+const Group<MainEffects> kCurvesOfLargest =
+    curves_group("/machines/largest/main_effect", "the largest magnitude over all poses of each response");
+
+const Fields<MachineResult> kBins{
+    {"error", &MachineResult::bin_error, kByFactorBin, kFactorUnit, "Mean of the error in its bin"}};
+
+template <class Found>
+void show_all_axes(ResultBuilder& result, const std::string& group, const Fields<Found>& fields) {
+  for (const FieldRow<Found>& field : fields) result.show_axes(group, field.axes);
+}
+
+/// One line for each response.
+CsvTable by_response(const StoredResult& result, const std::string& name, const MachineValues& values) {
+  const std::vector<double>& levels = monte_carlo_of(result).levels;
+  CsvTable table{name,
+                 {"response", [&](std::size_t r) { return result.responses[r].name; }},
+                 result.responses.size(),
+                 {},
+                 {"unit", [&](std::size_t r) { return result.responses[r].unit; }}};
+  const auto add = [&](const std::string& heading, const auto& list, std::size_t first = 0, std::size_t stride = 1) {
+    table.columns.push_back(list_column(heading, list, first, stride));
+  };
+  add("mean", values.mean);
+  add("mean_ci_low", values.mean_ci_low);
+  add("mean_ci_high", values.mean_ci_high);
+  add("std", values.std);
+  add("min", values.min);
+  add("max", values.max);
+  add("count", values.count);
+  for (std::size_t q = 0; q < levels.size(); ++q) {
+    const std::string heading = "q_" + shortest(levels[q]);
+    add(heading, values.quantiles, q, levels.size());
+    add(heading + "_ci_low", values.quantiles_ci_low, q, levels.size());
+    add(heading + "_ci_high", values.quantiles_ci_high, q, levels.size());
+  }
+  return table;
+}
+
+/// All limits, then each.
+void append_yield_tables(CsvTables& tables, const StoredResult& result, const YieldResult& found) {
+  CsvTable all{"yield", {"limit", [](std::size_t) { return std::string("all"); }}, 1, {}, {}};
+  for (const FieldRow<YieldResult>& field : kYield.fields) {
+    if (field.axes.empty()) all.columns.push_back(field_column(field.name, field, found, 0));
+  }
+  tables.push_back(std::move(all));
+  CsvTable each{"yield_by_response",
+                {"response", [&](std::size_t r) { return result.responses[r].name; }},
+                result.responses.size(),
+                {list_column("yield", found.by_response), list_column("yield_ci_low", found.by_response_ci_low),
+                 list_column("yield_ci_high", found.by_response_ci_high)},
+                {}};
+  tables.push_back(std::move(each));
+  CsvTable gradient{"yield_gradient",
+                    {"factor", [&](std::size_t p) { return result.factors[p].name; }},
+                    result.factors.size(),
+                    {list_column("gradient", found.gradient), list_column("gradient_ci_low", found.gradient_ci_low),
+                     list_column("gradient_ci_high", found.gradient_ci_high)},
+                    {"unit", [&](std::size_t p) { return "1/" + result.factors[p].unit; }}};
+  tables.push_back(std::move(gradient));
+  CsvTable poses = lines_of_poses(result, "rejects");
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    poses.columns.push_back(
+        list_column(with_unit(result.responses[r].name, "1"), found.worst_pose_share, r * result.poses.size()));
+  }
+  tables.push_back(std::move(poses));
+}
+
+/// S1 of each error on each response, as SALib names them.
+CsvTable index_table(const StoredResult& result, const std::string& name, const MainEffects& effects) {
+  CsvTable table{
+      name, {"factor", [&](std::size_t p) { return result.factors[p].name; }}, result.factors.size(), {}, {}};
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const std::size_t first = r * result.factors.size();
+    const std::string& response = result.responses[r].name;
+    table.columns.push_back(list_column("S1_" + response, effects.s1, first));
+    table.columns.push_back(list_column("S1_ci_low_" + response, effects.s1_ci_low, first));
+    table.columns.push_back(list_column("S1_ci_high_" + response, effects.s1_ci_high, first));
+  }
+  return table;
+}
+
+/// The curves of one response: a line for each error and bin.
+CsvTable curve_table(const StoredResult& result, const MachineResult& found, std::size_t r) {
+  const std::size_t lines = result.factors.size() * kEffectBins;
+  const NamedUnit& response = result.responses[r];
+  return {"main_effect_" + response.name,
+          {"factor", [&](std::size_t line) { return result.factors[line / kEffectBins].name; }},
+          lines,
+          {list_column("error", found.bin_error),
+           list_column(with_unit("mean", response.unit), found.effects.mean, r * lines),
+           list_column(with_unit("ci_low", response.unit), found.effects.ci_low, r * lines),
+           list_column(with_unit("ci_high", response.unit), found.effects.ci_high, r * lines)},
+          {"unit_of_error", [&](std::size_t line) { return result.factors[line / kEffectBins].unit; }}};
+}
+
+}  // namespace
+
+void write_machines(ResultBuilder& result, const MachineResult& found) {
+  std::vector<double> middles;
+  for (std::size_t k = 0; k < kEffectBins; ++k) middles.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
+  result.add_axis("effect_bin", middles,
+                  {"1", "Bins of equal probability of an error: the share of its values below the middle of each"});
+  result.add_axis("effect_pose", found.s1_poses, {"1", "Poses, from 0, over which /monte_carlo/S1 adds up"});
+  result.file().make_group("/machines");
+  result.file().set_attribute("/machines", "description",
+                              std::string("What machines are like that are used at all poses"));
+  write_group(result, kLargest, found.largest);
+  write_group(result, kRms, found.rms);
+  if (found.yield) write_group(result, kYield, *found.yield);
+  write_fields(result, "/monte_carlo", kIndices, found.effects);
+  write_fields(result, "/machines/largest", kIndicesOfLargest, found.effects_on_largest);
+  for (const char* group : {"/monte_carlo", "/machines/largest"}) {
+    show_all_axes(result, group, kIndices);
+    result.file().set_attribute(std::string(group) + "/S1", "conf_level", found.conf_level);
+  }
+  result.show_axes("/monte_carlo", kByEffectPose);
+  write_group(result, kCurves, found.effects);
+  write_fields(result, "/monte_carlo/main_effect", kBins, found);
+  write_group(result, kCurvesOfLargest, found.effects_on_largest);
+}
+
+std::optional<MachineResult> read_machines(const h5::File& file) {
+  if (!file.exists("/machines")) return std::nullopt;
+  MachineResult found;
+  if (axis_length(file, "effect_bin") != kEffectBins) throw h5::Error("/effect_bin does not have 32 positions");
+  found.s1_poses = file.read<std::uint64_t>("/effect_pose");
+  found.conf_level = file.attribute<double>("/monte_carlo/S1", "conf_level").at(0);
+  read_group(file, kLargest, found.largest);
+  read_group(file, kRms, found.rms);
+  if (file.exists("/yield")) read_group(file, kYield, found.yield.emplace());
+  read_fields(file, "/monte_carlo", kIndices, found.effects);
+  read_fields(file, "/machines/largest", kIndicesOfLargest, found.effects_on_largest);
+  read_group(file, kCurves, found.effects);
+  read_fields(file, "/monte_carlo/main_effect", kBins, found);
+  read_group(file, kCurvesOfLargest, found.effects_on_largest);
+  return found;
+}
+
+void append_machine_tables(CsvTables& tables, const StoredResult& result) {
+  const MachineResult& found = *monte_carlo_of(result).machines;
+  if (found.yield) append_yield_tables(tables, result, *found.yield);
+  tables.push_back(by_response(result, "machines_largest", found.largest));
+  tables.push_back(by_response(result, "machines_rms", found.rms));
+  tables.push_back(index_table(result, "S1", found.effects));
+  tables.push_back(index_table(result, "S1_largest", found.effects_on_largest));
+  for (std::size_t r = 0; r < result.responses.size(); ++r) tables.push_back(curve_table(result, found, r));
+}
+
+}  // namespace poesy

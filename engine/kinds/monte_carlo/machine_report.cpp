@@ -1,0 +1,283 @@
+#include "engine/kinds/monte_carlo/machine_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/nan.h"
+#include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/report/display.h"
+#include "engine/stats/main_effects.h"
+
+namespace poesy {
+namespace {
+
+constexpr int kDigits = 6;
+
+const MachineResult& machines_of(const StoredResult& result) { return *monte_carlo_of(result).machines; }
+
+/// A tenth of an error's sigma: gradients are shown for a change by that, because errors have different units.
+constexpr double kPart = 0.1;
+
+/// Positions by these values, the largest first; NaN last.
+std::vector<std::size_t> largest_first(std::size_t count, const std::function<double(std::size_t)>& value) {
+  std::vector<std::size_t> order = positions(count);
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    const double x = value(a);
+    const double y = value(b);
+    return std::isnan(y) ? !std::isnan(x) : x > y;
+  });
+  return order;
+}
+
+/// "q_0_95", a name of JSON.
+std::string quantile_name(double level) {
+  std::string name = "q_" + shortest(level);
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '-' || c == '+'; }, '_');
+  return name;
+}
+
+Table values_table(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  const std::size_t levels = found.levels.size();
+  const auto number = [&result](std::string name, std::string heading, const std::vector<double>& values,
+                                int dispensable = 0, std::size_t stride = 1, std::size_t offset = 0) {
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
+                        [&result, &values, stride, offset](std::size_t r) {
+                          return value_cell(values[r * stride + offset], result.responses[r], kDigits);
+                        }};
+  };
+  const MachineValues& largest = machines_of(result).largest;
+  const MachineValues& rms = machines_of(result).rms;
+  const std::string level = "q_" + shortest(found.levels.back());
+  const std::string name = quantile_name(found.levels.back());
+  Table table{.name = "machines",
+              .caption = fmt::format("Of each of {} the largest magnitude and the root mean square (rms) over {}",
+                                     counted(found.solves.front().total(), "machine", "machines"),
+                                     found.poses == 1 ? "its pose" : fmt::format("all {} poses", found.poses)),
+              .columns = {}};
+  fill(table, result.headline,
+       {name_column(result.responses, "response"), unit_column(result.responses),
+        number("largest_mean", "largest: mean", largest.mean),
+        number("largest_" + name, level, largest.quantiles, 0, levels, levels - 1),
+        number("largest_max", "max", largest.max), number("rms_mean", "rms: mean", rms.mean, 1),
+        number("rms_" + name, level, rms.quantiles, 1, levels, levels - 1), number("rms_max", "max", rms.max, 1)});
+  table.notes.push_back("Machines that are not solved at every pose are left out");
+  return table;
+}
+
+Table gradient_table(const StoredResult& result) {
+  const YieldResult& yield = *machines_of(result).yield;
+  const auto change = [&](const std::vector<double>& slope) {
+    return [&](std::size_t p) { return kPart * slope[p] * result.factor_sigma[p]; };
+  };
+  const auto column = [&](std::string name, std::string heading, const std::vector<double>& slope) {
+    return FilledColumn{percent_column(std::move(name), std::move(heading)),
+                        [cell = change(slope)](std::size_t p) { return percent_cell(cell(p)); }};
+  };
+  const auto by_unit = [&result](std::string name, std::string heading, const std::vector<double>& slope) {
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", 1), [&result, &slope](std::size_t p) {
+                          return number_cell(slope[p] * display(result.factors[p]).si);
+                        }};
+  };
+  Table table{
+      .name = "yield_gradient",
+      .caption = fmt::format("What the yield changes by if the sigma of one error grows by {}", percent_text(kPart)),
+      .columns = {},
+      .notes = {fmt::format("low, high: {} interval; slope: of the yield by sigma, 1/mm or 1/deg; - where an "
+                            "error is not made of a normal, or no machine is rejected",
+                            percent_text(yield.conf_level))},
+      .ranked = true};
+  fill(table, largest_first(result.factors.size(), [&](std::size_t p) { return -change(yield.gradient)(p); }),
+       {name_column(result.factors, "error"), column("change", "yield", yield.gradient),
+        column("change_low", "low", yield.gradient_ci_low), column("change_high", "high", yield.gradient_ci_high),
+        by_unit("slope", "slope", yield.gradient)});
+  return table;
+}
+
+/// The poses at which most machines are rejected, of each limit.
+Table rejects_table(const StoredResult& result) {
+  constexpr std::size_t kMost = 5;
+  const YieldResult& yield = *machines_of(result).yield;
+  const std::size_t poses = result.poses.size();
+  Table table{.name = "reject_poses",
+              .caption = "Where machines are rejected: the poses at which most of them are not within a limit",
+              .columns = {text_column("response", "response"), number_column("pose", "pose"),
+                          percent_column("rejected", "rejected"), text_column("place", "where", 1)}};
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const auto share = [&](std::size_t m) { return yield.worst_pose_share[r * poses + m]; };
+    const std::vector<std::size_t> order = largest_first(poses, share);
+    for (const std::size_t m : std::span(order).first(std::min(kMost, poses))) {
+      if (!(share(m) > 0.0)) break;
+      table.rows.push_back({text_cell(result.responses[r].name), count_cell(m), percent_cell(share(m)),
+                            text_cell(coordinates_text(result, m))});
+    }
+  }
+  if (table.rows.empty()) table.notes.emplace_back("No machine is rejected at any pose");
+  return table;
+}
+
+std::string indices_note(const StoredResult& result, std::size_t r) {
+  const std::size_t factors = result.factors.size();
+  double sum = 0.0;
+  for (const double s1 : std::span(machines_of(result).effects.s1).subspan(r * factors, factors)) sum += s1;
+  return fmt::format(
+      "{}: the indices sum to {}; what is missing from 1 is what errors do together. A response without sign makes "
+      "such "
+      "interaction of its own, so an error with a small index is not one without effect",
+      result.responses[r].name, number_text(sum, 3));
+}
+
+Table index_table(const StoredResult& result) {
+  const MainEffects& effects = machines_of(result).effects;
+  const std::size_t factors = result.factors.size();
+  const std::size_t ranking = response_named(result, default_ranking(result));
+  std::vector<FilledColumn> columns{name_column(result.factors, "error")};
+  const auto add = [&](const std::string& name, const std::string& heading, const std::vector<double>& values,
+                       std::size_t r, int dispensable) {
+    columns.push_back({number_column(name, heading, "", dispensable),
+                       [&values, at = r * factors](std::size_t p) { return number_cell(values[at + p], 3); }});
+  };
+  for (const std::size_t r : headline_order(result)) {
+    const std::string& response = result.responses[r].name;
+    add("S1_" + response, response, effects.s1, r, r == ranking ? 0 : 1);
+    add("S1_ci_low_" + response, "low", effects.s1_ci_low, r, r == ranking ? 0 : 2);
+    add("S1_ci_high_" + response, "high", effects.s1_ci_high, r, r == ranking ? 0 : 2);
+  }
+  Table table{.name = "first_order",
+              .caption = "First-order indices S1: the part of a response's variance that an error makes alone",
+              .columns = {},
+              .notes = {fmt::format("added up over {}; low, high: {} interval",
+                                    counted(machines_of(result).s1_poses.size(), "pose", "poses"),
+                                    percent_text(monte_carlo_of(result).conf_level)),
+                        indices_note(result, ranking)},
+              .ranked = true};
+  fill(table, largest_first(factors, [&](std::size_t p) { return effects.s1[ranking * factors + p]; }), columns);
+  return table;
+}
+
+/// Values [R x P] of the responses in this order.
+std::vector<double> in_order(std::span<const double> values, std::span<const std::size_t> responses) {
+  const std::size_t factors = responses.empty() ? 0 : values.size() / responses.size();
+  std::vector<double> list;
+  for (const std::size_t r : responses) {
+    const auto row = values.subspan(r * factors, factors);
+    list.insert(list.end(), row.begin(), row.end());
+  }
+  return list;
+}
+
+void add_yield_section(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const YieldResult& yield = *machines_of(result).yield;
+  Section& section = page.add_section("yield", "What the yield depends on");
+  ArrayPool& pool = page.figures.pool;
+  const auto add = [&](const std::string& name, const std::vector<double>& slope) {
+    std::vector<double> change;
+    for (std::size_t p = 0; p < slope.size(); ++p) change.push_back(kPart * slope[p] * result.factor_sigma[p]);
+    return pool.add(name, change, 0.01);
+  };
+  section.paragraph(
+      "A machine has one set of errors, and is good if it is within every limit at every pose. The yield is the share "
+      "of "
+      "good machines; its slope by the size of an error follows from the same machines (likelihood ratio).");
+  Bars bars{{},
+            {{fmt::format("change of the yield if sigma grows by {}", percent_text(kPart)),
+              {{"%"}},
+              add("yield_change", yield.gradient),
+              add("yield_change_low", yield.gradient_ci_low),
+              add("yield_change_high", yield.gradient_ci_high)}},
+            names_of(result.factors)};
+  add_figure(page, section, "yield-gradient", std::move(bars),
+             "The errors on which the yield depends most; thin lines are intervals.");
+  section.table(tables, "yield_gradient");
+  section.table(tables, "reject_poses");
+}
+
+/// A panel for each response of the headline, with the errors of the largest indices first.
+Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
+  constexpr std::size_t kMost = 12;
+  const MainEffects& effects = machines_of(result).effects;
+  const std::size_t factors = result.factors.size();
+  std::vector<double> below;
+  for (std::size_t k = 0; k < kEffectBins; ++k) below.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
+  Lines lines{.x = {"share of the error's values below", "%", pool.add("effect_bin", below, 0.01)}, .panels = {}};
+  for (const std::size_t r : headline_order(result)) {
+    const NamedUnit& response = result.responses[r];
+    Panel panel{"mean of " + response.name, unit_text(response), {}};
+    const auto s1 = [&](std::size_t p) { return effects.s1[r * factors + p]; };
+    const std::vector<std::size_t> order = largest_first(factors, s1);
+    for (const std::size_t p : std::span(order).first(std::min(kMost, factors))) {
+      const auto add = [&](std::string_view what, const std::vector<double>& values) {
+        return pool.add(fmt::format("{}/{}/{}", what, r, p),
+                        std::span(values).subspan((r * factors + p) * kEffectBins, kEffectBins), display(response).si);
+      };
+      panel.series.push_back({result.factors[p].name, add("effect_mean", effects.mean),
+                              add("effect_low", effects.ci_low), add("effect_high", effects.ci_high)});
+    }
+    lines.panels.push_back(std::move(panel));
+  }
+  return lines;
+}
+
+void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const MachineResult& found = machines_of(result);
+  const std::vector<std::size_t> order = response_order(result);
+  Section& section = page.add_section("first-order", "What each error does alone");
+  ArrayPool& pool = page.figures.pool;
+  const auto quantity = [&](const std::string& label, const std::string& name, const MainEffects& effects) {
+    const auto add = [&](const std::string& end, const std::vector<double>& values) {
+      return pool.add(name + end, in_order(values, order));
+    };
+    return BarQuantity{label, std::vector(order.size(), std::vector<std::string>{""}), add("", effects.s1),
+                       add("_low", effects.s1_ci_low), add("_high", effects.s1_ci_high)};
+  };
+  section.paragraph(fmt::format(
+      "The first-order index of an error is the part of a response's variance that goes when the error is known. "
+      "Variances are added up over {}. A response without sign is not additive although the mechanism is nearly "
+      "linear, "
+      "so its indices sum to less than 1: read them with the shares of the mean square.",
+      counted(found.s1_poses.size(), "pose", "poses")));
+  Bars bars{{{"response", names_of(result.responses, order)}},
+            {quantity("first-order index S1", "S1", found.effects),
+             quantity("the same of a machine's largest magnitude", "S1_largest", found.effects_on_largest)},
+            names_of(result.factors)};
+  add_figure(page, section, "first-order", std::move(bars), "First-order indices with their intervals.");
+  add_figure(page, section, "main-effects", effect_curves(result, pool),
+             "The mean of a response over all poses while one error is known and all others vary, with its interval.");
+  section.table(tables, "first_order");
+}
+
+}  // namespace
+
+std::vector<Table> machine_tables(const StoredResult& result) {
+  std::vector<Table> tables{values_table(result)};
+  if (machines_of(result).yield) {
+    tables.push_back(rejects_table(result));
+    tables.push_back(gradient_table(result));
+  }
+  tables.push_back(index_table(result));
+  return tables;
+}
+
+void add_machine_sections(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (machines_of(result).yield) add_yield_section(result, tables, page);
+  add_effects_section(result, tables, page);
+}
+
+std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& figures) {
+  std::vector<Field> fields;
+  if (!machines_of(result).yield) return fields;
+  const std::vector<double>& shares = machines_of(result).yield->worst_pose_share;
+  const std::size_t poses = result.poses.size();
+  for (const std::size_t r : figures.responses()) {
+    if (verdict_on(result, r) == nullptr) continue;
+    fields.push_back({result.responses[r].name + ", machines rejected", "%",
+                      figures.add(fmt::format("rejected/{}", r), std::span(shares).subspan(r * poses, poses), 0.01)});
+  }
+  return fields;
+}
+
+}  // namespace poesy

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/files/result_file.h"
+#include "engine/report/html/parts.h"
+#include "engine/report/tables.h"
+
+/// How tables and reports show what a Monte Carlo study of machines found in addition. Precondition of all:
+/// monte_carlo_of(result).machines is there.
+namespace poesy {
+
+/// Of each machine its largest magnitude and its root mean square; which errors the yield depends on, with its
+/// gradient; at which poses machines are rejected; first-order indices.
+std::vector<Table> machine_tables(const StoredResult& result);
+
+/// The sections that come after the limits: what the yield depends on, and what each error does alone.
+void add_machine_sections(const StoredResult& result, std::span<const Table> tables, Page& page);
+
+/// For dots in the workspace: the share of machines that each pose rejects, for each limit. Empty without limits.
+std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& figures);
+
+}  // namespace poesy

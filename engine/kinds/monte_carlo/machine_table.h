@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/stats/main_effects.h"
+#include "engine/stats/yield_gradient.h"
+#include "engine/study/plan.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// The machines of a study that draws errors per machine, in units: consecutive machines, each unit at all poses. And
+/// what their statistics need to know beforehand. Depends on the study alone, so everybody who has it has the same one.
+/// M poses, R responses, P errors.
+class MachineTable {
+ public:
+  /// Main effects are added up pose by pose at no more poses than this.
+  static constexpr std::size_t kMostEffectPoses = 8;
+
+  /// Refers to the plan. Precondition: Draws::per_machine.
+  MachineTable(const Plan& plan, std::size_t responses, const Analysis& analysis);
+
+  /// Machines of a unit at so many poses, a divisor of Plan::kUnitSamples: the fewer the more poses there are, because
+  /// memory grows with both, but enough for a solver that takes several at once.
+  static std::size_t unit_machines(std::size_t poses);
+  /// Units that so many machines make up, the last one perhaps smaller.
+  static std::size_t units_for(std::size_t machines, std::size_t poses);
+
+  const Plan& plan() const { return *plan_; }                                               ///< Of the study.
+  std::size_t responses() const { return responses_; }                                      ///< R.
+  std::size_t units() const { return units_for(plan_->samples(), plan_->poses().size()); }  ///< Of the whole study.
+  /// The n-th unit's machines, at the first pose.
+  WorkUnit unit(std::size_t n) const;
+  /// Whether it is as large as any.
+  bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(plan_->poses().size()); }
+
+  bool has_limits() const { return has_limits_; }                  ///< Whether machines may be rejected.
+  std::span<const double> limits() const { return limits_; }       ///< [R] on magnitudes, infinite for none.
+  std::span<const ErrorScale> scales() const { return scales_; }   ///< [P]
+  std::span<const BinSpread> spreads() const { return spreads_; }  ///< [P]
+
+  /// The poses at which main effects are added up, evenly spaced over the order of the study's poses.
+  std::span<const PoseIndex> effect_poses() const { return effect_poses_; }
+  /// Numbers whose main effects are added up: the responses at each of effect_poses(), a machine's means over all
+  /// poses, and its largest magnitudes.
+  std::size_t effects() const { return effect_poses_.size() + 2; }
+
+ private:
+  const Plan* plan_;
+  std::size_t responses_;
+  bool has_limits_;
+  std::vector<double> limits_;
+  std::vector<ErrorScale> scales_;
+  std::vector<BinSpread> spreads_;
+  std::vector<PoseIndex> effect_poses_;
+};
+
+}  // namespace poesy

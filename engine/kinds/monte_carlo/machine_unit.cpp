@@ -1,0 +1,181 @@
+#include "engine/kinds/monte_carlo/machine_unit.h"
+
+#include <algorithm>
+
+#include "engine/base/contract.h"
+#include "engine/random/stream.h"
+
+namespace poesy {
+namespace {
+
+template <class Sum>
+void merge_each(std::vector<Sum>& sums, const std::vector<Sum>& later) {
+  POESY_EXPECTS(sums.size() == later.size());
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k].merge(later[k]);
+}
+
+template <class Value>
+void write_each(const std::vector<Value>& values, ByteWriter& to) {
+  for (const Value& value : values) value.write(to);
+}
+
+template <class Value>
+void read_each(ByteReader& from, std::size_t count, std::vector<Value>& values) {
+  values.clear();
+  for (std::size_t k = 0; k < count; ++k) values.push_back(Value::read(from));
+}
+
+}  // namespace
+
+MachineSums::MachineSums(const MachineTable& table)
+    : at_pose(table.plan().poses().size() * table.responses()),
+      mean(table.responses()),
+      largest(table.responses()),
+      rms(table.responses()) {
+  if (table.has_limits()) scores.emplace(table.scales());
+  effects.assign(table.effects(), MainEffectSums(table.scales().size(), table.responses()));
+}
+
+void MachineSums::merge(const MachineSums& later) {
+  merge_each(at_pose, later.at_pose);
+  merge_each(mean, later.mean);
+  merge_each(largest, later.largest);
+  merge_each(rms, later.rms);
+  if (scores) scores->merge(*later.scores);
+  merge_each(effects, later.effects);
+}
+
+void MachineSums::write(ByteWriter& to) const {
+  for (const auto* moments : {&at_pose, &mean, &largest, &rms}) write_each(*moments, to);
+  if (scores) scores->write(to);
+  write_each(effects, to);
+}
+
+MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
+  MachineSums sums(table);
+  for (auto* moments : {&sums.at_pose, &sums.mean, &sums.largest, &sums.rms})
+    read_each(from, moments->size(), *moments);
+  if (sums.scores) sums.scores = ScoreSums::read(from, table.scales());
+  sums.effects.clear();
+  for (std::size_t k = 0; k < table.effects(); ++k) {
+    sums.effects.push_back(MainEffectSums::read(from, table.scales().size(), table.responses()));
+  }
+  return sums;
+}
+
+void MachineUnit::write(ByteWriter& to) const {
+  sums->write(to);
+  counts.write(to);
+  for (const auto* values : {&at_pose, &largest, &rms}) write_each(*values, to);
+  write_each(solves, to);
+  write_each(failed, to);
+}
+
+MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t machines) {
+  const std::size_t poses = table.plan().poses().size();
+  MachineUnit unit;
+  unit.sums = MachineSums::read(from, table);
+  unit.counts = MachineCounts::read(from, table.responses(), poses);
+  read_each(from, poses * table.responses(), unit.at_pose);
+  read_each(from, table.responses(), unit.largest);
+  read_each(from, table.responses(), unit.rms);
+  read_each(from, poses, unit.solves);
+  for (const SolveCounts& solves : unit.solves) {
+    if (solves.total() != machines) throw BytesError("has a pose with other machines");
+    unit.failed.push_back(FailedSamples::read(from, solves.not_converged(), first, first + machines));
+  }
+  unit.total = total_of(unit.solves);
+  return unit;
+}
+
+MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Model& model)
+    : UnitSolver(table.plan(), model, table.scales().size()), table_(&table) {
+  const std::size_t machines = MachineTable::unit_machines(table.plan().poses().size());
+  counts_.resize(machines);
+  kept_.reserve(machines);
+}
+
+EffectBins MachineUnitEvaluator::draw_all(const WorkUnit& unit) {
+  const std::size_t errors = table_->scales().size();
+  const auto row = [&](std::size_t v) { return std::span(values_).subspan(v * unit.count, unit.count); };
+  for (std::size_t v = 0; v < errors; ++v) fill_uniforms(plan_->address(v, unit.pose), unit.first, row(v));
+  const std::span<const double> uniforms = std::span(values_).first(errors * unit.count);
+  EffectBins bins(uniforms, errors);
+  for (std::size_t v = 0; v < errors; ++v) plan_->distributions()[v].transform(row(v));
+  return bins;
+}
+
+std::span<const double> MachineUnitEvaluator::only(std::span<const double> values,
+                                                   std::span<const std::uint8_t> counts) {
+  if (std::ranges::all_of(counts, [](std::uint8_t one) { return one == 1; })) return values;
+  kept_.clear();
+  for (std::size_t b = 0; b < values.size(); ++b) {
+    if (counts[b] == 1) kept_.push_back(values[b]);
+  }
+  return kept_;
+}
+
+void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins,
+                                      MachineBlock& block, MachineUnit& found) {
+  const UnitOutcomes outcomes = UnitSolver::solve(PoseIndex(pose), plan_->factors(), unit.count, 0.0);
+  const std::span ok = std::span(counts_).first(unit.count);
+  for (std::size_t b = 0; b < unit.count; ++b) {
+    ok[b] = counts(outcomes.status[b], plan_->not_converged()) ? 1 : 0;
+    found.solves[pose].add(outcomes.status[b], outcomes.iterations[b]);
+    found.failed[pose].add(SampleIndex(unit.first.value + b), outcomes.status[b]);
+  }
+  block.add_pose(outcomes.responses, ok);
+  for (std::size_t r = 0; r < responses_; ++r) {
+    const std::span all = outcomes.responses.subspan(r * unit.count, unit.count);
+    for (std::size_t b = 0; b < unit.count; ++b) sum_[r * unit.count + b] += all[b];
+    const std::span<const double> kept = only(all, ok);
+    found.sums->at_pose[pose * responses_ + r] = Moments::of(kept);
+    found.at_pose.emplace_back(kept);
+  }
+  const auto place = std::ranges::find(table_->effect_poses(), PoseIndex(pose));
+  if (place == table_->effect_poses().end()) return;
+  const auto k = static_cast<std::size_t>(place - table_->effect_poses().begin());
+  found.sums->effects[k].add(bins, outcomes.responses, ok);
+}
+
+void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found) {
+  const std::size_t machines = block.machines();
+  for (double& sum : sum_) sum /= static_cast<double>(block.poses());
+  const std::vector<double> largest = block.largest();
+  const std::vector<double> rms = block.root_mean_square();
+  const auto of_response = [&](const std::vector<double>& values, std::size_t r) {
+    return only(std::span(values).subspan(r * machines, machines), block.solved());
+  };
+  for (std::size_t r = 0; r < responses_; ++r) {
+    found.sums->mean[r] = Moments::of(of_response(sum_, r));
+    found.largest.emplace_back(of_response(largest, r));
+    found.sums->largest[r] = Moments::of(of_response(largest, r));
+    found.rms.emplace_back(of_response(rms, r));
+    found.sums->rms[r] = Moments::of(of_response(rms, r));
+  }
+  const std::size_t at_poses = table_->effect_poses().size();
+  found.sums->effects[at_poses].add(bins, sum_, block.solved());
+  found.sums->effects[at_poses + 1].add(bins, largest, block.solved());
+  if (!found.sums->scores) return;
+  found.sums->scores->add(std::span(values_).first(table_->scales().size() * machines), block.rejected());
+}
+
+MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
+  const WorkUnit unit = table_->unit(n);
+  const std::size_t poses = plan_->poses().size();
+  MachineUnit found;
+  found.sums.emplace(*table_);
+  found.at_pose.reserve(poses * responses_);
+  found.solves.resize(poses);
+  found.failed.resize(poses);
+  const EffectBins bins = draw_all(unit);
+  sum_.assign(responses_ * unit.count, 0.0);
+  MachineBlock block(table_->limits(), unit.count);
+  for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);
+  found.counts = block.counts();
+  add_machines(block, bins, found);
+  found.total = total_of(found.solves);
+  return found;
+}
+
+}  // namespace poesy

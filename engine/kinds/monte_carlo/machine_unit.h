@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/base/bytes.h"
+#include "engine/kinds/monte_carlo/machine_table.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/result.h"
+#include "engine/stats/machines.h"
+#include "engine/stats/main_effects.h"
+#include "engine/stats/moments.h"
+#include "engine/stats/quantile_sketch.h"
+#include "engine/stats/yield_gradient.h"
+
+/// Units of machines and what they come to: R responses, M poses.
+namespace poesy {
+
+/// Sums over machines whose order shows in their last bits: a Sum of MergeTree.
+struct MachineSums {
+  std::vector<Moments> at_pose;         ///< [M x R] of the samples that count
+  std::vector<Moments> mean;            ///< [R] of the machines' means over the poses
+  std::vector<Moments> largest;         ///< [R] of the machines' largest magnitudes
+  std::vector<Moments> rms;             ///< [R] of the machines' root mean squares
+  std::optional<ScoreSums> scores;      ///< where there are limits
+  std::vector<MainEffectSums> effects;  ///< as MachineTable::effects() counts them
+
+  /// Of no machines.
+  explicit MachineSums(const MachineTable& table);
+  /// Precondition: the machines of `later` come after those of this.
+  void merge(const MachineSums& later);
+
+  /// Every bit, and back.
+  void write(ByteWriter& to) const;
+  static MachineSums read(ByteReader& from, const MachineTable& table);  ///< Throws BytesError.
+};
+
+/// What one unit of machines contributes.
+struct MachineUnit {
+  std::optional<MachineSums> sums;      ///< empty in a default-constructed one alone
+  MachineCounts counts;                 ///< which of them are good
+  std::vector<BucketedValues> at_pose;  ///< [M x R] the samples that count, ready for a sketch
+  std::vector<BucketedValues> largest;  ///< [R] of the machines that are solved at each pose
+  std::vector<BucketedValues> rms;      ///< [R] likewise
+  std::vector<SolveCounts> solves;      ///< [M] how they ended
+  std::vector<FailedSamples> failed;    ///< [M] the first of them
+  SolveCounts total;                    ///< of all poses
+
+  /// For a message or a state.
+  void write(ByteWriter& to) const;
+  /// Of so many machines from `first` on. Throws BytesError.
+  static MachineUnit read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t machines);
+};
+
+/// Solves units of machines serially: draws their errors once and solves them pose by pose. Owns the scratch of one
+/// thread; what a unit gives depends on the study and the unit.
+class MachineUnitEvaluator : private UnitSolver {
+ public:
+  /// Refers to both.
+  MachineUnitEvaluator(const MachineTable& table, const Model& model);
+
+  /// Unit n at all poses.
+  MachineUnit operator()(std::size_t n);
+
+ private:
+  /// Fills values_, and gives the bins into which they fall.
+  EffectBins draw_all(const WorkUnit& unit);
+  void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
+                  MachineUnit& found);
+  void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
+  /// Those of [B] values whose machine or sample counts.
+  std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
+
+  const MachineTable* table_;
+  std::vector<std::uint8_t> counts_;  ///< [B] at the pose
+  std::vector<double> sum_;           ///< [R x B] over the poses
+  std::vector<double> kept_;          ///< of one response
+};
+
+}  // namespace poesy

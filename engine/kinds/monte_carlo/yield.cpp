@@ -1,0 +1,137 @@
+#include "engine/kinds/monte_carlo/yield.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/base/nan.h"
+#include "engine/kinds/monte_carlo/columns.h"
+#include "engine/stats/buckets.h"
+#include "engine/stats/proportion.h"
+
+namespace poesy {
+namespace {
+
+double share(std::uint64_t part, std::uint64_t all) { return static_cast<double>(part) / static_cast<double>(all); }
+
+void append(const Estimate& estimate, std::vector<double>& value, std::vector<double>& low, std::vector<double>& high) {
+  value.push_back(estimate.value);
+  low.push_back(estimate.interval.low);
+  high.push_back(estimate.interval.high);
+}
+
+void append_quantiles(const QuantileSketch& sketch, std::span<const double> levels, double conf_level,
+                      MachineValues& values) {
+  const std::vector<Bucket> buckets = sketch.buckets();
+  for (const double level : levels) {
+    append({sketch.quantile(level), quantile_interval(buckets, quantile_ranks(sketch.count(), level, conf_level))},
+           values.quantiles, values.quantiles_ci_low, values.quantiles_ci_high);
+  }
+}
+
+}  // namespace
+
+MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
+                             const Analysis& analysis) {
+  MachineValues values;
+  for (std::size_t r = 0; r < moments.size(); ++r) {
+    const bool none = moments[r].count() == 0;
+    append({none ? kNaN : moments[r].mean(), mean_interval(moments[r], analysis.conf_level)}, values.mean,
+           values.mean_ci_low, values.mean_ci_high);
+    values.std.push_back(moments[r].standard_deviation());
+    values.min.push_back(sketches[r].min());
+    values.max.push_back(sketches[r].max());
+    values.count.push_back(moments[r].count());
+    append_quantiles(sketches[r], asked_of<MonteCarloOptions>(analysis).quantiles, analysis.conf_level, values);
+    append_histogram(sketches[r], values.histogram_edges, values.histogram_counts);
+  }
+  return values;
+}
+
+YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
+                     double conf_level) {
+  const std::uint64_t n = counts.machines;
+  const auto good = [&](std::uint64_t rejects) { return proportion(n - rejects, n, conf_level); };
+  const Estimate strict = good(counts.all.strict);
+  const Estimate lenient = good(counts.all.lenient);
+  const std::size_t responses = counts.by_limit.size();
+  const std::size_t poses = counts.at_pose.size() / std::max<std::size_t>(1, responses);
+  YieldResult found{.conf_level = conf_level,
+                    .value = strict.value,
+                    .ci_low = strict.interval.low,
+                    .ci_high = strict.interval.high,
+                    .rejects = counts.all.strict,
+                    .machines = n,
+                    .unsolved = counts.unsolved,
+                    .unsolved_pass = lenient.value,
+                    .unsolved_pass_ci_low = lenient.interval.low,
+                    .unsolved_pass_ci_high = lenient.interval.high,
+                    .unsolved_pass_rejects = counts.all.lenient};
+  for (std::size_t r = 0; r < responses; ++r) {
+    const bool limited = std::ranges::find(limits, r, &ResponseLimit::response) != limits.end();
+    append(limited ? good(counts.by_limit[r].strict) : Estimate{kNaN, {kNaN, kNaN}}, found.by_response,
+           found.by_response_ci_low, found.by_response_ci_high);
+    for (std::size_t m = 0; m < poses; ++m) {
+      found.worst_pose_share.push_back(limited ? share(counts.at_pose[r * poses + m].strict, n) : kNaN);
+    }
+  }
+  for (const Estimate& one : scores.gradient(conf_level)) {
+    append(one, found.gradient, found.gradient_ci_low, found.gradient_ci_high);
+  }
+  return found;
+}
+
+MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEffectSums& curve,
+                         std::span<const BinSpread> errors, std::size_t responses, double conf_level) {
+  MainEffects effects;
+  for (std::size_t r = 0; r < responses; ++r) {
+    for (std::size_t p = 0; p < errors.size(); ++p) {
+      std::vector<BinnedVariance> variances;
+      for (const MainEffectSums& sums : at_poses) variances.push_back(sums.variance(r, p, errors[p]));
+      append(first_order_index(variances, Dependence::unknown, conf_level), effects.s1, effects.s1_ci_low,
+             effects.s1_ci_high);
+      for (const Estimate& bin : curve.curve(r, p, conf_level)) {
+        append(bin, effects.mean, effects.ci_low, effects.ci_high);
+      }
+    }
+  }
+  return effects;
+}
+
+YieldVerdict judge_yield(const YieldResult& found, double asked) {
+  using enum YieldVerdict::Decision;
+  YieldVerdict verdict{.decision = not_asked,
+                       .asked = asked,
+                       .conf_level = found.conf_level,
+                       .value = found.value,
+                       .ci_low = found.ci_low,
+                       .ci_high = found.ci_high,
+                       .machines = found.machines,
+                       .rejects = found.rejects,
+                       .unsolved = found.rejects - found.unsolved_pass_rejects};
+  if (asked == 0.0) return verdict;
+  const std::uint64_t good = found.machines - found.rejects;
+  verdict.decision = undecided;
+  if (proportion_at_least(good, found.machines, found.conf_level) >= asked) verdict.decision = kept;
+  if (proportion_at_most(good, found.machines, found.conf_level) < asked) verdict.decision = not_kept;
+  return verdict;
+}
+
+LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
+                             const MachineCounts& counts, std::span<const QuantileSketch> largest) {
+  LimitVerdicts verdicts{.judge = Judge::yield, .limits = {}, .yield = judge_yield(found, asked)};
+  const std::uint64_t n = counts.machines;
+  for (const ResponseLimit& limit : limits) {
+    LimitVerdict verdict{.response = limit.response, .limit = limit.most, .value = kNaN, .tried = n};
+    verdict.within = n - counts.by_limit[limit.response].strict;
+    const std::uint64_t rank = asked == 0.0 ? n : quantile_rank(asked, n);
+    const QuantileSketch& values = largest[limit.response];
+    if (asked > 0.0) {
+      verdict.value = rank <= values.count() ? values.order_statistic(rank) : std::numeric_limits<double>::infinity();
+    }
+    verdict.passed = verdict.within >= rank;
+    verdicts.limits.push_back(verdict);
+  }
+  return verdicts;
+}
+
+}  // namespace poesy

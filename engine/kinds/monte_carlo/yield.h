@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+
+#include "engine/kinds/monte_carlo/machine_unit.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/run/result.h"
+#include "engine/stats/machines.h"
+#include "engine/stats/main_effects.h"
+#include "engine/stats/quantile_sketch.h"
+#include "engine/stats/yield_gradient.h"
+#include "engine/study/study.h"
+
+/// From counts and sums over machines to what a result says of them.
+namespace poesy {
+
+/// One number of each machine. moments, sketches: [R] of the machines that are solved at each pose.
+MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
+                             const Analysis& analysis);
+
+/// counts: of R responses at M poses; limits: those of the study.
+YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
+                     double conf_level);
+
+/// First-order indices and curves of all errors: the indices added up over the poses that `at_poses` are of, the curves
+/// of `curve`.
+MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEffectSums& curve,
+                         std::span<const BinSpread> errors, std::size_t responses, double conf_level);
+
+/// What is shown of the yield that is asked for, 0 for none: kept if the one-sided lower limit at the result's level is
+/// at least that, not kept if the upper limit is below it.
+YieldVerdict judge_yield(const YieldResult& found, double asked);
+
+/// Judges the limits of a study of machines: all together, and each alone. largest: [R] of the machines that are solved
+/// at each pose. counts: as for yield_of.
+LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
+                             const MachineCounts& counts, std::span<const QuantileSketch> largest);
+
+}  // namespace poesy

@@ -1,0 +1,217 @@
+#include "engine/stats/main_effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/contract.h"
+#include "engine/base/instruction_sets.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::size_t kTogether = 4;  ///< responses in a row
+using Row = std::array<double, 2 * kTogether>;
+
+/// Samples that are added in one go: their rows, and the sums of a few errors, fit the nearest cache.
+constexpr std::size_t kPiece = 256;
+
+/// Adds each row to the row of its bin, for each of some errors. bins: of the first error; those of the next one are
+/// `stride` further on. sums: [errors x bins].
+/// Four errors at a time, because a row of sums is then not wanted again before it is written.
+POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const Row> rows, const std::uint8_t* bins, std::size_t stride,
+                                         std::size_t errors, Row* sums) {
+  const auto add = [&](const Row& row, std::size_t error, std::size_t sample) {
+    Row& sum = sums[error * kEffectBins + bins[error * stride + sample]];
+    for (std::size_t j = 0; j < row.size(); ++j) sum[j] += row[j];
+  };
+  constexpr std::size_t kErrors = 4;
+  const std::size_t whole = errors / kErrors * kErrors;
+  for (std::size_t p = 0; p < whole; p += kErrors) {
+    for (std::size_t s = 0; s < rows.size(); ++s) {
+      const Row row = rows[s];
+      for (std::size_t k = 0; k < kErrors; ++k) add(row, p + k, s);
+    }
+  }
+  for (std::size_t p = whole; p < errors; ++p) {
+    for (std::size_t s = 0; s < rows.size(); ++s) {
+      const Row row = rows[s];
+      add(row, p, s);
+    }
+  }
+}
+
+/// One response of the samples that count.
+std::vector<double> only_counting(std::span<const double> values, std::span<const std::uint8_t> counts) {
+  std::vector<double> kept;
+  kept.reserve(values.size());
+  for (std::size_t b = 0; b < values.size(); ++b) {
+    if (counts[b] != 0) kept.push_back(values[b]);
+  }
+  return kept;
+}
+
+bool possible(const BinSums& bin) {
+  constexpr double kRounding = 1.0 + 1e-9;
+  if (bin.count == 0.0) return bin.sum == 0.0 && bin.square == 0.0;
+  return std::isfinite(bin.square) && bin.square >= 0.0 &&
+         bin.sum * bin.sum <= bin.count * bin.square * kRounding + std::numeric_limits<double>::min();
+}
+
+}  // namespace
+
+EffectBins::EffectBins(std::span<const double> uniforms, std::size_t errors)
+    : bins_(uniforms.size()), filled_(errors * kEffectBins) {
+  POESY_EXPECTS(errors > 0 && uniforms.size() % errors == 0);
+  for (std::size_t k = 0; k < uniforms.size(); ++k) {
+    bins_[k] = static_cast<std::uint8_t>(static_cast<int>(uniforms[k] * static_cast<double>(kEffectBins)));
+    POESY_EXPECTS(bins_[k] < kEffectBins);
+  }
+  for (std::size_t p = 0; p < errors; ++p) {
+    for (const std::uint8_t bin : bins().subspan(p * samples(), samples())) ++filled_[p * kEffectBins + bin];
+  }
+}
+
+MainEffectSums::MainEffectSums(std::size_t errors, std::size_t responses)
+    : errors_(errors),
+      counts_(errors * kEffectBins),
+      moments_(responses),
+      shift_(responses),
+      sums_((responses + kTogether - 1) / kTogether * errors * kEffectBins) {
+  POESY_EXPECTS(errors > 0 && responses > 0);
+}
+
+void MainEffectSums::add(const EffectBins& bins, std::span<const double> responses,
+                         std::span<const std::uint8_t> counts) {
+  const std::size_t block = bins.samples();
+  POESY_EXPECTS(bins.errors() == errors_ && counts.size() == block && responses.size() == moments_.size() * block);
+  add_counts(bins, counts);
+  add_moments(responses, counts);
+  std::array<Row, kPiece> rows;
+  for (std::size_t first = 0; first < block; first += kPiece) {
+    const std::span piece = std::span(rows).first(std::min(kPiece, block - first));
+    for (std::size_t r = 0; r < moments_.size(); r += kTogether) {
+      std::ranges::fill(piece, Row{});
+      for (std::size_t k = r; k < std::min(r + kTogether, moments_.size()); ++k) {
+        const double* values = &responses[k * block + first];
+        for (std::size_t s = 0; s < piece.size(); ++s) {
+          const double off = counts[first + s] != 0 ? values[s] - shift_[k] : 0.0;
+          piece[s][place(k)] = off;
+          piece[s][place(k) + 1] = off * off;
+        }
+      }
+      add_rows(piece, &bins.bins()[first], block, errors_, &sums_[first_row(r, 0)]);
+    }
+  }
+}
+
+void MainEffectSums::add_counts(const EffectBins& bins, std::span<const std::uint8_t> counts) {
+  for (std::size_t k = 0; k < counts_.size(); ++k) counts_[k] += bins.filled()[k];
+  for (std::size_t b = 0; b < counts.size(); ++b) {
+    if (counts[b] != 0) continue;
+    for (std::size_t p = 0; p < errors_; ++p) --counts_[p * kEffectBins + bins.bins()[p * counts.size() + b]];
+  }
+}
+
+void MainEffectSums::add_moments(std::span<const double> responses, std::span<const std::uint8_t> counts) {
+  const bool all_count = std::ranges::find(counts, 0) == counts.end();
+  for (std::size_t r = 0; r < moments_.size(); ++r) {
+    const std::span<const double> values = responses.subspan(r * counts.size(), counts.size());
+    const Moments block = Moments::of(all_count ? values : only_counting(values, counts));
+    if (moments_[r].count() == 0) shift_[r] = block.mean();
+    moments_[r].merge(block);
+  }
+}
+
+void MainEffectSums::merge(const MainEffectSums& other) {
+  POESY_EXPECTS(other.errors_ == errors_ && other.moments_.size() == moments_.size());
+  if (other.samples() == 0) return;
+  if (samples() == 0) {
+    *this = other;
+    return;
+  }
+  for (std::size_t r = 0; r < moments_.size(); ++r) {
+    moments_[r].merge(other.moments_[r]);
+    const double shift = other.shift_[r] - shift_[r];
+    const std::size_t first = first_row(r, 0);
+    for (std::size_t k = 0; k < counts_.size(); ++k) {
+      const auto count = static_cast<double>(other.counts_[k]);
+      const double sum = other.sums_[first + k][place(r)];
+      sums_[first + k][place(r)] += sum + count * shift;
+      sums_[first + k][place(r) + 1] += other.sums_[first + k][place(r) + 1] + shift * (2.0 * sum + count * shift);
+    }
+  }
+  for (std::size_t k = 0; k < counts_.size(); ++k) counts_[k] += other.counts_[k];
+}
+
+std::size_t MainEffectSums::first_row(std::size_t response, std::size_t error) const {
+  return (response / kTogether * errors_ + error) * kEffectBins;
+}
+
+std::size_t MainEffectSums::place(std::size_t response) { return 2 * (response % kTogether); }
+
+std::array<BinSums, kEffectBins> MainEffectSums::bins_of(std::size_t response, std::size_t error) const {
+  std::array<BinSums, kEffectBins> bins;
+  for (std::size_t b = 0; b < kEffectBins; ++b) {
+    const Row& row = sums_[first_row(response, error) + b];
+    bins[b] = {static_cast<double>(counts_[error * kEffectBins + b]), row[place(response)], row[place(response) + 1]};
+  }
+  return bins;
+}
+
+BinnedVariance MainEffectSums::variance(std::size_t response, std::size_t error, const BinSpread& spread) const {
+  return binned_variance(bins_of(response, error), moments_[response], spread);
+}
+
+std::array<Estimate, kEffectBins> MainEffectSums::curve(std::size_t response, std::size_t error,
+                                                        double conf_level) const {
+  const std::array<BinSums, kEffectBins> bins = bins_of(response, error);
+  std::array<Estimate, kEffectBins> curve;
+  for (std::size_t b = 0; b < kEffectBins; ++b) {
+    const auto [count, sum, squares] = bins[b];
+    const std::uint64_t samples = counts_[error * kEffectBins + b];
+    const double mean = shift_[response] + sum / count;
+    const double deviation = std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 1.0));
+    curve[b] = stratified_mean({{&samples, 1}, {&mean, 1}, {&deviation, 1}}, conf_level);
+  }
+  return curve;
+}
+
+void MainEffectSums::write(ByteWriter& to) const {
+  for (const std::uint64_t count : counts_) to.number(count);
+  for (std::size_t r = 0; r < moments_.size(); ++r) {
+    moments_[r].write(to);
+    to.real(shift_[r]);
+    for (std::size_t k = 0; k < counts_.size(); ++k) {
+      to.reals(std::span(sums_[first_row(r, 0) + k]).subspan(place(r), 2));
+    }
+  }
+}
+
+MainEffectSums MainEffectSums::read(ByteReader& from, std::size_t errors, std::size_t responses) {
+  MainEffectSums sums(errors, responses);
+  for (std::uint64_t& count : sums.counts_) count = from.number();
+  for (std::size_t r = 0; r < responses; ++r) {
+    sums.moments_[r] = Moments::read(from);
+    sums.shift_[r] = from.real();
+    for (std::size_t k = 0; k < sums.counts_.size(); ++k) {
+      from.reals(std::span(sums.sums_[sums.first_row(r, 0) + k]).subspan(place(r), 2));
+    }
+  }
+  for (std::size_t r = 0; r < responses; ++r) {
+    if (sums.moments_[r].count() != sums.samples() || !std::isfinite(sums.shift_[r])) {
+      throw BytesError("has responses of different samples");
+    }
+    for (std::size_t p = 0; p < errors; ++p) {
+      double samples = 0.0;
+      for (const BinSums& bin : sums.bins_of(r, p)) {
+        if (!possible(bin)) throw BytesError("has sums that no samples in a bin give");
+        samples += bin.count;
+      }
+      if (samples != static_cast<double>(sums.samples())) throw BytesError("has errors of different samples");
+    }
+  }
+  return sums;
+}
+
+}  // namespace poesy

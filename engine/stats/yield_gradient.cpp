@@ -1,0 +1,119 @@
+#include "engine/stats/yield_gradient.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/contract.h"
+#include "engine/base/instruction_sets.h"
+#include "engine/base/nan.h"
+#include "engine/stats/eight_sums.h"
+
+namespace poesy {
+namespace {
+
+struct ScoreSum {
+  double sum;
+  double square;
+};
+
+/// Sums of z^2 - 1 and of its square, z = error times inverse_sigma, over the machines of weight 1; the others have 0.
+POESY_EACH_INSTRUCTION_SET ScoreSum score_sum(std::span<const double> errors, std::span<const double> weights,
+                                              double inverse_sigma) {
+  Sums sums{}, squares{};
+  const auto add = [&](std::size_t j, std::size_t k) {
+    const double z = errors[k] * inverse_sigma;
+    const double score = weights[k] * (z * z - 1.0);
+    sums[j] += score;
+    squares[j] += score * score;
+  };
+  const std::size_t whole = errors.size() / kSums * kSums;
+  for (std::size_t k = 0; k < whole; k += kSums) {
+    for (std::size_t j = 0; j < kSums; ++j) add(j, k + j);
+  }
+  for (std::size_t k = whole; k < errors.size(); ++k) add(k - whole, k);
+  return {total(sums), total(squares)};
+}
+
+bool has_score(const ErrorScale& error) { return error.sigma > 0.0; }
+
+/// What cutting off at +-w adds to the score: (2 w/t) phi(w/t) / (2 Phi(w/t) - 1).
+double score_of_ends(const ErrorScale& error) {
+  const double ratio = error.half_width / error.sigma;
+  if (std::isinf(ratio)) return 0.0;
+  const double density = std::exp(-0.5 * ratio * ratio) / std::sqrt(2.0 * std::numbers::pi);
+  return 2.0 * ratio * density / std::erf(ratio / std::numbers::sqrt2);
+}
+
+}  // namespace
+
+ScoreSums::ScoreSums(std::span<const ErrorScale> errors)
+    : errors_(errors.begin(), errors.end()), sums_(errors.size()), squares_(errors.size()) {}
+
+void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
+  const std::size_t count = rejected.size();
+  POESY_EXPECTS(errors.size() == errors_.size() * count);
+  const std::vector<double> weights(rejected.begin(), rejected.end());
+  for (std::size_t p = 0; p < errors_.size(); ++p) {
+    if (!has_score(errors_[p])) continue;
+    const auto [sum, square] = score_sum(errors.subspan(p * count, count), weights, 1.0 / errors_[p].sigma);
+    sums_[p] += sum;
+    squares_[p] += square;
+  }
+  machines_ += count;
+  for (const std::uint8_t reject : rejected) rejects_ += reject;
+}
+
+void ScoreSums::merge(const ScoreSums& other) {
+  POESY_EXPECTS(other.errors_.size() == errors_.size());
+  machines_ += other.machines_;
+  rejects_ += other.rejects_;
+  for (std::size_t p = 0; p < errors_.size(); ++p) {
+    sums_[p] += other.sums_[p];
+    squares_[p] += other.squares_[p];
+  }
+}
+
+std::vector<Estimate> ScoreSums::gradient(double conf_level) const {
+  const double z = two_sided_normal_quantile(conf_level);
+  const auto n = static_cast<double>(machines_);
+  const auto rejects = static_cast<double>(rejects_);
+  std::vector<Estimate> gradient;
+  for (std::size_t p = 0; p < errors_.size(); ++p) {
+    if (!has_score(errors_[p]) || machines_ == 0) {
+      gradient.push_back({kNaN, {kNaN, kNaN}});
+      continue;
+    }
+    const double ends = score_of_ends(errors_[p]);
+    const double mean = (sums_[p] + ends * rejects) / n;
+    const double mean_square = (squares_[p] + ends * (2.0 * sums_[p] + ends * rejects)) / n;
+    const double value = -mean / errors_[p].sigma;
+    const double half = rejects_ < 2 ? kNaN : z * std::sqrt((mean_square - mean * mean) / (n - 1.0)) / errors_[p].sigma;
+    gradient.push_back({value, {value - half, value + half}});
+  }
+  return gradient;
+}
+
+void ScoreSums::write(ByteWriter& to) const {
+  to.number(machines_);
+  to.number(rejects_);
+  to.reals(sums_);
+  to.reals(squares_);
+}
+
+ScoreSums ScoreSums::read(ByteReader& from, std::span<const ErrorScale> errors) {
+  ScoreSums sums(errors);
+  sums.machines_ = from.number();
+  sums.rejects_ = from.number_up_to(sums.machines_);
+  sums.sums_ = from.reals(errors.size());
+  sums.squares_ = from.reals(errors.size());
+  const auto rejects = static_cast<double>(sums.rejects_);
+  constexpr double kRounding = 1.0 + 1e-9;
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    const bool possible = std::isfinite(sums.squares_[p]) && sums.squares_[p] >= 0.0 &&
+                          sums.sums_[p] * sums.sums_[p] <= rejects * sums.squares_[p] * kRounding;
+    if (!possible) throw BytesError("has sums of scores that no machines give");
+  }
+  return sums;
+}
+
+}  // namespace poesy

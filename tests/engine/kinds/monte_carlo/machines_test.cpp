@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/kinds/monte_carlo/kind.h"
+#include "engine/kinds/monte_carlo/machine_table.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/random/stream.h"
+#include "engine/run/run_options.h"
+#include "tests/engine/stats/plain_sort.h"
+#include "tests/support/fake_model.h"
+#include "tests/support/kinds.h"
+
+namespace poesy {
+namespace {
+
+/// y = a . e with a = (1, 2, 0.5), and its magnitude at half the size; at each pose the same.
+class LinearModel : public test::FakeModel {
+ public:
+  static constexpr std::array<double, 3> kSlopes{1.0, 2.0, 0.5};
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& /*options*/) const override {
+    return std::make_unique<LinearEvaluator>();
+  }
+
+ private:
+  class LinearEvaluator : public Evaluator {
+   public:
+    void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+      for (std::size_t b = 0; b < samples.count; ++b) {
+        double sum = 0.0;
+        for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+          sum += kSlopes[samples.varied[v].value] * samples.values[v * samples.count + b];
+        }
+        outcomes.responses[b] = sum;
+        outcomes.responses[samples.count + b] = 0.5 * std::abs(sum);
+        outcomes.status[b] = SolveStatus::converged;
+        outcomes.iterations[b] = 1;
+      }
+    }
+  };
+};
+
+/// The fake mechanism, of which no machine is solved whose first error is above a limit, at poses with beta above zero.
+class FailingModel : public test::FakeModel {
+ public:
+  static constexpr double kMost = 1.5e-3;
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& /*options*/) const override {
+    return std::make_unique<FailingEvaluator>();
+  }
+
+ private:
+  class FailingEvaluator : public test::FakeEvaluator {
+   public:
+    FailingEvaluator() : FakeEvaluator(kArm) {}
+
+    void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+      FakeEvaluator::evaluate(samples, outcomes);
+      for (std::size_t b = 0; b < samples.count; ++b) {
+        if (samples.pose[1] > 0.0 && samples.values[b] > kMost) outcomes.status[b] = SolveStatus::iteration_cap;
+      }
+    }
+  };
+};
+
+Study study_of(const Catalog& catalog, std::size_t poses, std::size_t machines, std::array<double, 3> sigma) {
+  Study study;
+  study.mechanism = {&catalog.front(), {test::FakeModel::kArm}, 0, {}};
+  for (const double one : sigma) study.errors.by_factor.push_back(Distribution::normal(one));
+  study.poses.count = poses;
+  study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
+  study.analysis.kind = &kMonteCarloStudy;
+  study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
+  study.analysis.samples = machines;
+  study.analysis.draws = Draws::per_machine;
+  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::yield;
+  study.seed = 3;
+  return study;
+}
+
+MonteCarloResult run(const Study& study, const Model& model, std::size_t threads = 2) {
+  RunOptions options;
+  options.threads = threads;
+  return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
+}
+
+/// The closed form and the checks of the likelihood ratio's gradient: |y| <= 0.3, sigma 0.1, 0.05, 0.2.
+TEST(Machines, FindTheYieldOfALinearModel) {
+  constexpr std::size_t kMachines = 40'500;
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 3, kMachines, {0.1, 0.05, 0.2});
+  study.analysis.limits = {{0, 0.3}};
+  const MonteCarloResult found = run(study, LinearModel());
+  ASSERT_TRUE(found.machines && found.machines->yield);
+  const YieldResult& yield = *found.machines->yield;
+  constexpr double kYield = 0.9167354833;
+  constexpr double kErrors = 3.9;  // alpha 1e-4, seven comparisons
+  EXPECT_NEAR(yield.value, kYield, kErrors * std::sqrt(kYield * (1.0 - kYield) / kMachines));
+  EXPECT_EQ(yield.machines, kMachines);
+  EXPECT_EQ(yield.rejects, static_cast<std::uint64_t>(std::lround((1.0 - yield.value) * kMachines)));
+  EXPECT_EQ(yield.by_response[0], yield.value);
+  EXPECT_TRUE(std::isnan(yield.by_response[1]));
+  for (std::size_t m = 0; m < 3; ++m) EXPECT_DOUBLE_EQ(yield.worst_pose_share[m], 1.0 - yield.value);
+  constexpr std::array kGradient{-1.02786887, -2.05573773, -0.51393443};
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double half = 0.5 * (yield.gradient_ci_high[p] - yield.gradient_ci_low[p]);
+    EXPECT_NEAR(yield.gradient[p], kGradient[p], half * kErrors / 1.96);
+    EXPECT_LT(half, 0.1 * std::abs(kGradient[p]));
+    // Each error makes a third of the variance.
+    EXPECT_NEAR(found.machines->effects.s1[p], 1.0 / 3.0, 0.02);
+    EXPECT_LT(found.machines->effects.s1_ci_low[p], 1.0 / 3.0);
+    EXPECT_GT(found.machines->effects.s1_ci_high[p], 1.0 / 3.0);
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(std::span(found.machines->effects.mean).first(32)));
+}
+
+/// Everything that can be counted by hand, from the draws' addresses.
+TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
+  constexpr std::size_t kMachines = 2 * Plan::kUnitSamples + 77;
+  constexpr std::size_t kPoses = 4;
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, kPoses, kMachines, {1e-3, 2e-3, 5e-3});
+  study.analysis.limits = {{0, 6e-4}, {1, 1.6e-4}};
+  const FailingModel model;
+  const PoseSet poses = select_poses(study.poses, model).poses;
+  const MonteCarloResult found = run(study, model);
+  std::uint64_t rejects = 0;
+  std::uint64_t unsolved = 0;
+  std::uint64_t lenient = 0;
+  std::vector<std::uint64_t> at_pose(2 * kPoses);
+  std::vector<std::vector<double>> largest(2);
+  for (std::size_t s = 0; s < kMachines; ++s) {
+    std::array<double, 3> errors{};
+    for (std::size_t f = 0; f < 3; ++f) {
+      const StreamAddress address{study.seed, Purpose::error_samples, FactorIndex(f), PoseIndex(0)};
+      errors[f] = study.errors.by_factor[f].quantile(uniform_from_bits(random_bits(address, SampleIndex(s))));
+    }
+    bool bad = false;
+    bool lost = false;
+    std::array<double, 2> most{};
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      const auto pose = poses[PoseIndex(m)];
+      const bool solved = !(pose[1] > 0.0 && errors[0] > FailingModel::kMost);
+      for (std::size_t r = 0; r < 2; ++r) {
+        double sum = 0.0;
+        for (std::size_t f = 0; f < 3; ++f)
+          sum += test::FakeModel::weight(test::FakeModel::kArm, r, f, pose) * errors[f];
+        const bool beyond = std::abs(sum) > study.analysis.limits[r].most;
+        at_pose[r * kPoses + m] += beyond || !solved ? 1 : 0;
+        bad = bad || (solved && beyond);
+        most[r] = std::max(most[r], std::abs(sum));
+      }
+      lost = lost || !solved;
+    }
+    rejects += bad || lost ? 1 : 0;
+    lenient += bad ? 1 : 0;
+    unsolved += lost ? 1 : 0;
+    for (std::size_t r = 0; r < 2 && !lost; ++r) largest[r].push_back(most[r]);
+  }
+  const YieldResult& yield = *found.machines->yield;
+  EXPECT_GT(unsolved, 0u);
+  EXPECT_EQ(yield.rejects, rejects);
+  EXPECT_EQ(yield.unsolved, unsolved);
+  EXPECT_EQ(yield.unsolved_pass_rejects, lenient);
+  for (std::size_t k = 0; k < at_pose.size(); ++k) {
+    EXPECT_EQ(yield.worst_pose_share[k], static_cast<double>(at_pose[k]) / kMachines);
+  }
+  for (std::size_t r = 0; r < 2; ++r) {
+    const MachineValues& values = found.machines->largest;
+    EXPECT_EQ(values.count[r], largest[r].size());
+    EXPECT_EQ(values.max[r], std::ranges::max(largest[r]));
+    const double truth = test::sorted_quantile(largest[r], 0.95);
+    EXPECT_NEAR(values.quantiles[r * 3 + 2], truth, found.quantile_relative_error * truth);
+  }
+}
+
+TEST(Machines, HaveTheDrawsOfTheFirstPoseEverywhere) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 3, 100, {1e-3, 2e-3, 5e-3});
+  const Plan machines(study, select_poses(study.poses, test::FakeModel()).poses);
+  for (std::size_t m = 0; m < 3; ++m) EXPECT_EQ(machines.address(1, PoseIndex(m)).pose, PoseIndex(0));
+  study.analysis.draws = Draws::per_pose;
+  const Plan poses(study, select_poses(study.poses, test::FakeModel()).poses);
+  EXPECT_EQ(poses.address(1, PoseIndex(2)).pose, PoseIndex(2));
+}
+
+/// A machine at a single pose is a sample there.
+TEST(Machines, OfOnePoseAreItsSamples) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 1, 2500, {1e-3, 2e-3, 5e-3});
+  const MonteCarloResult machines = run(study, test::FakeModel());
+  study.analysis.draws = Draws::per_pose;
+  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::rms;
+  const MonteCarloResult samples = run(study, test::FakeModel());
+  EXPECT_EQ(machines.quantiles, samples.quantiles);
+  EXPECT_EQ(machines.min, samples.min);
+  EXPECT_EQ(machines.max, samples.max);
+  for (std::size_t r = 0; r < 2; ++r) {
+    EXPECT_NEAR(machines.mean[r], samples.mean[r], 1e-13 * samples.mean[r]);
+    EXPECT_NEAR(machines.std[r], samples.std[r], 1e-12 * samples.std[r]);
+  }
+  EXPECT_EQ(machines.machines->largest.max, samples.max);
+  EXPECT_FALSE(samples.machines);
+}
+
+TEST(Machines, StopWhenTheMeansOfMachinesAreKnown) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 4, 100'000, {1e-3, 2e-3, 5e-3});
+  study.analysis.adaptive = AdaptiveSamples{1000, 0.02};
+  const MonteCarloResult found = run(study, test::FakeModel());
+  ASSERT_TRUE(found.convergence);
+  // A folded normal: half-width 1.96 * 0.756 mean / sqrt(n), the same at every pose of a linear mechanism.
+  const auto needed = static_cast<std::uint64_t>(std::pow(1.96 * 0.756 / 0.02, 2));
+  EXPECT_GT(found.convergence->samples[0], needed * 9 / 10);
+  EXPECT_LT(found.convergence->samples[0], 2 * needed);
+  EXPECT_EQ(found.machines->largest.count[0], found.convergence->samples[0]);
+}
+
+TEST(MachineTable, HasSmallerUnitsForMorePoses) {
+  EXPECT_EQ(MachineTable::unit_machines(1), 1000u);
+  EXPECT_EQ(MachineTable::unit_machines(158), 500u);
+  EXPECT_EQ(MachineTable::unit_machines(2000), 50u);
+  EXPECT_EQ(MachineTable::units_for(1001, 158), 3u);
+}
+
+}  // namespace
+}  // namespace poesy
