@@ -43,6 +43,14 @@ MACHINES = MONTE_CARLO + """\
 draws = "per machine"
 limits.linear_deformation = "0.5 mm"
 """
+SOBOL = HEAD + """\
+[poses]
+count = 3
+[analysis]
+kind = "sobol"
+factors = "deforming"
+samples = 2100
+"""
 CASES = HEAD + """\
 [poses]
 count = 4000
@@ -75,7 +83,8 @@ poses = { count = 20 }
 errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
 analysis = { kind = "sensitivity", samples = 12300 }
 """
-STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "evaluate": CASES, "identification": IDENTIFICATION,
+STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "sobol": SOBOL,
+           "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
 
 

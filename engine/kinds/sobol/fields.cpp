@@ -1,6 +1,7 @@
 #include "engine/files/result_parts.h"
 #include "engine/kinds/sobol/kind.h"
 #include "engine/kinds/sobol/result.h"
+#include "engine/report/display.h"
 
 namespace poesy {
 namespace {
@@ -136,7 +137,9 @@ void read(const h5::File& file, StoredResult& result) {
   if (!found.vectors.empty()) read_group(file, rows.of_vectors, found.of_vectors);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);
-  result.varied = {std::string(kAllFactors)};
+  // Only random draws have addresses by which a sample can be solved again.
+  if (study_setting(result.study_text, "analysis", "design") == "\"random\"")
+    result.varied = {std::string(kAllFactors)};
   result.failures = read_failures(file, result);
   result.found = std::move(found);
 }
