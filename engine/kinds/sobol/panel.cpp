@@ -65,7 +65,8 @@ PanelSums::PanelSums(const IndexPanel& panel)
       moments(panel.responses * panel.poses),
       least(panel.responses, std::numeric_limits<double>::infinity()),
       solves(panel.poses),
-      failed(panel.poses) {}
+      failed(panel.poses),
+      failures(panel.poses) {}
 
 void PanelSums::merge(const PanelSums& later) {
   const auto merge_indices = [](std::vector<IndexSums>& list, const std::vector<IndexSums>& other) {
@@ -82,6 +83,7 @@ void PanelSums::merge(const PanelSums& later) {
   for (std::size_t m = 0; m < solves.size(); ++m) {
     solves[m].merge(later.solves[m]);
     failed[m].merge(later.failed[m]);
+    failures[m] += later.failures[m];
   }
 }
 
@@ -102,7 +104,10 @@ void PanelSums::write(ByteWriter& to) const {
   for (const Moments& one : moments) one.write(to);
   to.reals(least);
   for (const SolveCounts& counts : solves) counts.write(to);
-  for (const FailedSamples& list : failed) list.write(to);
+  for (std::size_t m = 0; m < failed.size(); ++m) {
+    to.number(failures[m]);
+    failed[m].write(to);
+  }
 }
 
 PanelSums PanelSums::read(ByteReader& from, const IndexPanel& panel, std::uint64_t end) {
@@ -115,7 +120,8 @@ PanelSums PanelSums::read(ByteReader& from, const IndexPanel& panel, std::uint64
   from.reals(sums.least);
   for (SolveCounts& counts : sums.solves) counts = SolveCounts::read(from);
   for (std::size_t m = 0; m < panel.poses; ++m) {
-    sums.failed[m] = FailedSamples::read(from, sums.solves[m].not_converged(), 0, end);
+    sums.failures[m] = from.number_up_to(sums.solves[m].not_converged());
+    sums.failed[m] = FailedSamples::read(from, sums.failures[m], 0, end);
   }
   return sums;
 }
@@ -137,6 +143,7 @@ PanelEvaluator::PanelEvaluator(const Plan& plan, const Model& model, const Index
   pair_first_.resize(panel.responses * panel.pairs.size() * kB);
   pair_between_.resize(pair_first_.size());
   group_counts_.resize(groups * kB);
+  for (std::size_t r = 0; r < panel.responses; ++r) rounding_.push_back(model.rounding(r));
   status_.resize(kB);
   iterations_.resize(kB);
 }
@@ -183,6 +190,20 @@ void PanelEvaluator::take(std::size_t group, const Rows& from) {
   }
 }
 
+void PanelEvaluator::absorb() {
+  const std::size_t rows = panel_->responses + panel_->details;
+  for (std::size_t b = 0; b < unit_.count; ++b) {
+    bool same = true;
+    for (std::size_t r = 0; r < panel_->responses; ++r) {
+      const std::size_t at = r * unit_.count + b;
+      same = same && std::abs(of_a_.values[at] - of_mixed_.values[at]) <= rounding_[r];
+    }
+    for (std::size_t k = 0; same && k < rows; ++k) {
+      of_mixed_.values[k * unit_.count + b] = of_a_.values[k * unit_.count + b];
+    }
+  }
+}
+
 void PanelEvaluator::add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
                                              std::span<double> sum) const {
   for (const std::size_t component : panel_->components(quantity)) {
@@ -195,6 +216,7 @@ void PanelEvaluator::add_squared_differences(std::size_t quantity, const Outcome
 void PanelEvaluator::add_samples(PoseIndex pose) {
   for (std::size_t b = 0; b < unit_.count; ++b) {
     sums_.failed[pose.value].add(SampleIndex(unit_.number + b), status_[b]);
+    sums_.failures[pose.value] += solved(status_[b]) ? 0 : 1;
   }
 }
 
@@ -224,6 +246,7 @@ void PanelEvaluator::add_group(PoseIndex pose, std::size_t group) {
   const std::size_t groups = panel_->groups.size();
   take(group, b_);
   solve(pose, mixed_, of_mixed_);
+  absorb();
   take(group, a_);
   const std::span counts = std::span(group_counts_).subspan(group * unit_.count, unit_.count);
   for (std::size_t b = 0; b < unit_.count; ++b) {
