@@ -149,10 +149,16 @@ double two_sided_normal_quantile(double conf_level) {
   return std::numbers::sqrt2 * boost::math::erf_inv(conf_level);
 }
 
+double two_sided_student_quantile(double freedom, double conf_level) {
+  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
+  const boost::math::students_t student(freedom);
+  return boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
+}
+
 Interval mean_interval(const Moments& moments, double conf_level) {
   if (moments.count() < 2) return {kNaN, kNaN};
   const auto n = static_cast<double>(moments.count());
-  const double half = student_quantile(n - 1.0, conf_level) * moments.standard_deviation() / std::sqrt(n);
+  const double half = two_sided_student_quantile(n - 1.0, conf_level) * moments.standard_deviation() / std::sqrt(n);
   return {moments.mean() - half, moments.mean() + half};
 }
 
@@ -174,7 +180,7 @@ Estimate stratified_mean(const Groups& groups, double conf_level) {
   const double mean = sum / total;
   if (squares == 0.0) return {mean, {mean, mean}};
   if (!std::isfinite(quartics)) return {mean, {kNaN, kNaN}};
-  const double half = student_quantile(squares * squares / quartics, conf_level) * std::sqrt(squares) / total;
+  const double half = two_sided_student_quantile(squares * squares / quartics, conf_level) * std::sqrt(squares) / total;
   return {mean, {mean - half, mean + half}};
 }
 

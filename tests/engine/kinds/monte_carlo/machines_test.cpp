@@ -9,6 +9,7 @@
 #include "engine/kinds/monte_carlo/machine_table.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/random/stream.h"
+#include "engine/stats/main_effects.h"
 #include "engine/run/run_options.h"
 #include "tests/engine/stats/plain_sort.h"
 #include "tests/support/fake_model.h"
@@ -115,7 +116,11 @@ TEST(Machines, FindTheYieldOfALinearModel) {
     EXPECT_LT(found.machines->effects.s1_ci_low[p], 1.0 / 3.0);
     EXPECT_GT(found.machines->effects.s1_ci_high[p], 1.0 / 3.0);
   }
-  EXPECT_TRUE(std::ranges::is_sorted(std::span(found.machines->effects.mean).first(32)));
+  for (std::size_t k = 0; k < 3 * kEffectBins; ++k) {
+    const double half = 0.5 * (found.machines->effects.ci_high[k] - found.machines->effects.ci_low[k]);
+    EXPECT_NEAR(found.machines->effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.machines->bin_error[k],
+                half * 4.9 / 1.96);
+  }
 }
 
 /// Everything that can be counted by hand, from the draws' addresses.
@@ -222,9 +227,9 @@ TEST(Machines, StopWhenTheMeansOfMachinesAreKnown) {
 
 TEST(MachineTable, HasSmallerUnitsForMorePoses) {
   EXPECT_EQ(MachineTable::unit_machines(1), 1000u);
-  EXPECT_EQ(MachineTable::unit_machines(158), 500u);
-  EXPECT_EQ(MachineTable::unit_machines(2000), 50u);
-  EXPECT_EQ(MachineTable::units_for(1001, 158), 3u);
+  EXPECT_EQ(MachineTable::unit_machines(158), 200u);
+  EXPECT_EQ(MachineTable::unit_machines(2000), 40u);
+  EXPECT_EQ(MachineTable::units_for(1001, 158), 6u);
 }
 
 }  // namespace
