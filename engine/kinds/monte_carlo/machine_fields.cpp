@@ -209,7 +209,7 @@ CsvTable curve_table(const StoredResult& result, const MachineResult& found, std
            list_column(with_unit("mean", response.unit), found.effects.mean, r * lines),
            list_column(with_unit("ci_low", response.unit), found.effects.ci_low, r * lines),
            list_column(with_unit("ci_high", response.unit), found.effects.ci_high, r * lines)},
-          {"unit_of_error", [&](std::size_t line) { return result.factors[line / kEffectBins].unit; }}};
+          {"unit", [&](std::size_t line) { return result.factors[line / kEffectBins].unit; }}};
 }
 
 }  // namespace

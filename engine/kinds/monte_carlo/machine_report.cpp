@@ -8,6 +8,7 @@
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/yield.h"
 #include "engine/report/display.h"
 #include "engine/stats/main_effects.h"
 
@@ -254,7 +255,12 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
 
 std::vector<Table> machine_tables(const StoredResult& result) {
   std::vector<Table> tables{values_table(result)};
-  if (machines_of(result).yield) {
+  if (const auto& yield = machines_of(result).yield) {
+    // Where limits are judged by other numbers.
+    if (result.verdicts && !result.verdicts->yield) {
+      tables.insert(tables.begin(),
+                    yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = judge_yield(*yield, 0.0)}));
+    }
     tables.push_back(rejects_table(result));
     tables.push_back(gradient_table(result));
   }

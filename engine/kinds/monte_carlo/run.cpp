@@ -201,8 +201,8 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return found;
 }
 
-/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places in
-/// the tree, and what pieces in flight hold.
+/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places
+/// in the tree, and what pieces in flight hold.
 MemoryOutlook machine_memory(const Study& study, const Plan& plan) {
   constexpr std::size_t kSketch = 20'000;
   constexpr std::size_t kPackedSketch = 6000;
