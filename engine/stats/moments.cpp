@@ -6,14 +6,21 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "engine/base/contract.h"
 #include "engine/base/instruction_sets.h"
 #include "engine/base/nan.h"
-#include "engine/stats/eight_sums.h"
 
 namespace poesy {
 namespace {
+
+/// Eight sums, so that an addition need not wait for the one before, and that they make whole vectors. Value k goes to
+/// sum k mod 8 on every instruction set.
+constexpr std::size_t kSums = 8;
+using Sums = std::array<double, kSums>;
+
+double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
 POESY_EACH_INSTRUCTION_SET double sum_of(std::span<const double> values) {
   Sums sums{};

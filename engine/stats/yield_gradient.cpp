@@ -4,37 +4,18 @@
 #include <numbers>
 
 #include "engine/base/contract.h"
-#include "engine/base/instruction_sets.h"
 #include "engine/base/nan.h"
-#include "engine/stats/eight_sums.h"
 
 namespace poesy {
 namespace {
 
-struct ScoreSum {
-  double sum;
-  double square;
-  double cube;
-};
-
-/// Sums of z^2 - 1, of its square and of its cube, z = error times inverse_sigma, over the machines of weight 1; the
-/// others have 0.
-POESY_EACH_INSTRUCTION_SET ScoreSum score_sum(std::span<const double> errors, std::span<const double> weights,
-                                              double inverse_sigma) {
-  Sums sums{}, squares{}, cubes{};
-  const auto add = [&](std::size_t j, std::size_t k) {
-    const double z = errors[k] * inverse_sigma;
-    const double score = weights[k] * (z * z - 1.0);
-    sums[j] += score;
-    squares[j] += score * score;
-    cubes[j] += score * score * score;
-  };
-  const std::size_t whole = errors.size() / kSums * kSums;
-  for (std::size_t k = 0; k < whole; k += kSums) {
-    for (std::size_t j = 0; j < kSums; ++j) add(j, k + j);
+/// The machines that are rejected.
+std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
+  std::vector<std::size_t> found;
+  for (std::size_t b = 0; b < rejected.size(); ++b) {
+    if (rejected[b] != 0) found.push_back(b);
   }
-  for (std::size_t k = whole; k < errors.size(); ++k) add(k - whole, k);
-  return {total(sums), total(squares), total(cubes)};
+  return found;
 }
 
 bool has_score(const ErrorScale& error) { return error.sigma > 0.0; }
@@ -55,16 +36,27 @@ ScoreSums::ScoreSums(std::span<const ErrorScale> errors)
 void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
   POESY_EXPECTS(errors.size() == errors_.size() * count);
-  const std::vector<double> weights(rejected.begin(), rejected.end());
+  const std::vector<std::size_t> rejects = places(rejected);  // few of many machines, as a rule
   for (std::size_t p = 0; p < errors_.size(); ++p) {
     if (!has_score(errors_[p])) continue;
-    const auto [sum, square, cube] = score_sum(errors.subspan(p * count, count), weights, 1.0 / errors_[p].sigma);
+    const std::span<const double> row = errors.subspan(p * count, count);
+    const double inverse_sigma = 1.0 / errors_[p].sigma;
+    double sum = 0.0;
+    double squares = 0.0;
+    double cubes = 0.0;
+    for (const std::size_t b : rejects) {
+      const double z = row[b] * inverse_sigma;
+      const double score = z * z - 1.0;
+      sum += score;
+      squares += score * score;
+      cubes += score * score * score;
+    }
     sums_[p] += sum;
-    squares_[p] += square;
-    cubes_[p] += cube;
+    squares_[p] += squares;
+    cubes_[p] += cubes;
   }
   machines_ += count;
-  for (const std::uint8_t reject : rejected) rejects_ += reject;
+  rejects_ += rejects.size();
 }
 
 void ScoreSums::merge(const ScoreSums& other) {

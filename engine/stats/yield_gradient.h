@@ -24,7 +24,7 @@ struct ErrorScale {
 ///     dY/dt = -E[1_reject (z^2 - 1 + (2 w/t) phi(w/t) / (2 Phi(w/t) - 1))] / t      cut off at a fixed +-w
 ///
 /// Uniform and triangular errors have no such score, because the ends of their range move with their size: NaN.
-/// Holds three sums for each error.
+/// Holds three sums for each error, and looks at the rejects alone.
 class ScoreSums {
  public:
   explicit ScoreSums(std::span<const ErrorScale> errors);  ///< [P]
