@@ -171,9 +171,11 @@ class Example {
       values->histogram_edges = result.histogram_edges;
       values->histogram_counts = result.histogram_counts;
     }
-    found.s1_poses = {0, 2};
-    fill(found.bin_error, 2 * kEffectBins);
-    for (MainEffects* effects : {&found.effects, &found.effects_on_largest}) {
+    EffectResult& bins = result.effects.emplace();
+    bins.conf_level = result.conf_level;
+    bins.s1_poses = {0, 2};
+    fill(bins.bin_error, 2 * kEffectBins);
+    for (MainEffects* effects : {&bins.effects, &found.effects_on_largest}) {
       for (auto* list : {&effects->s1, &effects->s1_ci_low, &effects->s1_ci_high}) fill(*list, 4);
       for (auto* list : {&effects->mean, &effects->ci_low, &effects->ci_high}) fill(*list, 4 * kEffectBins);
     }
