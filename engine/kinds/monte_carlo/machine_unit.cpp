@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/base/contract.h"
-#include "engine/random/stream.h"
 
 namespace poesy {
 namespace {
@@ -95,16 +94,6 @@ MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Mode
   kept_.reserve(machines);
 }
 
-EffectBins MachineUnitEvaluator::draw_all(const WorkUnit& unit) {
-  const std::size_t errors = table_->scales().size();
-  const auto row = [&](std::size_t v) { return std::span(values_).subspan(v * unit.count, unit.count); };
-  for (std::size_t v = 0; v < errors; ++v) fill_uniforms(plan_->address(v, unit.pose), unit.first, row(v));
-  const std::span<const double> uniforms = std::span(values_).first(errors * unit.count);
-  EffectBins bins(uniforms, errors);
-  for (std::size_t v = 0; v < errors; ++v) plan_->distributions()[v].transform(row(v));
-  return bins;
-}
-
 std::span<const double> MachineUnitEvaluator::only(std::span<const double> values,
                                                    std::span<const std::uint8_t> counts) {
   if (std::ranges::all_of(counts, [](std::uint8_t one) { return one == 1; })) return values;
@@ -168,7 +157,7 @@ MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   found.at_pose.reserve(poses * responses_);
   found.solves.resize(poses);
   found.failed.resize(poses);
-  const EffectBins bins = draw_all(unit);
+  const EffectBins bins = draw_in_bins(unit);
   sum_.assign(responses_ * unit.count, 0.0);
   MachineBlock block(table_->limits(), unit.count);
   for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);
