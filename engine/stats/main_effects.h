@@ -57,9 +57,9 @@ class MainEffectSums {
   BinnedVariance variance(std::size_t response, std::size_t error, const BinSpread& spread) const;
 
   /// The main effect as a curve: E[y | u in bin] with Student's interval. Each interval by itself holds its mean at
-  /// this level, all together do so less often. NaN without samples; NaN at both ends below two. Where bins hold few
-  /// samples of a skewed response the intervals are too short: THEORY.md says by how much. Precondition: 0 < conf_level
-  /// < 1.
+  /// this level, all together do so less often. With eight samples in a bin (256 in all) intervals of 95 % hold 94 to
+  /// 95 % of the means of linear, 93 to 94 % of folded and 84 to 91 % of lognormal responses, with 32 in a bin 95, 94
+  /// and 89 to 93 %. NaN without samples; NaN at both ends below two. Precondition: 0 < conf_level < 1.
   std::array<Estimate, kEffectBins> curve(std::size_t response, std::size_t error, double conf_level) const;
 
   /// Every bit of the sums, and back.
