@@ -97,7 +97,8 @@ std::vector<std::string> studies() {
           by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
           both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
           head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
-              "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\nconf_level = 0.95\nquantiles = [0.1, 0.2]\n" +
+              "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\ndraws = \"per machine\"\nconf_level = "
+              "0.95\nquantiles = [0.1, 0.2]\n" +
               background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
           head +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
