@@ -8,7 +8,7 @@ import math
 import pathlib
 import sys
 
-UNITS = {"m", "rad", "1"}
+UNITS = {"per m", "per rad", "m", "rad", "1"}
 NO_NUMBERS = {"NaN", "inf", "-inf"}
 
 

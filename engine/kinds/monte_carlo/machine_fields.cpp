@@ -178,7 +178,7 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
                     result.factors.size(),
                     {list_column("gradient", found.gradient), list_column("gradient_ci_low", found.gradient_ci_low),
                      list_column("gradient_ci_high", found.gradient_ci_high)},
-                    {"unit", [&](std::size_t p) { return "1/" + result.factors[p].unit; }}};
+                    {"unit", [&](std::size_t p) { return "per " + result.factors[p].unit; }}};
   tables.push_back(std::move(gradient));
   CsvTable poses = lines_of_poses(result, "rejects");
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
