@@ -99,11 +99,11 @@ void measure_both(Team& team, std::size_t units_per_cell) {
   study.analysis.samples *= kUnitsPerPose;
   const Plan plan(study, bench::every(kEveryPose, poses));
   const ResponseUnit response{Moments::of(numbers()), BucketedValues(numbers())};
-  const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts(), {}};
+  const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts(), {}, {}};
   MonteCarloCollector collect(plan, kResponsesOfMonteCarlo, study.analysis);
   measure(
       "monte-carlo", plan, unit, team, [&](const WorkUnit& of, const PoseUnit& found) { collect.add(of.pose, found); },
-      [](ByteReader& from) { return PoseUnit::read(from, kResponsesOfMonteCarlo, 0); });
+      [&](ByteReader& from) { return PoseUnit::read(from, kResponsesOfMonteCarlo, plan.factors().size(), 0); });
 }
 
 std::size_t argument(int argc, char** argv, int at, std::size_t otherwise) {

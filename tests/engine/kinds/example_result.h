@@ -367,8 +367,8 @@ class Example {
     for (SolveCounts& solves : result.solves) {
       for (std::size_t s = 0; s < 5; ++s) solves.add(SolveStatus::converged, 3);
     }
-    result.solves[1].add(SolveStatus::not_converged, 50);
-    result.failures = {{0, PoseIndex(1), {SampleIndex(2), SolveStatus::not_converged}}};
+    result.solves[1].add(SolveStatus::iteration_cap, 50);
+    result.failures = {{0, PoseIndex(1), {SampleIndex(2), SolveStatus::iteration_cap}}};
     result.failed_samples = 1;
     return result;
   }
