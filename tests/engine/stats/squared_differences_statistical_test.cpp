@@ -44,7 +44,10 @@ std::vector<Known> known() {
   const double b = std::expm1(0.09);
   const double all = (1.0 + a) * (1.0 + b) - 1.0;
   return {{"linear", true, linear, {1.0 / 5.25, 4.0 / 5.25, 0.25 / 5.25}, {1.0 / 5.25, 4.0 / 5.25, 0.25 / 5.25}},
-          {"Ishigami", false, ishigami, {0.31390519114781, 0.44241114479004, 0.0},
+          {"Ishigami",
+           false,
+           ishigami,
+           {0.31390519114781, 0.44241114479004, 0.0},
            {0.55758885520996, 0.44241114479004, 0.24368366406215}},
           {"folded", true, folded, {0.59887592, 0.03515699}, {0.96484301, 0.40112408}},
           {"skewed", true, skewed, {a / all, b / all}, {a * (1.0 + b) / all, b * (1.0 + a) / all}}};

@@ -76,8 +76,8 @@ TEST(RatioSums, DoesNotLookAtPairsThatDoNotCount) {
 TEST(RatioSums, DoesNotDependOnTheUnit) {
   const RatioSums plain = sums_of({1.0, 2.0, 6.0, 3.0}, {4.0, 5.0, 9.0, 6.0});
   const double unit = 0x1p-200;
-  const RatioSums tiny = sums_of({unit, 2.0 * unit, 6.0 * unit, 3.0 * unit},
-                                 {4.0 * unit, 5.0 * unit, 9.0 * unit, 6.0 * unit});
+  const RatioSums tiny =
+      sums_of({unit, 2.0 * unit, 6.0 * unit, 3.0 * unit}, {4.0 * unit, 5.0 * unit, 9.0 * unit, 6.0 * unit});
   EXPECT_EQ(plain.estimate(0.95).interval.low, tiny.estimate(0.95).interval.low);
   EXPECT_EQ(plain.estimate(0.95).interval.high, tiny.estimate(0.95).interval.high);
 }
