@@ -57,18 +57,15 @@ RowOrder order_of(const ShowOptions& options) {
 
 bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
-/// ShowOptions that speak of ranked errors need some.
+/// --sort needs a kind whose errors come in any order, --top any table of ranked errors.
 void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result,
                  const std::vector<Table>& tables) {
-  if (std::ranges::any_of(tables, &Table::ranked)) return;
-  for (const auto& [given, option] :
-       {std::pair(options.sort.has_value(), "--sort"), {options.top.has_value(), "--top"}}) {
-    if (!given) continue;
-    throw InputError({path},
-                     fmt::format("{}: this is a result of kind '{}', and only those of kind {} rank errors", option,
-                                 result.kind, kinds_that_rank()),
+  const auto refuse = [&](std::string_view option, std::string_view what) {
+    throw InputError({path}, fmt::format("{}: this result of kind '{}' {}", option, result.kind, what),
                      fmt::format("leave out {}", option));
-  }
+  };
+  if (options.sort && !kind_of(result).report.sorts) refuse("--sort", "has no errors that come in any order");
+  if (options.top && std::ranges::none_of(tables, &Table::ranked)) refuse("--top", "ranks no errors");
 }
 
 /// Lets the tables show this response and no other.

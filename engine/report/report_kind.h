@@ -24,6 +24,7 @@ struct ReportKind {
   std::vector<Table> (*tables)(const StoredResult&, const TableOptions&);  ///< those that not every kind has
   /// Puts the errors of two results in order beside each other; null: it ranks nothing.
   TwoRankings (*two_rankings)(const RankedResult& a, const RankedResult& b, RowOrder order) = nullptr;
+  bool sorts = false;                                   ///< whether its ranked tables come in any RowOrder
   Settling (*settling)(const StoredResult&) = nullptr;  ///< null: it is not sampled
   StudyWords (*words)(const StoredResult&);             ///< for the list of what was run
   /// Adds warnings of its own; null: it has none.

@@ -173,7 +173,7 @@ class Sobol(ResumptionTest):
         refused(self.small() + "groups = { a = [] }\n", "is empty")
         refused(self.small() + 'groups = { others = ["delta_1_*"] }\n', "is not a name for a group")
         refused(self.small() + 'groups = { all = ["*"] }\n', "all errors are one group")
-        refused(self.small() + 'second_order = "yes"\n', "neither true nor false")
+        refused(self.small() + 'second_order = "yes"\n', "analysis.second_order is the text 'yes'", "true or false")
         refused(self.small() + "replicates = 20\n", 'analysis.design is "random"')
         refused(self.small("sobol") + "replicates = 7\n", "at least 8")
         refused(self.small("lhs").replace("480", "490"), "16 replicates do not share evenly", "samples = 496")

@@ -108,7 +108,10 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
   write_group(result, rows.at_poses, found.at_poses);
   write_fields(result, rows.at_poses.path, rows.beside, found);
   write_group(result, rows.aggregated, found.aggregated);
-  if (!found.S2.empty()) write_fields(result, rows.aggregated.path, rows.pairs, found);
+  if (!found.S2.empty()) {
+    write_fields(result, rows.aggregated.path, rows.pairs, found);
+    result.show_axes(rows.aggregated.path, rows.pairs.front().axes);
+  }
   if (!found.vectors.empty()) write_group(result, rows.of_vectors, found.of_vectors);
   if (found.joined) {
     result.add("/sobol/members", {"group"}, found.group_members, {"1", "Errors of the group, with blanks between"});
@@ -189,11 +192,10 @@ void append_pose_tables(CsvTables& tables, const StoredResult& result) {
 CsvTable pairs_table(const StoredResult& result, std::size_t r) {
   const SobolResult& found = sobol_of(result);
   const std::size_t groups = found.groups();
-  const std::string heading = axis_of(found.joined) + ",other";
   CsvTable table{"sobol_pairs_" + result.responses[r].name,
-                 {heading,
+                 {"pair",
                   [&found, groups](std::size_t line) {
-                    return found.group_names[line / groups] + "," + found.group_names[line % groups];
+                    return found.group_names[line / groups] + " & " + found.group_names[line % groups];
                   }},
                  groups * groups};
   table.has = [groups](std::size_t line) { return line / groups < line % groups; };

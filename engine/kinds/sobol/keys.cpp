@@ -78,11 +78,7 @@ KeyValue<SobolOptions> design() {
 }
 
 KeyValue<SobolOptions> second_order() {
-  const auto read = [](const StudyValue& value) {
-    const auto asked = value.boolean();
-    if (!asked) value.fail("is neither true nor false", "write true or false, without quotes");
-    return *asked;
-  };
+  const auto read = [](const StudyValue& value) { return value.flag(); };
   const auto text = [](bool asked) { return std::string(asked ? "true" : "false"); };
   return value_at("true or false", "", read, text, &SobolOptions::second_order);
 }

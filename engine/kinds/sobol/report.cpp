@@ -289,6 +289,7 @@ std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& 
 
 constinit const ReportKind kSobolReport{.tally = tally,
                                         .tables = sobol_tables,
+                                        .sorts = true,
                                         .settling = settling,
                                         .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
                                         .warn = warn,

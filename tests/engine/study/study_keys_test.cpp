@@ -109,6 +109,13 @@ std::vector<std::string> studies() {
           head +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
               "judge = \"yield\"\nyield = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nfactors = \"all\"\nsamples = "
+              "160\n"
+              "conf_level = 0.9\ngroups = { a = [\"delta_1\"], b = \"epsilon_1\" }\nsecond_order = true\n"
+              "design = \"lhs\"\nreplicates = 10\n" +
+              background,
+          head + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"random\"\n",
           head + "[poses]\nselect = \"boundary\"\ncount = 3\n" + box +
               "[analysis]\nkind = \"identification\"\nfactors = \"all\"\npose_share = 0.9\n"
               "groups = [{ name = \"small\", linear = \"2 mm\", angular = \"2 deg\" }]\n",
@@ -166,8 +173,8 @@ bool is_name_of_model(const StudyKey& key) {
 }
 
 /// The description of a name in a table: its own, or that of names of the model's.
-const StudyKey* description(const StudyTable& table, const std::string& name) {
-  if (const StudyKey* key = table.find(name)) return key;
+const StudyKey* description(const StudyTable& table, const std::string& name, const std::string& word) {
+  if (const StudyKey* key = table.find(name, word)) return key;
   const bool is_set = kCatalog.front().description.find_set(name) != nullptr;
   for (const StudyKey& key : table.keys) {
     if (is_name_of_model(key) && (key.name == "SET") == is_set) return &key;
@@ -194,7 +201,7 @@ std::vector<Use> uses() {
       const std::string word = word_of(table, *described);
       for (auto&& [key, value] : table) {
         const std::string name(key.str());
-        found.push_back({described, description(*described, name), s, visited, name,
+        found.push_back({described, description(*described, name, word), s, visited, name,
                          (path.empty() ? "" : path + ".") + name, word});
       }
       ++visited;
