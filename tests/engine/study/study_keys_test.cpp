@@ -327,6 +327,7 @@ TEST(StudyKeys, HaveTheBoundsThatTheyName) {
   const std::array known{Outside{"at least 0", {"-1"}, "it must be at least 0"},
                          Outside{"at least 1", {"0"}, "it must be at least 1"},
                          Outside{"at least 2", {"1"}, "it must be at least 2"},
+                         Outside{"at least 8", {"7"}, "it must be at least 8"},
                          Outside{"greater than 0",
                                  {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
                                  "it must be greater than zero"},

@@ -147,7 +147,7 @@ struct Case {
   Design design;
 };
 
-class Known : public ::testing::TestWithParam<Case> {};
+class Of : public ::testing::TestWithParam<Case> {};
 
 std::vector<Case> cases() {
   std::vector<Case> list;
@@ -164,7 +164,7 @@ std::string case_name(const ::testing::TestParamInfo<Case>& info) {
 }
 
 // Some 300 intervals at a level of 1 - 1e-5 each: alpha is below 0.3 % for all of them together.
-TEST_P(Known, IndicesAreWithinTheirIntervals) {
+TEST_P(Of, AreWithinTheirIntervals) {
   const auto& [reference, design] = GetParam();
   const FunctionModel model(reference.indices.size(), {"y"}, reference.function);
   const CatalogEntry entry{model.description(), nullptr};
@@ -185,7 +185,7 @@ TEST_P(Known, IndicesAreWithinTheirIntervals) {
   EXPECT_NEAR(found.variance[0], reference.variance, 0.03 * reference.variance);
 }
 
-INSTANTIATE_TEST_SUITE_P(Functions, Known, ::testing::ValuesIn(cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Indices, Of, ::testing::ValuesIn(cases()), case_name);
 
 TEST(SobolPanel, AnAbsorbedErrorHasIndicesThatAreZeroInEveryBit) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) { y[0] = std::exp(x[0] + x[2]); };
