@@ -140,6 +140,11 @@ MachineResult MachineCollector::machines(const MachineSums& sums) const {
       main_effects(effects.first(at_poses), effects[at_poses], table_->spreads(), responses, analysis_->conf_level);
   found.effects_on_largest = main_effects(effects.subspan(at_poses + 1, 1), effects[at_poses + 1], table_->spreads(),
                                           responses, analysis_->conf_level);
+  for (std::size_t p = 0; p < table_->plan().factors().size(); ++p) {
+    if (!table_->plan().is_correlated(p)) continue;
+    leave_out(p, responses, found.effects);
+    leave_out(p, responses, found.effects_on_largest);
+  }
   if (sums.scores) found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
   return found;
 }

@@ -29,8 +29,10 @@ MachineTable::MachineTable(const Plan& plan, std::size_t responses, const Analys
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
   for (const ResponseLimit& limit : analysis.limits) limits_[limit.response] = limit.most;
   std::vector<double> grid = bin_spread_grid();
-  for (const Distribution& distribution : plan.distributions()) {
-    scales_.push_back({distribution.sigma(), distribution.half_width()});
+  for (std::size_t p = 0; p < plan.factors().size(); ++p) {
+    const Distribution& distribution = plan.distributions()[p];
+    // The score of an error by itself is not that of one whose others go with it: then there is none.
+    scales_.push_back({plan.is_correlated(p) ? 0.0 : distribution.sigma(), distribution.half_width()});
     std::vector<double> quantiles = grid;
     distribution.transform(quantiles);
     spreads_.push_back(bin_spread(quantiles));

@@ -36,9 +36,10 @@ class MachineTable {
   /// Whether it is as large as any.
   bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(plan_->poses().size()); }
 
-  bool has_limits() const { return has_limits_; }                  ///< Whether machines may be rejected.
-  std::span<const double> limits() const { return limits_; }       ///< [R] on magnitudes, infinite for none.
-  std::span<const ErrorScale> scales() const { return scales_; }   ///< [P]
+  bool has_limits() const { return has_limits_; }             ///< Whether machines may be rejected.
+  std::span<const double> limits() const { return limits_; }  ///< [R] on magnitudes, infinite for none.
+  /// [P] a correlated error has no sigma here, so that it has no score.
+  std::span<const ErrorScale> scales() const { return scales_; }
   std::span<const BinSpread> spreads() const { return spreads_; }  ///< [P]
 
   /// The poses at which main effects are added up, evenly spaced over the order of the study's poses.

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/base/contract.h"
-#include "engine/random/stream.h"
 
 namespace poesy {
 namespace {
@@ -97,11 +96,10 @@ MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Mode
 
 EffectBins MachineUnitEvaluator::draw_all(const WorkUnit& unit) {
   const std::size_t errors = table_->scales().size();
-  const auto row = [&](std::size_t v) { return std::span(values_).subspan(v * unit.count, unit.count); };
-  for (std::size_t v = 0; v < errors; ++v) fill_uniforms(plan_->address(v, unit.pose), unit.first, row(v));
-  const std::span<const double> uniforms = std::span(values_).first(errors * unit.count);
-  EffectBins bins(uniforms, errors);
-  for (std::size_t v = 0; v < errors; ++v) plan_->distributions()[v].transform(row(v));
+  const std::span<double> values = std::span(values_).first(errors * unit.count);
+  for (std::size_t v = 0; v < errors; ++v) draw_uniforms(unit, v, values.subspan(v * unit.count, unit.count));
+  EffectBins bins(values, errors);
+  plan_->transform(values, unit.count);
   return bins;
 }
 

@@ -97,6 +97,17 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEff
   return effects;
 }
 
+void leave_out(std::size_t error, std::size_t responses, MainEffects& effects) {
+  const std::size_t errors = effects.s1.size() / std::max<std::size_t>(1, responses);
+  for (std::size_t r = 0; r < responses; ++r) {
+    const std::size_t at = r * errors + error;
+    for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) (*list)[at] = kNaN;
+    for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) {
+      std::ranges::fill(std::span(*list).subspan(at * kEffectBins, kEffectBins), kNaN);
+    }
+  }
+}
+
 YieldVerdict judge_yield(const YieldResult& found, double asked) {
   using enum YieldVerdict::Decision;
   YieldVerdict verdict{.decision = not_asked,

@@ -27,6 +27,10 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
+/// Makes index and curves of an error NaN: of one that is correlated, because what its uniform does is not what the
+/// error does, and others go with it.
+void leave_out(std::size_t error, std::size_t responses, MainEffects& effects);
+
 /// What is shown of the yield that is asked for, 0 for none: kept if the one-sided lower limit at the result's level is
 /// at least that, not kept if the upper limit is below it.
 YieldVerdict judge_yield(const YieldResult& found, double asked);
