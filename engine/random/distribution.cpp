@@ -320,17 +320,8 @@ Distribution Distribution::measured(std::vector<double> values) {
   Distribution made(Shape::measured, 0.0, std::max(std::abs(values.front()), std::abs(values.back())),
                     std::sqrt(moments_between(values, mean).square));
   made.mean_ = mean;
-  made.values_ = std::make_shared<const std::vector<double>>(std::move(values));
+  made.values_ = std::move(values);
   return made;
-}
-
-std::span<const double> Distribution::values() const {
-  return values_ == nullptr ? std::span<const double>() : std::span<const double>(*values_);
-}
-
-bool operator==(const Distribution& one, const Distribution& other) {
-  return one.shape_ == other.shape_ && one.sigma_ == other.sigma_ && one.half_width_ == other.half_width_ &&
-         std::ranges::equal(one.values(), other.values());
 }
 
 double Distribution::quantile(double u) const {
@@ -345,7 +336,7 @@ double Distribution::quantile(double u) const {
       return quantile_of(TriangularTail{half_width_}, u);
     case Shape::measured:
       POESY_EXPECTS(u > 0.0 && u < 1.0);
-      return between_values(values_->data(), static_cast<double>(values_->size() - 1), u);
+      return between_values(values_.data(), static_cast<double>(values_.size() - 1), u);
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -361,7 +352,7 @@ void Distribution::transform(std::span<double> uniforms) const {
     case Shape::triangular:
       return triangular_quantiles(half_width_, uniforms);
     case Shape::measured:
-      return measured_quantiles(*values_, uniforms);
+      return measured_quantiles(values_, uniforms);
   }
   throw std::logic_error("unknown shape of distribution");
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,7 +38,7 @@ class Distribution {
   /// The distribution's own standard deviation about its mean (after truncation, and with straight lines between
   /// measured values, hence not the sample's).
   double standard_deviation() const { return standard_deviation_; }
-  std::span<const double> values() const;  ///< Those that were measured, ascending; empty for other shapes.
+  std::span<const double> values() const { return values_; }  ///< Measured, ascending; empty for other shapes.
 
   /// The value below which a share u of all draws lies. Precondition: 0 < u < 1.
   double quantile(double u) const;
@@ -49,7 +48,7 @@ class Distribution {
   void transform_scores(std::span<double> scores) const;
 
   /// Whether shape, parameters and measured values are the same.
-  friend bool operator==(const Distribution& one, const Distribution& other);
+  friend bool operator==(const Distribution&, const Distribution&) = default;
 
  private:
   Distribution(Shape shape, double sigma, double half_width, double standard_deviation);
@@ -59,7 +58,7 @@ class Distribution {
   double half_width_;
   double mean_ = 0.0;
   double standard_deviation_;
-  std::shared_ptr<const std::vector<double>> values_;  ///< shared by copies
+  std::vector<double> values_;
 };
 
 /// The value below which a share u of a normal with standard deviation sigma lies, to a few units in the last place.

@@ -207,11 +207,9 @@ std::string correlated_lines(const Study& study) {
 std::string shown_correlated(const TemplateLines& lines, const Study& study) {
   const std::vector<Factor>& factors = study.model().factors;
   if (study.analysis.kind->varies != Varies::together || factors.size() < 2) return {};
-  return lines.explained(
-      "errors", "correlated",
-      fmt::format("# correlated = [{{ factors = [\"{}\", \"{}\"], correlation = [[1, 0.5], [0.5, 1]] "
-                  "}}]",
-                  factors[0].name, factors[1].name));
+  return lines.explanation_lines("errors", "correlated") + lines.keys_lines("errors.correlated") +
+         fmt::format("# correlated = [{{ factors = [\"{}\", \"{}\"], correlation = [[1, 0.5], [0.5, 1]] }}]\n",
+                     factors[0].name, factors[1].name);
 }
 
 /// "x1, x2 and 3 more".
