@@ -14,13 +14,14 @@ namespace {
 
 constexpr std::size_t kRounds = 8;
 
+/// A network over fewer numbers does not reach all permutations alike.
+constexpr unsigned kFewestBits = 10;
+
 /// A permutation of the strata 0 .. n - 1 that is computed for one sample at a time.
 class Permutation {
  public:
   Permutation(const StreamAddress& address, std::uint64_t strata)
-      : strata_(strata),
-        high_bits_(static_cast<unsigned>(std::bit_width(strata - 1)) / 2),
-        low_bits_(static_cast<unsigned>(std::bit_width(strata - 1)) - high_bits_) {
+      : strata_(strata), high_bits_(bits_for(strata) / 2), low_bits_(bits_for(strata) - high_bits_) {
     // Blocks behind those of the samples.
     constexpr std::uint64_t kKeyBlock = LatinHypercube::kMostSamples / 4;
     for (std::size_t k = 0; k < kRounds; k += 4) {
@@ -36,6 +37,10 @@ class Permutation {
   }
 
  private:
+  static unsigned bits_for(std::uint64_t strata) {
+    return std::max(static_cast<unsigned>(std::bit_width(strata - 1)), kFewestBits);
+  }
+
   /// A random function: the finaliser of MurmurHash3 of a key and a half (Appleby 2011).
   static std::uint64_t hash(std::uint64_t key, std::uint64_t half) {
     std::uint64_t x = key + half * 0x9e3779b97f4a7c15;

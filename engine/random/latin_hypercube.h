@@ -13,9 +13,9 @@ namespace poesy {
 /// uniform on the unit cube. Fewer samples are not a Latin hypercube, so n is part of the design.
 ///
 /// The permutation of a dimension is a Feistel network of eight rounds over the smallest power of two that has room for
-/// n, walked until it comes back below n (Black and Rogaway 2002), so that any sample is a function of its address and
-/// no permutation is stored. Its keys and the places come from Philox at purpose latin_hypercube, factor = dimension
-/// and pose = replicate. Replicates are independent.
+/// n (at least 2^10), walked until it comes back below n (Black and Rogaway 2002), so that any sample is a function of
+/// its address and no permutation is stored. Its keys and the places come from Philox at purpose latin_hypercube,
+/// factor = dimension and pose = replicate. Replicates are independent.
 class LatinHypercube {
  public:
   /// So many samples there are at most: 2^32.

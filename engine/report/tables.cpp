@@ -72,40 +72,6 @@ void add_share(std::vector<Cell>& row, std::uint64_t good, const YieldVerdict& y
   row.push_back(count_cell(yield.machines));
 }
 
-/// The yield with its interval, then what each limit alone makes of it.
-Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts) {
-  const YieldVerdict& yield = *verdicts.yield;
-  Table table{.name = "yield",
-              .caption = yield_caption(yield),
-              .columns = {text_column("limit_of", "limit of"), percent_column("yield", "yield"),
-                          percent_column("low", "low"), percent_column("high", "high"),
-                          number_column("rejects", "rejects"), number_column("machines", "machines", "", 2),
-                          number_column("limit", "limit", "", 1), text_column("unit", "unit", 1)},
-              .notes = {fmt::format("yield: the share of the machines that are within the limit at every pose; low, "
-                                    "high: its {} interval (Clopper and Pearson)",
-                                    percent_text(yield.conf_level))}};
-  std::vector<Cell> all{text_cell("all responses")};
-  add_share(all, yield.machines - yield.rejects, yield);
-  all.insert(all.end(), {text_cell(""), text_cell("")});
-  table.rows.push_back(std::move(all));
-  for (const LimitVerdict& one : verdicts.limits) {
-    const Unit& unit = display(result.responses[one.response]);
-    std::vector<Cell> row{text_cell(result.responses[one.response].name)};
-    add_share(row, one.within, yield);
-    row.push_back(number_cell(one.limit / unit.si, kDigits));
-    row.push_back(text_cell(unit.name));
-    table.rows.push_back(std::move(row));
-  }
-  if (yield.unsolved > 0) {
-    table.notes.push_back(fmt::format(
-        "{} of the rejects {} within all limits where {} solved; if that made {} good, the yield would be {}",
-        count_text(yield.unsolved), yield.unsolved == 1 ? "is" : "are", yield.unsolved == 1 ? "it is" : "they are",
-        yield.unsolved == 1 ? "it" : "them",
-        percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines))));
-  }
-  return table;
-}
-
 constexpr std::size_t kMostShown = 5;
 
 /// Positions among [R x P] of the quantities that count for the end and did not reach it, the widest first.
@@ -188,6 +154,39 @@ const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response)
   if (!verdicts) return nullptr;
   const auto found = std::ranges::find(verdicts->limits, response, &LimitVerdict::response);
   return found == verdicts->limits.end() ? nullptr : &*found;
+}
+
+Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts) {
+  const YieldVerdict& yield = *verdicts.yield;
+  Table table{.name = "yield",
+              .caption = yield_caption(yield),
+              .columns = {text_column("limit_of", "limit of"), percent_column("yield", "yield"),
+                          percent_column("low", "low"), percent_column("high", "high"),
+                          number_column("rejects", "rejects"), number_column("machines", "machines", "", 2),
+                          number_column("limit", "limit", "", 1), text_column("unit", "unit", 1)},
+              .notes = {fmt::format("yield: the share of the machines that are within the limit at every pose; low, "
+                                    "high: its {} interval (Clopper and Pearson)",
+                                    percent_text(yield.conf_level))}};
+  std::vector<Cell> all{text_cell("all responses")};
+  add_share(all, yield.machines - yield.rejects, yield);
+  all.insert(all.end(), {text_cell(""), text_cell("")});
+  table.rows.push_back(std::move(all));
+  for (const LimitVerdict& one : verdicts.limits) {
+    const Unit& unit = display(result.responses[one.response]);
+    std::vector<Cell> row{text_cell(result.responses[one.response].name)};
+    add_share(row, one.within, yield);
+    row.push_back(number_cell(one.limit / unit.si, kDigits));
+    row.push_back(text_cell(unit.name));
+    table.rows.push_back(std::move(row));
+  }
+  if (yield.unsolved > 0) {
+    table.notes.push_back(fmt::format(
+        "{} of the rejects {} within all limits where {} solved; if that made {} good, the yield would be {}",
+        count_text(yield.unsolved), yield.unsolved == 1 ? "is" : "are", yield.unsolved == 1 ? "it is" : "they are",
+        yield.unsolved == 1 ? "it" : "them",
+        percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines))));
+  }
+  return table;
 }
 
 std::optional<Table> limits_table(const StoredResult& result) {

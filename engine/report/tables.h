@@ -59,7 +59,12 @@ std::string not_settled_text(const StoredResult& result, const Settling& settlin
 /// The verdict on a response; null where the study does not limit it.
 const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response);
 
-/// PASS or FAIL for each limit, with the value that was found and the limit; none where the study states none.
+/// The yield with its interval and what became of it, then what each limit alone makes of it. Precondition:
+/// verdicts.yield is there.
+Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts);
+
+/// PASS or FAIL for each limit, with the value that was found and the limit; none where the study states none. By
+/// Judge::yield it is yield_table.
 std::optional<Table> limits_table(const StoredResult& result);
 
 /// A result, and the response by which its errors are ranked; it must have it.

@@ -5,6 +5,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
+#include "engine/run/effect_poses.h"
 
 namespace poesy {
 namespace {
@@ -77,9 +78,11 @@ void PoseUnit::write(ByteWriter& to) const {
     response.values.write(to);
   }
   write_ends(*this, to);
+  to.number(effects ? 1 : 0);
+  if (effects) effects->write(to);
 }
 
-PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses, std::uint64_t first) {
+PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses, std::size_t errors, std::uint64_t first) {
   PoseUnit unit;
   unit.responses.resize(responses);
   for (ResponseUnit& response : unit.responses) {
@@ -87,6 +90,7 @@ PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses, std::uint64_t f
     response.values = BucketedValues::read(from);
   }
   read_ends(from, first, unit);
+  if (from.number_up_to(1) == 1) unit.effects = MainEffectSums::read(from, errors, responses);
   return unit;
 }
 
@@ -117,6 +121,15 @@ UnitSolver::UnitSolver(const Plan& plan, const Model& model, std::size_t varied)
 
 void UnitSolver::draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const {
   fill_uniforms(plan_->address(slot, unit.pose), unit.first, row);
+}
+
+EffectBins UnitSolver::draw_in_bins(const WorkUnit& unit) {
+  const std::size_t errors = plan_->factors().size();
+  const std::span<double> values = std::span(values_).first(errors * unit.count);
+  for (std::size_t v = 0; v < errors; ++v) draw_uniforms(unit, v, values.subspan(v * unit.count, unit.count));
+  EffectBins bins(values, errors);
+  plan_->transform(values, unit.count);
+  return bins;
 }
 
 UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range) {
@@ -172,7 +185,8 @@ CellUnit UnitEvaluator::operator()(const WorkUnit& unit) {
 }
 
 PoseUnitEvaluator::PoseUnitEvaluator(const Plan& plan, const Model& model)
-    : UnitSolver(plan, model, plan.factors().size()) {
+    : UnitSolver(plan, model, plan.factors().size()),
+      effect_poses_(effect_poses(plan.poses().size(), responses_, plan.factors().size())) {
   kept_.reserve(Plan::kUnitSamples);
 }
 
@@ -181,6 +195,10 @@ UnitOutcomes PoseUnitEvaluator::solve(const WorkUnit& unit) {
     draw_uniforms(unit, v, std::span(values_).subspan(v * unit.count, unit.count));
   }
   plan_->transform(std::span(values_).first(plan_->factors().size() * unit.count), unit.count);
+  return solve_drawn(unit);
+}
+
+UnitOutcomes PoseUnitEvaluator::solve_drawn(const WorkUnit& unit) {
   return UnitSolver::solve(unit.pose, plan_->factors(), unit.count, 0.0);
 }
 
@@ -193,9 +211,20 @@ std::span<const double> PoseUnitEvaluator::only_counting(std::span<const double>
   return kept_;
 }
 
+MainEffectSums PoseUnitEvaluator::effects_of(const UnitOutcomes& outcomes, const EffectBins& bins) const {
+  std::vector<std::uint8_t> ok;
+  for (const SolveStatus status : outcomes.status) ok.push_back(counts(status, plan_->not_converged()) ? 1 : 0);
+  MainEffectSums sums(plan_->factors().size(), responses_);
+  sums.add(bins, outcomes.responses, ok);
+  return sums;
+}
+
 PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
-  const UnitOutcomes outcomes = solve(unit);
+  const bool has_effects = std::ranges::find(effect_poses_, unit.pose) != effect_poses_.end();
+  const std::optional<EffectBins> bins = has_effects ? std::optional(draw_in_bins(unit)) : std::nullopt;
+  const UnitOutcomes outcomes = bins ? solve_drawn(unit) : solve(unit);
   PoseUnit found;
+  if (bins) found.effects = effects_of(outcomes, *bins);
   count_ends(unit, outcomes, found);
   found.responses.reserve(responses_);
   const bool all_count =

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/model/model.h"
 #include "engine/run/result.h"
 #include "engine/stats/indices.h"
+#include "engine/stats/main_effects.h"
 #include "engine/stats/moments.h"
 #include "engine/stats/quantile_sketch.h"
 #include "engine/study/plan.h"
@@ -47,14 +49,15 @@ struct ResponseUnit {
 
 /// What one work unit of a Monte Carlo study contributes.
 struct PoseUnit {
-  std::vector<ResponseUnit> responses;  ///< [R]
-  SolveCounts solves;                   ///< how its solves ended
-  FailedSamples failed;                 ///< the first of them
+  std::vector<ResponseUnit> responses;    ///< [R]
+  SolveCounts solves;                     ///< how its solves ended
+  FailedSamples failed;                   ///< the first of them
+  std::optional<MainEffectSums> effects;  ///< at the poses where main effects are added up
 
   /// For a message.
   void write(ByteWriter& to) const;
-  /// Of samples from `first` on.
-  static PoseUnit read(ByteReader& from, std::size_t responses, std::uint64_t first);
+  /// Of samples from `first` on. errors: that vary.
+  static PoseUnit read(ByteReader& from, std::size_t responses, std::size_t errors, std::uint64_t first);
 };
 
 /// The numbers of samples of a cell at which a sensitivity study with a fixed number of samples looks at its indices,
@@ -90,6 +93,8 @@ class UnitSolver {
 
   /// Fills a row with the uniforms from which the errors of this slot are made.
   void draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
+  /// Fills values_ with the draws of all factors, one row behind the other, and gives the bins into which they fall.
+  EffectBins draw_in_bins(const WorkUnit& unit);
   /// Solves the first [varied x count] of values_ at a pose.
   UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range);
 
@@ -138,9 +143,13 @@ class PoseUnitEvaluator : private UnitSolver {
   UnitOutcomes solve(const WorkUnit& unit);
 
  private:
+  /// Of what is in values_.
+  UnitOutcomes solve_drawn(const WorkUnit& unit);
   std::span<const double> only_counting(std::span<const double> outcomes, std::span<const SolveStatus> status);
+  MainEffectSums effects_of(const UnitOutcomes& outcomes, const EffectBins& bins) const;
 
-  std::vector<double> kept_;  ///< one response of the samples that count
+  std::vector<double> kept_;             ///< one response of the samples that count
+  std::vector<PoseIndex> effect_poses_;  ///< where main effects are added up
 };
 
 }  // namespace poesy

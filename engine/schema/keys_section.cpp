@@ -68,6 +68,11 @@ void StudyValue::fail(std::string_view problem, std::string_view remedy) const {
 
 void StudyValue::wrong_type(std::string_view remedy) const { fail("is " + described(*node_), remedy); }
 
+bool StudyValue::yes_or_no() const {
+  if (const auto answer = boolean()) return *answer;
+  wrong_type("write true or false, without quotes");
+}
+
 std::string StudyValue::text() const {
   if (const auto* text = node_->as_string()) return text->get();
   wrong_type("write a text in quotes");

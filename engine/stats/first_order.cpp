@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kGridInBin = 64;
+constexpr std::size_t kGridInBin = 128;
 constexpr std::size_t kFewestBins = 4;
 constexpr double kSamplesForBin = 16.0;  ///< on average; with fewer of them bins are merged
 constexpr double kFewestInBin = 4.0;     ///< in each
@@ -22,6 +22,9 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostBin
 
 double square(double x) { return x * x; }
 double cube(double x) { return x * x * x; }
+
+/// From 0 to 1, slow at both ends: the grid is finest where the quantile function may be infinite.
+double graded(double t) { return square(t) * (3.0 - 2.0 * t); }
 
 /// Samples in some bins of equal probability, and how an error lies in these.
 struct Strata {
@@ -188,23 +191,31 @@ class VarianceOfSum {
 }  // namespace
 
 std::vector<double> bin_spread_grid() {
-  std::vector<double> uniforms(kEffectBins * kGridInBin);
-  for (std::size_t k = 0; k < uniforms.size(); ++k) {
-    uniforms[k] = (static_cast<double>(k) + 0.5) / static_cast<double>(uniforms.size());
+  std::vector<double> uniforms;
+  for (std::size_t b = 0; b < kEffectBins; ++b) {
+    for (std::size_t k = 0; k < kGridInBin; ++k) {
+      const double in_bin = graded((static_cast<double>(k) + 0.5) / kGridInBin);
+      uniforms.push_back((static_cast<double>(b) + in_bin) / kEffectBins);
+    }
   }
   return uniforms;
 }
 
 BinSpread bin_spread(std::span<const double> quantiles) {
   POESY_EXPECTS(quantiles.size() == kEffectBins * kGridInBin);
+  std::array<double, kGridInBin> weights{};
+  for (std::size_t k = 0; k < kGridInBin; ++k) {
+    const auto cell = static_cast<double>(k);
+    weights[k] = graded((cell + 1.0) / kGridInBin) - graded(cell / kGridInBin);
+  }
   BinSpread spread;
   for (std::size_t b = 0; b < kEffectBins; ++b) {
     const std::span<const double> values = quantiles.subspan(b * kGridInBin, kGridInBin);
-    for (const double value : values) spread.mean[b] += value / kGridInBin;
-    for (const double value : values) {
-      const double off = value - spread.mean[b];
-      spread.variance[b] += square(off) / kGridInBin;
-      spread.third[b] += cube(off) / kGridInBin;
+    for (std::size_t k = 0; k < kGridInBin; ++k) spread.mean[b] += weights[k] * values[k];
+    for (std::size_t k = 0; k < kGridInBin; ++k) {
+      const double off = values[k] - spread.mean[b];
+      spread.variance[b] += weights[k] * square(off);
+      spread.third[b] += weights[k] * cube(off);
     }
   }
   return spread;

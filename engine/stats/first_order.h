@@ -72,7 +72,11 @@ enum class Dependence {
 /// An index is not clipped to [0, 1]: that of an error without effect is as often negative as positive, so that sums
 /// and means of indices are right. Its interval holds the indices that are compatible with the estimate.
 /// Dependence::unknown adds standard errors instead of variances, which is right where all parts go up and down
-/// together, and wide elsewhere. Precondition: 0 < conf_level < 1.
+/// together, and wide elsewhere.
+/// Of 95 % intervals, 95 to 98 % held the true index from 256 to 16 384 samples, for linear and folded responses of
+/// normal errors and the Ishigami function, and up to 99.7 % for what is heavy-tailed or all interaction. Where the
+/// standard error falls below the bias of the bins (binned_variance) they hold it less often: 77 % for an index of 0.59
+/// of exp(z) with 16 384 samples. Tables: THEORY.md. Precondition: 0 < conf_level < 1.
 Estimate first_order_index(std::span<const BinnedVariance> parts, Dependence dependence, double conf_level);
 
 }  // namespace poesy

@@ -10,8 +10,7 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kTogether = 4;  ///< responses in a row
-using Row = std::array<double, 2 * kTogether>;
+constexpr std::size_t kTogether = EffectRow{}.size() / 2;  ///< responses in a row
 
 /// Samples that are added in one go: their rows, and the sums of a few errors, fit the nearest cache.
 constexpr std::size_t kPiece = 256;
@@ -19,23 +18,23 @@ constexpr std::size_t kPiece = 256;
 /// Adds each row to the row of its bin, for each of some errors. bins: of the first error; those of the next one are
 /// `stride` further on. sums: [errors x bins].
 /// Four errors at a time, because a row of sums is then not wanted again before it is written.
-POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const Row> rows, const std::uint8_t* bins, std::size_t stride,
-                                         std::size_t errors, Row* sums) {
-  const auto add = [&](const Row& row, std::size_t error, std::size_t sample) {
-    Row& sum = sums[error * kEffectBins + bins[error * stride + sample]];
+POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const EffectRow> rows, const std::uint8_t* bins, std::size_t stride,
+                                         std::size_t errors, EffectRow* sums) {
+  const auto add = [&](const EffectRow& row, std::size_t error, std::size_t sample) {
+    EffectRow& sum = sums[error * kEffectBins + bins[error * stride + sample]];
     for (std::size_t j = 0; j < row.size(); ++j) sum[j] += row[j];
   };
   constexpr std::size_t kErrors = 4;
   const std::size_t whole = errors / kErrors * kErrors;
   for (std::size_t p = 0; p < whole; p += kErrors) {
     for (std::size_t s = 0; s < rows.size(); ++s) {
-      const Row row = rows[s];
+      const EffectRow row = rows[s];
       for (std::size_t k = 0; k < kErrors; ++k) add(row, p + k, s);
     }
   }
   for (std::size_t p = whole; p < errors; ++p) {
     for (std::size_t s = 0; s < rows.size(); ++s) {
-      const Row row = rows[s];
+      const EffectRow row = rows[s];
       add(row, p, s);
     }
   }
@@ -87,11 +86,11 @@ void MainEffectSums::add(const EffectBins& bins, std::span<const double> respons
   POESY_EXPECTS(bins.errors() == errors_ && counts.size() == block && responses.size() == moments_.size() * block);
   add_counts(bins, counts);
   add_moments(responses, counts);
-  std::array<Row, kPiece> rows;
+  std::array<EffectRow, kPiece> rows;
   for (std::size_t first = 0; first < block; first += kPiece) {
     const std::span piece = std::span(rows).first(std::min(kPiece, block - first));
     for (std::size_t r = 0; r < moments_.size(); r += kTogether) {
-      std::ranges::fill(piece, Row{});
+      std::ranges::fill(piece, EffectRow{});
       for (std::size_t k = r; k < std::min(r + kTogether, moments_.size()); ++k) {
         const double* values = &responses[k * block + first];
         for (std::size_t s = 0; s < piece.size(); ++s) {
@@ -153,7 +152,7 @@ std::size_t MainEffectSums::place(std::size_t response) { return 2 * (response %
 std::array<BinSums, kEffectBins> MainEffectSums::bins_of(std::size_t response, std::size_t error) const {
   std::array<BinSums, kEffectBins> bins;
   for (std::size_t b = 0; b < kEffectBins; ++b) {
-    const Row& row = sums_[first_row(response, error) + b];
+    const EffectRow& row = sums_[first_row(response, error) + b];
     bins[b] = {static_cast<double>(counts_[error * kEffectBins + b]), row[place(response)], row[place(response) + 1]};
   }
   return bins;

@@ -33,6 +33,10 @@ class EffectBins {
   std::vector<std::uint32_t> filled_;
 };
 
+/// Four responses of a sample, or their sums: of y - shift and of its square, in turn. A row fills a line of the cache,
+/// because one that lies in two lines takes twice the time.
+struct alignas(64) EffectRow : std::array<double, 8> {};
+
 /// Sums over the samples of each bin, for each response and error, for first-order indices and main-effect curves.
 /// Memory: 512 bytes for each response and error, where the number of responses is rounded up to a multiple of four,
 /// and 256 for each error, whatever the number of samples.
@@ -53,9 +57,9 @@ class MainEffectSums {
   BinnedVariance variance(std::size_t response, std::size_t error, const BinSpread& spread) const;
 
   /// The main effect as a curve: E[y | u in bin] with Student's interval. Each interval by itself holds its mean at
-  /// this level, all together do so less often. NaN without samples; NaN at both ends below two. Where bins hold few
-  /// samples of a skewed response the intervals are too short: THEORY.md says by how much. Precondition: 0 < conf_level
-  /// < 1.
+  /// this level, all together do so less often. With eight samples in a bin (256 in all) intervals of 95 % hold 94 to
+  /// 95 % of the means of linear, 93 to 94 % of folded and 84 to 91 % of lognormal responses, with 32 in a bin 95, 94
+  /// and 89 to 93 %. NaN without samples; NaN at both ends below two. Precondition: 0 < conf_level < 1.
   std::array<Estimate, kEffectBins> curve(std::size_t response, std::size_t error, double conf_level) const;
 
   /// Every bit of the sums, and back.
@@ -64,9 +68,6 @@ class MainEffectSums {
   static MainEffectSums read(ByteReader& from, std::size_t errors, std::size_t responses);
 
  private:
-  /// Of four responses in one bin of one error: sums of y - shift and of its square, in turn.
-  using Row = std::array<double, 8>;
-
   void add_counts(const EffectBins& bins, std::span<const std::uint8_t> counts);
   void add_moments(std::span<const double> responses, std::span<const std::uint8_t> counts);
   std::array<BinSums, kEffectBins> bins_of(std::size_t response, std::size_t error) const;
@@ -80,7 +81,7 @@ class MainEffectSums {
   /// [R] mean of the first block of samples: near enough to the mean of all that plain sums of the differences do not
   /// cancel, and plain sums are what is added fastest.
   std::vector<double> shift_;
-  std::vector<Row> sums_;  ///< [R / 4 x P x bins]
+  std::vector<EffectRow> sums_;  ///< [R / 4 x P x bins]
 };
 
 }  // namespace poesy

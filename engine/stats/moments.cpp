@@ -6,14 +6,21 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "engine/base/contract.h"
 #include "engine/base/instruction_sets.h"
 #include "engine/base/nan.h"
-#include "engine/stats/eight_sums.h"
 
 namespace poesy {
 namespace {
+
+/// Eight sums, so that an addition need not wait for the one before, and that they make whole vectors. Value k goes to
+/// sum k mod 8 on every instruction set.
+constexpr std::size_t kSums = 8;
+using Sums = std::array<double, kSums>;
+
+double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
 POESY_EACH_INSTRUCTION_SET double sum_of(std::span<const double> values) {
   Sums sums{};
@@ -149,10 +156,16 @@ double two_sided_normal_quantile(double conf_level) {
   return std::numbers::sqrt2 * boost::math::erf_inv(conf_level);
 }
 
+double two_sided_student_quantile(double freedom, double conf_level) {
+  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
+  const boost::math::students_t student(freedom);
+  return boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
+}
+
 Interval mean_interval(const Moments& moments, double conf_level) {
   if (moments.count() < 2) return {kNaN, kNaN};
   const auto n = static_cast<double>(moments.count());
-  const double half = student_quantile(n - 1.0, conf_level) * moments.standard_deviation() / std::sqrt(n);
+  const double half = two_sided_student_quantile(n - 1.0, conf_level) * moments.standard_deviation() / std::sqrt(n);
   return {moments.mean() - half, moments.mean() + half};
 }
 
@@ -174,7 +187,7 @@ Estimate stratified_mean(const Groups& groups, double conf_level) {
   const double mean = sum / total;
   if (squares == 0.0) return {mean, {mean, mean}};
   if (!std::isfinite(quartics)) return {mean, {kNaN, kNaN}};
-  const double half = student_quantile(squares * squares / quartics, conf_level) * std::sqrt(squares) / total;
+  const double half = two_sided_student_quantile(squares * squares / quartics, conf_level) * std::sqrt(squares) / total;
   return {mean, {mean - half, mean + half}};
 }
 

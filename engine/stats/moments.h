@@ -62,6 +62,8 @@ double student_quantile(double freedom, double conf_level);
 /// The z for which a standard normal lies within +-z with this probability: 1.96 for 0.95.
 /// Precondition: 0 < conf_level < 1.
 double two_sided_normal_quantile(double conf_level);
+/// The same of Student's distribution. Precondition: freedom > 0, degrees of freedom.
+double two_sided_student_quantile(double freedom, double conf_level);
 
 /// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.
 /// Precondition: 0 < conf_level < 1.

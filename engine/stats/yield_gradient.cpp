@@ -4,34 +4,18 @@
 #include <numbers>
 
 #include "engine/base/contract.h"
-#include "engine/base/instruction_sets.h"
 #include "engine/base/nan.h"
-#include "engine/stats/eight_sums.h"
 
 namespace poesy {
 namespace {
 
-struct ScoreSum {
-  double sum;
-  double square;
-};
-
-/// Sums of z^2 - 1 and of its square, z = error times inverse_sigma, over the machines of weight 1; the others have 0.
-POESY_EACH_INSTRUCTION_SET ScoreSum score_sum(std::span<const double> errors, std::span<const double> weights,
-                                              double inverse_sigma) {
-  Sums sums{}, squares{};
-  const auto add = [&](std::size_t j, std::size_t k) {
-    const double z = errors[k] * inverse_sigma;
-    const double score = weights[k] * (z * z - 1.0);
-    sums[j] += score;
-    squares[j] += score * score;
-  };
-  const std::size_t whole = errors.size() / kSums * kSums;
-  for (std::size_t k = 0; k < whole; k += kSums) {
-    for (std::size_t j = 0; j < kSums; ++j) add(j, k + j);
+/// The machines that are rejected.
+std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
+  std::vector<std::size_t> found;
+  for (std::size_t b = 0; b < rejected.size(); ++b) {
+    if (rejected[b] != 0) found.push_back(b);
   }
-  for (std::size_t k = whole; k < errors.size(); ++k) add(k - whole, k);
-  return {total(sums), total(squares)};
+  return found;
 }
 
 bool has_score(const ErrorScale& error) { return error.sigma > 0.0; }
@@ -47,20 +31,32 @@ double score_of_ends(const ErrorScale& error) {
 }  // namespace
 
 ScoreSums::ScoreSums(std::span<const ErrorScale> errors)
-    : errors_(errors.begin(), errors.end()), sums_(errors.size()), squares_(errors.size()) {}
+    : errors_(errors.begin(), errors.end()), sums_(errors.size()), squares_(errors.size()), cubes_(errors.size()) {}
 
 void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
   POESY_EXPECTS(errors.size() == errors_.size() * count);
-  const std::vector<double> weights(rejected.begin(), rejected.end());
+  const std::vector<std::size_t> rejects = places(rejected);  // few of many machines, as a rule
   for (std::size_t p = 0; p < errors_.size(); ++p) {
     if (!has_score(errors_[p])) continue;
-    const auto [sum, square] = score_sum(errors.subspan(p * count, count), weights, 1.0 / errors_[p].sigma);
+    const std::span<const double> row = errors.subspan(p * count, count);
+    const double inverse_sigma = 1.0 / errors_[p].sigma;
+    double sum = 0.0;
+    double squares = 0.0;
+    double cubes = 0.0;
+    for (const std::size_t b : rejects) {
+      const double z = row[b] * inverse_sigma;
+      const double score = z * z - 1.0;
+      sum += score;
+      squares += score * score;
+      cubes += score * score * score;
+    }
     sums_[p] += sum;
-    squares_[p] += square;
+    squares_[p] += squares;
+    cubes_[p] += cubes;
   }
   machines_ += count;
-  for (const std::uint8_t reject : rejected) rejects_ += reject;
+  rejects_ += rejects.size();
 }
 
 void ScoreSums::merge(const ScoreSums& other) {
@@ -70,27 +66,40 @@ void ScoreSums::merge(const ScoreSums& other) {
   for (std::size_t p = 0; p < errors_.size(); ++p) {
     sums_[p] += other.sums_[p];
     squares_[p] += other.squares_[p];
+    cubes_[p] += other.cubes_[p];
   }
 }
 
 std::vector<Estimate> ScoreSums::gradient(double conf_level) const {
-  const double z = two_sided_normal_quantile(conf_level);
-  const auto n = static_cast<double>(machines_);
-  const auto rejects = static_cast<double>(rejects_);
   std::vector<Estimate> gradient;
   for (std::size_t p = 0; p < errors_.size(); ++p) {
     if (!has_score(errors_[p]) || machines_ == 0) {
       gradient.push_back({kNaN, {kNaN, kNaN}});
       continue;
     }
-    const double ends = score_of_ends(errors_[p]);
-    const double mean = (sums_[p] + ends * rejects) / n;
-    const double mean_square = (squares_[p] + ends * (2.0 * sums_[p] + ends * rejects)) / n;
-    const double value = -mean / errors_[p].sigma;
-    const double half = rejects_ < 2 ? kNaN : z * std::sqrt((mean_square - mean * mean) / (n - 1.0)) / errors_[p].sigma;
-    gradient.push_back({value, {value - half, value + half}});
+    const auto [value, interval] = mean_score(p, conf_level);
+    const double sigma = errors_[p].sigma;
+    gradient.push_back({-value / sigma, {-interval.high / sigma, -interval.low / sigma}});
   }
   return gradient;
+}
+
+Estimate ScoreSums::mean_score(std::size_t error, double conf_level) const {
+  const auto n = static_cast<double>(machines_);
+  const auto rejects = static_cast<double>(rejects_);
+  const double ends = score_of_ends(errors_[error]);
+  // the mean powers of the score, whose constant part is added here
+  const double mean = (sums_[error] + ends * rejects) / n;
+  const double mean2 = (squares_[error] + ends * (2.0 * sums_[error] + ends * rejects)) / n;
+  const double mean3 =
+      (cubes_[error] + ends * (3.0 * squares_[error] + ends * (3.0 * sums_[error] + ends * rejects))) / n;
+  if (rejects_ < 2) return {mean, {kNaN, kNaN}};
+  const double variance = mean2 - mean * mean;
+  const double third = mean3 - mean * (3.0 * mean2 - 2.0 * mean * mean);
+  const double z = two_sided_student_quantile(rejects - 1.0, conf_level);
+  const double shift = 0.5 * z * z * third / variance / n;
+  const double half = std::sqrt(shift * shift + z * z * variance / (n - 1.0));
+  return {mean, {mean + shift - half, mean + shift + half}};
 }
 
 void ScoreSums::write(ByteWriter& to) const {
@@ -98,6 +107,7 @@ void ScoreSums::write(ByteWriter& to) const {
   to.number(rejects_);
   to.reals(sums_);
   to.reals(squares_);
+  to.reals(cubes_);
 }
 
 ScoreSums ScoreSums::read(ByteReader& from, std::span<const ErrorScale> errors) {
@@ -106,10 +116,11 @@ ScoreSums ScoreSums::read(ByteReader& from, std::span<const ErrorScale> errors) 
   sums.rejects_ = from.number_up_to(sums.machines_);
   sums.sums_ = from.reals(errors.size());
   sums.squares_ = from.reals(errors.size());
+  sums.cubes_ = from.reals(errors.size());
   const auto rejects = static_cast<double>(sums.rejects_);
   constexpr double kRounding = 1.0 + 1e-9;
   for (std::size_t p = 0; p < errors.size(); ++p) {
-    const bool possible = std::isfinite(sums.squares_[p]) && sums.squares_[p] >= 0.0 &&
+    const bool possible = std::isfinite(sums.squares_[p]) && std::isfinite(sums.cubes_[p]) && sums.squares_[p] >= 0.0 &&
                           sums.sums_[p] * sums.sums_[p] <= rejects * sums.squares_[p] * kRounding;
     if (!possible) throw BytesError("has sums of scores that no machines give");
   }

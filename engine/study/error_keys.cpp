@@ -67,8 +67,11 @@ KeyValue<Parameters> size_at(double Parameters::*member) {
 KeyValue<Parameters> values_value() {
   const auto read = [](const StudyValue& value, Parameters& parameters) {
     for (const StudyValue& one : value.list()) parameters.values.push_back(one.quantity(parameters.dimension));
+    if (parameters.values.size() >= Distribution::kLeastMeasured) return;
+    value.fail(fmt::format("has {} values", parameters.values.size()),
+               fmt::format("a distribution is made of at least {}", Distribution::kLeastMeasured));
   };
-  return {.type = "list of quantities", .bounds = "at least 8 that are not all equal", .read = read};
+  return {.type = "list of quantities", .bounds = "at least 8", .read = read};
 }
 
 const InnerRows<Parameters>& distribution_keys() {

@@ -1,6 +1,6 @@
 poesy_test(result_file_test LABELS unit
            SOURCES engine/files/result_file_test.cpp engine/kinds/result_kinds_test.cpp
-                   engine/kinds/monte_carlo/fields_test.cpp engine/kinds/coupling/fields_test.cpp engine/files/fields_test.cpp engine/files/export_test.cpp engine/files/file_writer_test.cpp engine/files/output_folder_test.cpp
+                   engine/kinds/monte_carlo/fields_test.cpp engine/kinds/sobol/fields_test.cpp engine/kinds/coupling/fields_test.cpp engine/files/fields_test.cpp engine/files/export_test.cpp engine/files/file_writer_test.cpp engine/files/output_folder_test.cpp
                    engine/kinds/stored_study_test.cpp engine/kinds/sensitivity/tolerance_files_test.cpp
                    engine/kinds/sensitivity/fidelity_fields_test.cpp engine/kinds/sensitivity/separation_fields_test.cpp
            LINKS poesy_kinds DATA)

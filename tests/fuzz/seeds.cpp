@@ -124,6 +124,8 @@ void write_results(const std::string& folder) {
   write_cases_seed(folder + "/cases");
   write_identification_seed(folder + "/identification");
   test::Example().write_monte_carlo(folder + "/monte_carlo");
+  test::Example().write_machines(folder + "/machines");
+  test::Example().write_sobol(folder + "/sobol");
   test::Example().write_coupling(folder + "/coupling");
   write_convergence_seed(folder + "/convergence");
   write_shard_seed(folder + "/shard");

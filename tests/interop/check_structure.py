@@ -50,6 +50,7 @@ def check_xarray(path, file):
             for name in [name for name in file[group] if isinstance(file[group][name], h5py.Dataset)]:
                 assert name in opened.variables, f"xarray does not see /{group}/{name}"
             if group in ("sensitivity", "sensitivity/history", "solver", "evaluate", "errors", "monte_carlo", "coupling",
+                         "sobol", "sobol/aggregated", "sobol/vector", "monte_carlo/main_effect", "machines/largest", "machines/rms", "yield",
                          "limits"):
                 for dimension in opened.dims:
                     assert dimension in opened.coords, f"/{group} shows no names for {dimension}"

@@ -20,9 +20,11 @@ int main(int argc, char** argv) try {
   example.write_monte_carlo(folder + "/monte_carlo.h5");
   example.write_coupling(folder + "/coupling.h5");
   poesy::test::Example().write_cases(folder + "/cases.h5");
+  poesy::test::Example().write_machines(folder + "/machines.h5");
+  poesy::test::Example().write_sobol(folder + "/sobol.h5");
   poesy::test::Example().write_identification(folder + "/identification.h5");
-  for (const char* name :
-       {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/coupling", "/cases", "/identification"}) {
+  for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/machines", "/sobol", "/coupling", "/cases",
+                           "/identification"}) {
     poesy::export_tables(folder + name + ".h5", folder + name);
   }
   return 0;

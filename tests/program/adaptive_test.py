@@ -10,7 +10,7 @@ TABLE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
 MILESTONES = [1000, 2000, 3000, 5000, 8000, 12000, 18000, 27000, 40000]
 STUDIES = {"sensitivity": SENSITIVITY.replace("samples = 12300", TABLE),
            "monte-carlo": MONTE_CARLO.replace("samples = 12300", TABLE.replace("0.01", "0.003")),
-           "machines": MACHINES.replace("samples = 12300", TABLE.replace("0.01", "0.005"))}
+           "machines": MACHINES.replace("samples = 12300", TABLE)}
 
 
 class Adaptive(ResumptionTest):

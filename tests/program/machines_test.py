@@ -25,7 +25,7 @@ kind = "monte-carlo"
 draws = "per machine"
 factors = "all"
 samples = 60
-limits = { linear_deformation = "0.25 mm", angular_deformation = "0.15 deg" }
+limits = { linear_deformation = "1.2 mm", angular_deformation = "0.4 deg" }
 """
 
 
@@ -131,7 +131,7 @@ class Machines(ResumptionTest):
             self.assertLessEqual(file["yield/ci_low"][()], file["yield/value"][()])
         self.succeeds("report", "out.h5", "-o", "report.html")
         page = (self.folder / "report.html").read_text(encoding="utf-8")
-        self.assertLess(page.index("UNDECIDED"), page.index("What the yield depends on"))
+        self.assertLess(page.index("UNDECIDED"), page.rindex("What the yield depends on"))
         self.succeeds("export", "out.h5", "-d", "tables")
         for name in ("yield", "yield_by_response", "yield_gradient", "rejects", "machines_largest", "machines_rms", "S1",
                      "main_effect_linear_deformation"):

@@ -109,17 +109,18 @@ class Sobol(ResumptionTest):
             self.assertAlmostEqual(found[index][v].sum(), 1.0, delta=0.05)
 
     def test_absorbed_errors_are_zero_in_every_bit(self):
-        self.run_study(LINEAR.replace("3-prs", "2upr-rpu").replace("20000", "200"))
-        with h5py.File(self.folder / "out.h5") as file:
-            names = list(file["factors/name"].asstr())
-            text = self.succeeds("models", "2upr-rpu")
-            self.assertIn("benign", text)
-            total = file["sobol/aggregated/ST"][:]
-            first = file["sobol/aggregated/S1"][:]
-            absorbed = [p for p, name in enumerate(names) if (total[:, p] == 0.0).all()]
-        self.assertGreaterEqual(len(absorbed), 20)
-        for p in absorbed:
-            self.assertTrue((first[:, p] == 0.0).all(), names[p])
+        study = LINEAR.replace('"3-prs"', '"2upr-rpu"').replace("20000", "200") + '[solver]\nmetric = "platform"\n'
+        self.run_study(study)
+        self.run_study(study.replace('"all"', '"deforming-all"'), output="deforming.h5")
+        with h5py.File(self.folder / "out.h5") as file, h5py.File(self.folder / "deforming.h5") as deforming:
+            acting = set(deforming["factors/name"].asstr())
+            self.assertEqual(len(acting), 41)
+            for p, name in enumerate(file["factors/name"].asstr()):
+                for group in ("sobol", "sobol/aggregated", "sobol/vector"):
+                    for index in ("S1", "S1_ci_low", "S1_ci_high", "ST", "ST_ci_low", "ST_ci_high"):
+                        values = file[f"{group}/{index}"][:, p]
+                        self.assertTrue(name in acting or (values == 0.0).all(), f"{name}: {index} of {group}")
+            self.assertGreater((file["sobol/aggregated/ST"][0] > 0.0).sum(), 35)
 
     def test_tables(self):
         self.run_study(self.small() + 'second_order = true\ngroups = "frame"\n')
@@ -172,7 +173,7 @@ class Sobol(ResumptionTest):
         refused(self.small() + "groups = { a = [] }\n", "is empty")
         refused(self.small() + 'groups = { others = ["delta_1_*"] }\n', "is not a name for a group")
         refused(self.small() + 'groups = { all = ["*"] }\n', "all errors are one group")
-        refused(self.small() + 'second_order = "yes"\n', "neither true nor false")
+        refused(self.small() + 'second_order = "yes"\n', "second_order is the text 'yes'", "write true or false")
         refused(self.small() + "replicates = 20\n", 'analysis.design is "random"')
         refused(self.small("sobol") + "replicates = 7\n", "at least 8")
         refused(self.small("lhs").replace("480", "490"), "16 replicates do not share evenly", "samples = 496")

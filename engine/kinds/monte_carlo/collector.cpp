@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/kinds/monte_carlo/yield.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -35,6 +36,16 @@ void check_whole(const SolveCounts& solves, std::size_t most_samples) {
   }
 }
 
+void write_effects(const std::optional<MainEffectSums>& effects, ByteWriter& to) {
+  to.number(effects ? 1 : 0);
+  if (effects) effects->write(to);
+}
+
+std::optional<MainEffectSums> read_effects(ByteReader& from, std::size_t responses, std::size_t errors) {
+  if (from.number_up_to(1) == 0) return std::nullopt;
+  return MainEffectSums::read(from, errors, responses);
+}
+
 }  // namespace
 
 void PoseSamples::add(const PoseUnit& unit) {
@@ -45,6 +56,12 @@ void PoseSamples::add(const PoseUnit& unit) {
   }
   solves.merge(unit.solves);
   failed.merge(unit.failed);
+  if (!unit.effects) return;
+  if (effects) {
+    effects->merge(*unit.effects);
+  } else {
+    effects = unit.effects;
+  }
 }
 
 void PoseSamples::write(ByteWriter& to) const {
@@ -54,9 +71,10 @@ void PoseSamples::write(ByteWriter& to) const {
   }
   solves.write(to);
   failed.write(to);
+  write_effects(effects, to);
 }
 
-PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
+PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses, std::size_t errors) {
   PoseSamples samples;
   for (std::size_t r = 0; r < responses; ++r) {
     ResponseSamples& response = samples.responses.emplace_back();
@@ -65,6 +83,7 @@ PoseSamples PoseSamples::read(ByteReader& from, std::size_t responses) {
   }
   samples.solves = SolveCounts::read(from);
   samples.failed = FailedSamples::read(from, samples.solves.not_converged(), 0, samples.solves.total());
+  samples.effects = read_effects(from, responses, errors);
   return samples;
 }
 
@@ -78,6 +97,7 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
       sketches_(responses),
       moments_(plan.poses().size() * responses),
       columns_(plan.poses().size(), responses, analysis),
+      effects_(plan.poses().size()),
       failed_(plan.poses().size()),
       kept_(plan.poses().size()) {}
 
@@ -86,7 +106,7 @@ void MonteCarloCollector::add(PoseIndex pose, const PoseUnit& unit) {
     open_ = pose;
     if (const Bytes& begun = kept_[pose.value].bytes; !begun.empty()) {
       ByteReader from(begun);
-      at_pose_ = PoseSamples::read(from, responses_);
+      at_pose_ = PoseSamples::read(from, responses_, plan_->factors().size());
     }
   }
   POESY_EXPECTS(pose == open_ && !is_finished(pose.value));
@@ -129,6 +149,7 @@ void MonteCarloCollector::finish_pose() {
   }
   columns_.result().solves[open_.value] = at_pose_.solves;
   failed_[open_.value] = std::move(at_pose_.failed);
+  effects_[open_.value] = std::move(at_pose_.effects);
   at_pose_ = {};
 }
 
@@ -150,6 +171,24 @@ SolveCounts MonteCarloCollector::total() const {
   return sum;
 }
 
+EffectResult MonteCarloCollector::effects() const {
+  const double conf_level = columns_.result().conf_level;
+  const std::vector<BinSpread> spreads = bin_spreads(*plan_);
+  std::vector<PoseIndex> poses;
+  std::vector<MainEffectSums> at_poses;
+  MainEffectSums all(plan_->factors().size(), responses_);
+  for (std::size_t m = 0; m < effects_.size(); ++m) {
+    if (!effects_[m]) continue;
+    poses.emplace_back(m);
+    at_poses.push_back(*effects_[m]);
+    all.merge(*effects_[m]);
+  }
+  EffectResult found = effect_result(poses, spreads, conf_level);
+  found.effects = main_effects(at_poses, Dependence::independent, all, spreads, responses_, conf_level);
+  leave_out_correlated(*plan_, found.effects);
+  return found;
+}
+
 MonteCarloResult MonteCarloCollector::result() && {
   MonteCarloResult& found = columns_.result();
   for (std::size_t r = 0; r < responses_; ++r) {
@@ -161,6 +200,7 @@ MonteCarloResult MonteCarloCollector::result() && {
     columns_.set_overall(overall, sketches_[r], sketches_[r].count());
   }
   for (std::size_t m = 0; m < found.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], found.failures);
+  if (found.poses > 0) found.effects = effects();
   if (!limits_.empty()) found.verdicts = judge_draws(limits_, asked_.judge, asked_.share, found, sketches_);
   return std::move(found);
 }
@@ -172,6 +212,7 @@ void MonteCarloCollector::write_finished(ByteWriter& to, std::size_t pose) const
   }
   columns_.result().solves[pose].write(to);
   failed_[pose].write(to);
+  write_effects(effects_[pose], to);
 }
 
 void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std::size_t samples) {
@@ -184,6 +225,7 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
   if (columns_.result().solves[pose].total() != samples) throw BytesError("has a finished pose with other samples");
   failed_[pose] = FailedSamples::read(from, columns_.result().solves[pose].not_converged(), 0,
                                       columns_.result().solves[pose].total());
+  effects_[pose] = read_effects(from, responses_, plan_->factors().size());
 }
 
 Bytes MonteCarloCollector::state() const {
@@ -223,7 +265,10 @@ void MonteCarloCollector::restore_one(ByteReader& from) {
     const bool finished = from.number_up_to(1) == 1;
     if (finished) read_finished(from, m, samples);
     read_kept(from, m, finished ? samples : samples - 1);
-    if (shorter) columns_.result().solves[m] = {};
+    if (shorter) {
+      columns_.result().solves[m] = {};
+      effects_[m].reset();
+    }
   }
   for (QuantileSketch& sketch : sketches_) {
     const QuantileSketch read = QuantileSketch::read(from);
@@ -236,7 +281,7 @@ void MonteCarloCollector::read_open(ByteReader& from, std::size_t samples) {
   if (at_pose_.solves.total() > 0) throw BytesError("has two unfinished poses");
   open_ = PoseIndex(static_cast<std::size_t>(from.number_up_to(columns_.result().poses - 1)));
   if (is_finished(open_.value)) throw BytesError("has a pose twice");
-  at_pose_ = PoseSamples::read(from, responses_);
+  at_pose_ = PoseSamples::read(from, responses_, plan_->factors().size());
   check_whole(at_pose_.solves, samples - 1);
   if (samples == plan_->samples()) return;
   keep();
@@ -247,7 +292,7 @@ void MonteCarloCollector::read_kept(ByteReader& from, std::size_t pose, std::siz
   const std::span<const std::byte> bytes = from.block();
   if (bytes.empty()) return;
   ByteReader unit(bytes);
-  const SolveCounts solves = PoseSamples::read(unit, responses_).solves;
+  const SolveCounts solves = PoseSamples::read(unit, responses_, plan_->factors().size()).solves;
   unit.expect_end();
   check_whole(solves, most_samples);
   set_kept(pose, {solves, Bytes(bytes.begin(), bytes.end())});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
+#include "engine/stats/main_effects.h"
 #include "engine/stats/quantile_sketch.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
@@ -26,13 +28,15 @@ struct PoseSamples {
   std::vector<ResponseSamples> responses;  ///< [R]
   SolveCounts solves;                      ///< how their solves ended
   FailedSamples failed;                    ///< the first of them
+  std::optional<MainEffectSums> effects;   ///< at the poses where main effects are added up
 
   /// Precondition: its samples come after those that are here.
   void add(const PoseUnit& unit);
   /// For a state.
   void write(ByteWriter& to) const;
   /// Throws BytesError for what no samples give.
-  static PoseSamples read(ByteReader& from, std::size_t responses);
+  /// errors: that vary.
+  static PoseSamples read(ByteReader& from, std::size_t responses, std::size_t errors);
 };
 
 /// Puts units together, pose by pose. Holds the samples of one pose, as sketches, and of all finished poses together
@@ -83,6 +87,8 @@ class MonteCarloCollector {
   void write_finished(ByteWriter& to, std::size_t pose) const;
   void read_finished(ByteReader& from, std::size_t pose, std::size_t samples);
   void restore_one(ByteReader& from);
+  /// The sums of some poses, whose draws are independent.
+  EffectResult effects() const;
   void read_open(ByteReader& from, std::size_t samples);
   void read_kept(ByteReader& from, std::size_t pose, std::size_t most_samples);
 
@@ -91,13 +97,14 @@ class MonteCarloCollector {
   std::vector<ResponseLimit> limits_;
   MonteCarloOptions asked_;
   bool keep_checkpoint_;
-  PoseIndex open_;                        ///< the open pose, if there is one
-  PoseSamples at_pose_;                   ///< its samples
-  std::vector<QuantileSketch> sketches_;  ///< [R] of the finished poses together
-  std::vector<Moments> moments_;          ///< [M x R] of the finished poses
-  MonteCarloColumns columns_;             ///< of the finished poses
-  std::vector<FailedSamples> failed_;     ///< [M] of the finished poses
-  std::vector<Kept> kept_;                ///< [M] finished poses for a longer study; others from a shorter study
+  PoseIndex open_;                                      ///< the open pose, if there is one
+  PoseSamples at_pose_;                                 ///< its samples
+  std::vector<QuantileSketch> sketches_;                ///< [R] of the finished poses together
+  std::vector<Moments> moments_;                        ///< [M x R] of the finished poses
+  MonteCarloColumns columns_;                           ///< of the finished poses
+  std::vector<std::optional<MainEffectSums>> effects_;  ///< [M] of the finished poses that have them
+  std::vector<FailedSamples> failed_;                   ///< [M] of the finished poses
+  std::vector<Kept> kept_;  ///< [M] finished poses for a longer study; others from a shorter study
   std::size_t kept_bytes_ = 0;
 };
 

@@ -15,6 +15,7 @@ namespace poesy {
 /// The numbers of a Monte Carlo result that follow from the samples at one pose, and of all poses together.
 class MonteCarloColumns {
  public:
+  /// Of a study with this analysis; nothing is set.
   MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis);
 
   MonteCarloResult& result() { return result_; }              ///< With what was set.

@@ -178,6 +178,7 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
     result.file().set_attribute("/monte_carlo/share_magnitude", "share",
                                 asked_of<MonteCarloOptions>(study.analysis).share);
   }
+  if (found.effects) write_effects(result, *found.effects);
   if (found.machines) write_machines(result, *found.machines);
   add_limits(result, study.model(), found.verdicts);
   if (found.verdicts && found.verdicts->yield) {
@@ -199,6 +200,7 @@ void read(const h5::File& file, StoredResult& result) {
   }
   fill_in_root_mean_squares(found);
   result.verdicts = read_limits(file, result);
+  found.effects = read_effects(file);
   found.machines = read_machines(file);
   if (result.verdicts && result.verdicts->judge == Judge::yield) {
     if (!found.machines || !found.machines->yield) throw h5::Error("/limits judges a yield that is not there");
@@ -219,6 +221,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   if (!found.histogram_counts.empty()) {
     for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(histogram_table(result, r));
   }
+  if (found.effects) append_effect_tables(tables, result);
   if (found.machines) append_machine_tables(tables, result);
   append_limit_table(tables, result);
   CsvTable solves = lines_of_poses(result, "not_converged");

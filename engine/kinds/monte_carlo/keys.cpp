@@ -73,7 +73,7 @@ std::vector<StudyRow> monte_carlo_rows() {
                .meaning = "Shares of the samples that lie below, ascending."},
       StudyRow{.name = "judge",
                .value = asked_value(judge()),
-               .usual = "`\"rms\"`; with draws = \"per machine\" `\"yield\"`",
+               .usual = "\"rms\"; with draws = \"per machine\" \"yield\"",
                .example = "\"rms\"",
                .meaning = "When a limit is kept. (In an evaluation, if each case is within it at every pose.)",
                .lines = judge_line,

@@ -124,28 +124,26 @@ void MachineCollector::set_columns(const MachineSums& sums, MonteCarloResult& fo
   }
 }
 
-MachineResult MachineCollector::machines(const MachineSums& sums) const {
-  const std::size_t responses = table_->responses();
+MachineResult MachineCollector::machines(const MachineSums& sums, std::span<const BinSpread> spreads) const {
   const std::size_t at_poses = table_->effect_poses().size();
-  const std::span effects(sums.effects);
   MachineResult found;
   found.conf_level = analysis_->conf_level;
   found.largest = machine_values(sums.largest, counts_.largest, *analysis_);
   found.rms = machine_values(sums.rms, counts_.rms, *analysis_);
-  for (const PoseIndex pose : table_->effect_poses()) found.s1_poses.push_back(pose.value);
-  for (const BinSpread& spread : table_->spreads()) {
-    found.bin_error.insert(found.bin_error.end(), spread.mean.begin(), spread.mean.end());
-  }
-  found.effects =
-      main_effects(effects.first(at_poses), effects[at_poses], table_->spreads(), responses, analysis_->conf_level);
-  found.effects_on_largest = main_effects(effects.subspan(at_poses + 1, 1), effects[at_poses + 1], table_->spreads(),
-                                          responses, analysis_->conf_level);
-  for (std::size_t p = 0; p < table_->plan().factors().size(); ++p) {
-    if (!table_->plan().is_correlated(p)) continue;
-    leave_out(p, responses, found.effects);
-    leave_out(p, responses, found.effects_on_largest);
-  }
+  found.effects_on_largest =
+      main_effects(std::span(sums.effects).subspan(at_poses + 1, 1), Dependence::unknown, sums.effects[at_poses + 1],
+                   spreads, table_->responses(), analysis_->conf_level);
+  leave_out_correlated(table_->plan(), found.effects_on_largest);
   if (sums.scores) found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
+  return found;
+}
+
+EffectResult MachineCollector::effects(const MachineSums& sums, std::span<const BinSpread> spreads) const {
+  const std::size_t at_poses = table_->effect_poses().size();
+  EffectResult found = effect_result(table_->effect_poses(), spreads, analysis_->conf_level);
+  found.effects = main_effects(std::span(sums.effects).first(at_poses), Dependence::unknown, sums.effects[at_poses],
+                               spreads, table_->responses(), analysis_->conf_level);
+  leave_out_correlated(table_->plan(), found.effects);
   return found;
 }
 
@@ -159,7 +157,9 @@ MonteCarloResult MachineCollector::result() && {
   MonteCarloColumns columns(poses(), table_->responses(), *analysis_);
   MonteCarloResult& found = columns.result();
   set_columns(sums, found, columns);
-  found.machines = machines(sums);
+  const std::vector<BinSpread> spreads = bin_spreads(table_->plan());
+  found.machines = machines(sums, spreads);
+  found.effects = effects(sums, spreads);
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(*analysis_);
   if (analysis_->limits.empty()) return std::move(found);
   if (asked.judge == Judge::yield) {

@@ -65,7 +65,8 @@ class MachineCollector {
   void restore_one(ByteReader& from);
   /// What follows from the moments and sketches of samples.
   void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
-  MachineResult machines(const MachineSums& sums) const;
+  MachineResult machines(const MachineSums& sums, std::span<const BinSpread> spreads) const;
+  EffectResult effects(const MachineSums& sums, std::span<const BinSpread> spreads) const;
 
   const MachineTable* table_;
   const Analysis* analysis_;

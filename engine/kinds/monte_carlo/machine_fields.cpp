@@ -101,9 +101,8 @@ Fields<MainEffects> index_fields(const std::string& what) {
           {"S1_ci_high", &MainEffects::s1_ci_high, kByResponseFactor, "1", "Upper end of its interval"}};
 }
 
-const Fields<MainEffects> kIndices = index_fields(
-    "Var(E[y | error]) / Var(y): both added up over the poses effect_pose, at which the same machines are, before they "
-    "are divided");
+const Fields<MainEffects> kIndices =
+    index_fields("Var(E[y | error]) / Var(y): both added up over the poses effect_pose before they are divided");
 const Fields<MainEffects> kIndicesOfLargest = index_fields("of the machines' largest magnitudes over all poses");
 
 Group<MainEffects> curves_group(const std::string& path, const std::string& what) {
@@ -116,16 +115,21 @@ Group<MainEffects> curves_group(const std::string& path, const std::string& what
            {"ci_high", &MainEffects::ci_high, kByResponseFactorBin, kResponseUnit, "Upper end of Student's interval"}}};
 }
 
-const Group<MainEffects> kCurves = curves_group("/monte_carlo/main_effect", "the mean over all poses of each response");
+const Group<MainEffects> kCurves = curves_group(
+    "/monte_carlo/main_effect",
+    "the mean of each response over all poses, or, where errors are drawn per pose, over the poses effect_pose");
 const Group<MainEffects> kCurvesOfLargest =
     curves_group("/machines/largest/main_effect", "the largest magnitude over all poses of each response");
 
-const Fields<MachineResult> kBins{
-    {"error", &MachineResult::bin_error, kByFactorBin, kFactorUnit, "Mean of the error in its bin"}};
+const Fields<EffectResult> kBins{
+    {"error", &EffectResult::bin_error, kByFactorBin, kFactorUnit, "Mean of the error in its bin"}};
 
-template <class Found>
-void show_all_axes(ResultBuilder& result, const std::string& group, const Fields<Found>& fields) {
-  for (const FieldRow<Found>& field : fields) result.show_axes(group, field.axes);
+/// S1 and its interval, in a group.
+void write_indices(ResultBuilder& result, const std::string& group, const Fields<MainEffects>& fields,
+                   const MainEffects& effects, double conf_level) {
+  write_fields(result, group, fields, effects);
+  for (const FieldRow<MainEffects>& field : fields) result.show_axes(group, field.axes);
+  result.file().set_attribute(group + "/S1", "conf_level", conf_level);
 }
 
 /// One line for each response.
@@ -199,7 +203,7 @@ CsvTable index_table(const StoredResult& result, const std::string& name, const 
 }
 
 /// The curves of one response: a line for each error and bin.
-CsvTable curve_table(const StoredResult& result, const MachineResult& found, std::size_t r) {
+CsvTable curve_table(const StoredResult& result, const EffectResult& found, std::size_t r) {
   const std::size_t lines = result.factors.size() * kEffectBins;
   const NamedUnit& response = result.responses[r];
   return {"main_effect_" + response.name,
@@ -209,50 +213,62 @@ CsvTable curve_table(const StoredResult& result, const MachineResult& found, std
            list_column(with_unit("mean", response.unit), found.effects.mean, r * lines),
            list_column(with_unit("ci_low", response.unit), found.effects.ci_low, r * lines),
            list_column(with_unit("ci_high", response.unit), found.effects.ci_high, r * lines)},
-          {"unit_of_error", [&](std::size_t line) { return result.factors[line / kEffectBins].unit; }}};
+          {"unit", [&](std::size_t line) { return result.factors[line / kEffectBins].unit; }}};
 }
 
 }  // namespace
 
-void write_machines(ResultBuilder& result, const MachineResult& found) {
+void write_effects(ResultBuilder& result, const EffectResult& found) {
   std::vector<double> middles;
   for (std::size_t k = 0; k < kEffectBins; ++k) middles.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
   result.add_axis("effect_bin", middles,
                   {"1", "Bins of equal probability of an error: the share of its values below the middle of each"});
   result.add_axis("effect_pose", found.s1_poses, {"1", "Poses, from 0, over which /monte_carlo/S1 adds up"});
+  write_indices(result, "/monte_carlo", kIndices, found.effects, found.conf_level);
+  result.show_axes("/monte_carlo", kByEffectPose);
+  write_group(result, kCurves, found.effects);
+  write_fields(result, "/monte_carlo/main_effect", kBins, found);
+}
+
+void write_machines(ResultBuilder& result, const MachineResult& found) {
   result.file().make_group("/machines");
   result.file().set_attribute("/machines", "description",
                               std::string("What machines are like that are used at all poses"));
   write_group(result, kLargest, found.largest);
   write_group(result, kRms, found.rms);
   if (found.yield) write_group(result, kYield, *found.yield);
-  write_fields(result, "/monte_carlo", kIndices, found.effects);
-  write_fields(result, "/machines/largest", kIndicesOfLargest, found.effects_on_largest);
-  for (const char* group : {"/monte_carlo", "/machines/largest"}) {
-    show_all_axes(result, group, kIndices);
-    result.file().set_attribute(std::string(group) + "/S1", "conf_level", found.conf_level);
-  }
-  result.show_axes("/monte_carlo", kByEffectPose);
-  write_group(result, kCurves, found.effects);
-  write_fields(result, "/monte_carlo/main_effect", kBins, found);
+  write_indices(result, "/machines/largest", kIndicesOfLargest, found.effects_on_largest, found.conf_level);
   write_group(result, kCurvesOfLargest, found.effects_on_largest);
+}
+
+std::optional<EffectResult> read_effects(const h5::File& file) {
+  if (!file.exists("/effect_bin")) return std::nullopt;
+  if (axis_length(file, "effect_bin") != kEffectBins) throw h5::Error("/effect_bin does not have 32 positions");
+  EffectResult found;
+  found.s1_poses = file.read<std::uint64_t>("/effect_pose");
+  found.conf_level = file.attribute<double>("/monte_carlo/S1", "conf_level").at(0);
+  read_fields(file, "/monte_carlo", kIndices, found.effects);
+  read_group(file, kCurves, found.effects);
+  read_fields(file, "/monte_carlo/main_effect", kBins, found);
+  return found;
 }
 
 std::optional<MachineResult> read_machines(const h5::File& file) {
   if (!file.exists("/machines")) return std::nullopt;
   MachineResult found;
-  if (axis_length(file, "effect_bin") != kEffectBins) throw h5::Error("/effect_bin does not have 32 positions");
-  found.s1_poses = file.read<std::uint64_t>("/effect_pose");
-  found.conf_level = file.attribute<double>("/monte_carlo/S1", "conf_level").at(0);
+  found.conf_level = file.attribute<double>("/machines/largest/S1", "conf_level").at(0);
   read_group(file, kLargest, found.largest);
   read_group(file, kRms, found.rms);
   if (file.exists("/yield")) read_group(file, kYield, found.yield.emplace());
-  read_fields(file, "/monte_carlo", kIndices, found.effects);
   read_fields(file, "/machines/largest", kIndicesOfLargest, found.effects_on_largest);
-  read_group(file, kCurves, found.effects);
-  read_fields(file, "/monte_carlo/main_effect", kBins, found);
   read_group(file, kCurvesOfLargest, found.effects_on_largest);
   return found;
+}
+
+void append_effect_tables(CsvTables& tables, const StoredResult& result) {
+  const EffectResult& found = *monte_carlo_of(result).effects;
+  tables.push_back(index_table(result, "S1", found.effects));
+  for (std::size_t r = 0; r < result.responses.size(); ++r) tables.push_back(curve_table(result, found, r));
 }
 
 void append_machine_tables(CsvTables& tables, const StoredResult& result) {
@@ -260,9 +276,7 @@ void append_machine_tables(CsvTables& tables, const StoredResult& result) {
   if (found.yield) append_yield_tables(tables, result, *found.yield);
   tables.push_back(by_response(result, "machines_largest", found.largest));
   tables.push_back(by_response(result, "machines_rms", found.rms));
-  tables.push_back(index_table(result, "S1", found.effects));
   tables.push_back(index_table(result, "S1_largest", found.effects_on_largest));
-  for (std::size_t r = 0; r < result.responses.size(); ++r) tables.push_back(curve_table(result, found, r));
 }
 
 }  // namespace poesy

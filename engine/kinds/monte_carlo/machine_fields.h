@@ -5,11 +5,17 @@
 #include "engine/files/result_file.h"
 #include "engine/kinds/monte_carlo/result.h"
 
-/// How files keep what a Monte Carlo study of machines found in addition.
+/// How files keep what the bins of errors say, and what a Monte Carlo study of machines found in addition.
 namespace poesy {
 
-/// Adds the groups /machines, /yield and /monte_carlo/main_effect, and first-order indices beside them. Precondition:
-/// the axes of the Monte Carlo study are there.
+/// Adds first-order indices and the group /monte_carlo/main_effect. Precondition: /monte_carlo is there.
+void write_effects(ResultBuilder& result, const EffectResult& found);
+/// The opposite; empty in files of older versions. Throws h5::Error.
+std::optional<EffectResult> read_effects(const h5::File& file);
+/// Appends S1.csv and the curves.
+void append_effect_tables(CsvTables& tables, const StoredResult& result);
+
+/// Adds the groups /machines and /yield. Precondition: the axes of the Monte Carlo study and of the effects are there.
 void write_machines(ResultBuilder& result, const MachineResult& found);
 
 /// The opposite; empty where errors were drawn per pose. Throws h5::Error.

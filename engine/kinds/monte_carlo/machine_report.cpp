@@ -8,6 +8,7 @@
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/yield.h"
 #include "engine/report/display.h"
 #include "engine/stats/main_effects.h"
 
@@ -17,6 +18,8 @@ namespace {
 constexpr int kDigits = 6;
 
 const MachineResult& machines_of(const StoredResult& result) { return *monte_carlo_of(result).machines; }
+
+const EffectResult& effects_of(const StoredResult& result) { return *monte_carlo_of(result).effects; }
 
 /// A tenth of an error's sigma: gradients are shown for a change by that, because errors have different units.
 constexpr double kPart = 0.1;
@@ -124,7 +127,7 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
   const std::size_t factors = result.factors.size();
   double sum = 0.0;
   std::size_t without = 0;
-  for (const double s1 : std::span(machines_of(result).effects.s1).subspan(r * factors, factors)) {
+  for (const double s1 : std::span(effects_of(result).effects.s1).subspan(r * factors, factors)) {
     sum += std::isnan(s1) ? 0.0 : s1;
     without += std::isnan(s1) ? 1 : 0;
   }
@@ -141,39 +144,6 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
 /// Of errors that have no index of their own.
 bool has_correlated(const StoredResult& result) {
   return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
-}
-
-Table index_table(const StoredResult& result) {
-  const MainEffects& effects = machines_of(result).effects;
-  const std::size_t factors = result.factors.size();
-  const std::size_t ranking = response_named(result, default_ranking(result));
-  std::vector<FilledColumn> columns{name_column(result.factors, "error")};
-  const auto add = [&](const std::string& name, const std::string& heading, const std::vector<double>& values,
-                       std::size_t r, int dispensable) {
-    columns.push_back({number_column(name, heading, "", dispensable),
-                       [&values, at = r * factors](std::size_t p) { return number_cell(values[at + p], 3); }});
-  };
-  for (const std::size_t r : headline_order(result)) {
-    const std::string& response = result.responses[r].name;
-    add("S1_" + response, response, effects.s1, r, r == ranking ? 0 : 1);
-    add("S1_ci_low_" + response, "low", effects.s1_ci_low, r, r == ranking ? 0 : 2);
-    add("S1_ci_high_" + response, "high", effects.s1_ci_high, r, r == ranking ? 0 : 2);
-  }
-  Table table{.name = "first_order",
-              .caption = "First-order indices S1: the part of a response's variance that an error makes alone",
-              .columns = {},
-              .notes = {fmt::format("added up over {}; low, high: {} interval",
-                                    counted(machines_of(result).s1_poses.size(), "pose", "poses"),
-                                    percent_text(monte_carlo_of(result).conf_level)),
-                        indices_note(result, ranking)},
-              .ranked = true};
-  if (has_correlated(result)) {
-    table.notes.emplace_back(
-        "- for an error that is correlated with others: nothing is its effect alone; indices of groups and Shapley "
-        "values divide the variance of such errors");
-  }
-  fill(table, largest_first(factors, [&](std::size_t p) { return effects.s1[ranking * factors + p]; }), columns);
-  return table;
 }
 
 /// Values [R x P] of the responses in this order.
@@ -216,7 +186,7 @@ void add_yield_section(const StoredResult& result, std::span<const Table> tables
 /// A panel for each response of the headline, with the errors of the largest indices first.
 Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   constexpr std::size_t kMost = 12;
-  const MainEffects& effects = machines_of(result).effects;
+  const MainEffects& effects = effects_of(result).effects;
   const std::size_t factors = result.factors.size();
   std::vector<double> below;
   for (std::size_t k = 0; k < kEffectBins; ++k) below.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
@@ -239,8 +209,28 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   return lines;
 }
 
+}  // namespace
+
+std::vector<Table> machine_tables(const StoredResult& result) {
+  std::vector<Table> tables{values_table(result)};
+  if (const auto& yield = machines_of(result).yield) {
+    // Where limits are judged by other numbers.
+    if (result.verdicts && !result.verdicts->yield) {
+      tables.insert(tables.begin(),
+                    yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = judge_yield(*yield, 0.0)}));
+    }
+    tables.push_back(rejects_table(result));
+    tables.push_back(gradient_table(result));
+  }
+  return tables;
+}
+
+void add_machine_sections(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (machines_of(result).yield) add_yield_section(result, tables, page);
+}
+
 void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const MachineResult& found = machines_of(result);
+  const EffectResult& found = effects_of(result);
   const std::vector<std::size_t> order = response_order(result);
   Section& section = page.add_section("first-order", "What each error does alone");
   ArrayPool& pool = page.figures.pool;
@@ -258,30 +248,49 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
       "so its indices sum to less than 1: read them with the shares of the mean square.",
       counted(found.s1_poses.size(), "pose", "poses")));
   Bars bars{{{"response", names_of(result.responses, order)}},
-            {quantity("first-order index S1", "S1", found.effects),
-             quantity("the same of a machine's largest magnitude", "S1_largest", found.effects_on_largest)},
+            {quantity("first-order index S1", "S1", found.effects)},
             names_of(result.factors)};
+  if (const auto& machines = monte_carlo_of(result).machines) {
+    bars.quantities.push_back(
+        quantity("the same of a machine's largest magnitude", "S1_largest", machines->effects_on_largest));
+  }
   add_figure(page, section, "first-order", std::move(bars), "First-order indices with their intervals.");
   add_figure(page, section, "main-effects", effect_curves(result, pool),
-             "The mean of a response over all poses while one error is known and all others vary, with its interval.");
+             "The mean of a response over poses while one error is known and all others vary, with its interval.");
   section.table(tables, "first_order");
 }
 
-}  // namespace
-
-std::vector<Table> machine_tables(const StoredResult& result) {
-  std::vector<Table> tables{values_table(result)};
-  if (machines_of(result).yield) {
-    tables.push_back(rejects_table(result));
-    tables.push_back(gradient_table(result));
+Table effect_table(const StoredResult& result) {
+  const MainEffects& effects = effects_of(result).effects;
+  const std::size_t factors = result.factors.size();
+  const std::size_t ranking = response_named(result, default_ranking(result));
+  std::vector<FilledColumn> columns{name_column(result.factors, "error")};
+  const auto add = [&](const std::string& name, const std::string& heading, const std::vector<double>& values,
+                       std::size_t r, int dispensable) {
+    columns.push_back({number_column(name, heading, "", dispensable),
+                       [&values, at = r * factors](std::size_t p) { return number_cell(values[at + p], 3); }});
+  };
+  for (const std::size_t r : headline_order(result)) {
+    const std::string& response = result.responses[r].name;
+    add("S1_" + response, response, effects.s1, r, r == ranking ? 0 : 1);
+    add("S1_ci_low_" + response, "low", effects.s1_ci_low, r, r == ranking ? 0 : 2);
+    add("S1_ci_high_" + response, "high", effects.s1_ci_high, r, r == ranking ? 0 : 2);
   }
-  tables.push_back(index_table(result));
-  return tables;
-}
-
-void add_machine_sections(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (machines_of(result).yield) add_yield_section(result, tables, page);
-  add_effects_section(result, tables, page);
+  Table table{.name = "first_order",
+              .caption = "First-order indices S1: the part of a response's variance that an error makes alone",
+              .columns = {},
+              .notes = {fmt::format("added up over {}; low, high: {} interval",
+                                    counted(effects_of(result).s1_poses.size(), "pose", "poses"),
+                                    percent_text(monte_carlo_of(result).conf_level)),
+                        indices_note(result, ranking)},
+              .ranked = true};
+  if (has_correlated(result)) {
+    table.notes.emplace_back(
+        "- for an error that is correlated with others: nothing is its effect alone; indices of groups and Shapley "
+        "effects divide the variance of such errors");
+  }
+  fill(table, largest_first(factors, [&](std::size_t p) { return effects.s1[ranking * factors + p]; }), columns);
+  return table;
 }
 
 std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& figures) {

@@ -7,15 +7,21 @@
 #include "engine/report/html/parts.h"
 #include "engine/report/tables.h"
 
-/// How tables and reports show what a Monte Carlo study of machines found in addition. Precondition of all:
-/// monte_carlo_of(result).machines is there.
+/// How tables and reports show what the bins of errors say, and what a Monte Carlo study of machines found in addition.
+/// Precondition of what follows but for effects: monte_carlo_of(result).machines is there.
 namespace poesy {
 
 /// Of each machine its largest magnitude and its root mean square; which errors the yield depends on, with its
-/// gradient; at which poses machines are rejected; first-order indices.
+/// gradient; at which poses machines are rejected.
 std::vector<Table> machine_tables(const StoredResult& result);
 
-/// The sections that come after the limits: what the yield depends on, and what each error does alone.
+/// First-order indices. Precondition: monte_carlo_of(result).effects is there.
+Table effect_table(const StoredResult& result);
+
+/// The section on what each error does alone. Precondition: likewise.
+void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page);
+
+/// The section that comes after the limits: what the yield depends on.
 void add_machine_sections(const StoredResult& result, std::span<const Table> tables, Page& page);
 
 /// For dots in the workspace: the share of machines that each pose rejects, for each limit. Empty without limits.

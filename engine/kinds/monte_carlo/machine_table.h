@@ -16,9 +16,6 @@ namespace poesy {
 /// M poses, R responses, P errors.
 class MachineTable {
  public:
-  /// Main effects are added up pose by pose at no more poses than this.
-  static constexpr std::size_t kMostEffectPoses = 8;
-
   /// Refers to the plan. Precondition: Draws::per_machine.
   MachineTable(const Plan& plan, std::size_t responses, const Analysis& analysis);
 
@@ -40,9 +37,8 @@ class MachineTable {
   std::span<const double> limits() const { return limits_; }  ///< [R] on magnitudes, infinite for none.
   /// [P] a correlated error has no sigma here, so that it has no score.
   std::span<const ErrorScale> scales() const { return scales_; }
-  std::span<const BinSpread> spreads() const { return spreads_; }  ///< [P]
 
-  /// The poses at which main effects are added up, evenly spaced over the order of the study's poses.
+  /// The poses at which main effects are added up (engine/run/effect_poses.h).
   std::span<const PoseIndex> effect_poses() const { return effect_poses_; }
   /// Numbers whose main effects are added up: the responses at each of effect_poses(), a machine's means over all
   /// poses, and its largest magnitudes.
@@ -54,7 +50,6 @@ class MachineTable {
   bool has_limits_;
   std::vector<double> limits_;
   std::vector<ErrorScale> scales_;
-  std::vector<BinSpread> spreads_;
   std::vector<PoseIndex> effect_poses_;
 };
 

@@ -94,15 +94,6 @@ MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Mode
   kept_.reserve(machines);
 }
 
-EffectBins MachineUnitEvaluator::draw_all(const WorkUnit& unit) {
-  const std::size_t errors = table_->scales().size();
-  const std::span<double> values = std::span(values_).first(errors * unit.count);
-  for (std::size_t v = 0; v < errors; ++v) draw_uniforms(unit, v, values.subspan(v * unit.count, unit.count));
-  EffectBins bins(values, errors);
-  plan_->transform(values, unit.count);
-  return bins;
-}
-
 std::span<const double> MachineUnitEvaluator::only(std::span<const double> values,
                                                    std::span<const std::uint8_t> counts) {
   if (std::ranges::all_of(counts, [](std::uint8_t one) { return one == 1; })) return values;
@@ -166,7 +157,7 @@ MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   found.at_pose.reserve(poses * responses_);
   found.solves.resize(poses);
   found.failed.resize(poses);
-  const EffectBins bins = draw_all(unit);
+  const EffectBins bins = draw_in_bins(unit);
   sum_.assign(responses_ * unit.count, 0.0);
   MachineBlock block(table_->limits(), unit.count);
   for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);

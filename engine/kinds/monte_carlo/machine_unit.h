@@ -66,8 +66,6 @@ class MachineUnitEvaluator : private UnitSolver {
   MachineUnit operator()(std::size_t n);
 
  private:
-  /// Fills values_, and gives the bins into which they fall.
-  EffectBins draw_all(const WorkUnit& unit);
   void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
                   MachineUnit& found);
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);

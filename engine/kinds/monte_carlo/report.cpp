@@ -334,6 +334,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_limits(tables, page);
   if (monte_carlo_of(result).machines) add_machine_sections(result, tables, page);
   add_how_large(result, tables, page);
+  if (monte_carlo_of(result).effects) add_effects_section(result, tables, page);
   add_where(result, page);
   add_how_sure(result, tables, page);
 }
@@ -379,6 +380,7 @@ std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOpt
     tables.push_back(overall_table(result));
     tables.push_back(poses_table(result));
     if (found.machines) std::ranges::move(machine_tables(result), std::back_inserter(tables));
+    if (found.effects) tables.push_back(effect_table(result));
   }
   return tables;
 }

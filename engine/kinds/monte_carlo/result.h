@@ -75,14 +75,20 @@ struct MainEffects {
 
 /// What a Monte Carlo study of machines found in addition.
 struct MachineResult {
+  double conf_level = 0.95;          ///< of all intervals
+  MachineValues largest;             ///< of each machine its largest magnitude over the poses
+  MachineValues rms;                 ///< of each machine its root mean square over the poses
+  std::optional<YieldResult> yield;  ///< where the study states limits
+  MainEffects effects_on_largest;    ///< of the machines' largest magnitudes
+};
+
+/// First-order indices and main effects that every Monte Carlo study finds.
+struct EffectResult {
   double conf_level = 0.95;             ///< of all intervals
-  MachineValues largest;                ///< of each machine its largest magnitude over the poses
-  MachineValues rms;                    ///< of each machine its root mean square over the poses
-  std::optional<YieldResult> yield;     ///< where the study states limits
   std::vector<std::uint64_t> s1_poses;  ///< over which effects.s1 adds up
   std::vector<double> bin_error;        ///< [P x E] mean of the error in its bin
-  MainEffects effects;                  ///< s1: added up over s1_poses; curves: of the machines' means over all poses
-  MainEffects effects_on_largest;       ///< of the machines' largest magnitudes
+  /// Curves: of the machines' means over all poses; with draws per pose of all samples at s1_poses.
+  MainEffects effects;
 };
 
 /// What a Monte Carlo study found, all errors varying together: R responses, M poses, Q quantiles; SI; NaN where
@@ -130,6 +136,8 @@ struct MonteCarloResult {
   /// Where it states limits.
   std::optional<LimitVerdicts> verdicts;
 
+  /// First-order indices; empty in files of older versions.
+  std::optional<EffectResult> effects;
   /// Where errors are drawn per machine.
   std::optional<MachineResult> machines;
 

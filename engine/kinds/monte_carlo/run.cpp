@@ -8,6 +8,7 @@
 #include "engine/kinds/monte_carlo/machine_table.h"
 #include "engine/kinds/monte_carlo/machine_unit.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/run/effect_poses.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
 #include "engine/run/rounds.h"
@@ -64,7 +65,7 @@ class PoseWork {
   }
   static void write(std::size_t, const PoseUnit& found, ByteWriter& to) { found.write(to); }
   PoseUnit read(std::size_t n, ByteReader& from) const {
-    return PoseUnit::read(from, responses_, (*pending_)[n].first.value);
+    return PoseUnit::read(from, responses_, plan_.factors().size(), (*pending_)[n].first.value);
   }
   SolveCounts solved() const { return collect_->total(); }
   std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
@@ -201,8 +202,8 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return found;
 }
 
-/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places in
-/// the tree, and what pieces in flight hold.
+/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places
+/// in the tree, and what pieces in flight hold.
 MemoryOutlook machine_memory(const Study& study, const Plan& plan) {
   constexpr std::size_t kSketch = 20'000;
   constexpr std::size_t kPackedSketch = 6000;
@@ -233,6 +234,13 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
                               responses * (kStoredMoments + (2 + of_sketch) * sizeof(double)) + kStoredSolves,
                               numbers + sizeof(SolveCounts), numbers + kSolverColumns};
   MemoryOutlook memory = times(plan.poses().size(), of_pose);
+  const std::size_t errors = plan.factors().size();
+  const std::size_t effects = effect_poses(plan.poses().size(), responses, errors).size() * (responses + 3) / 4 * 4 *
+                              errors * kEffectBins * 2 * sizeof(double);
+  memory.accumulators += effects;
+  memory.state += effects;
+  memory.result += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
+  memory.file += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
   if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, plan));
   if (!plan.adaptive()) return memory;
   // Packed sketches of finished poses, for the next round.

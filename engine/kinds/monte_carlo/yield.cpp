@@ -80,15 +80,14 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
   return found;
 }
 
-MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEffectSums& curve,
+MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level) {
   MainEffects effects;
   for (std::size_t r = 0; r < responses; ++r) {
     for (std::size_t p = 0; p < errors.size(); ++p) {
       std::vector<BinnedVariance> variances;
       for (const MainEffectSums& sums : at_poses) variances.push_back(sums.variance(r, p, errors[p]));
-      append(first_order_index(variances, Dependence::unknown, conf_level), effects.s1, effects.s1_ci_low,
-             effects.s1_ci_high);
+      append(first_order_index(variances, dependence, conf_level), effects.s1, effects.s1_ci_low, effects.s1_ci_high);
       for (const Estimate& bin : curve.curve(r, p, conf_level)) {
         append(bin, effects.mean, effects.ci_low, effects.ci_high);
       }
@@ -97,15 +96,36 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEff
   return effects;
 }
 
-void leave_out(std::size_t error, std::size_t responses, MainEffects& effects) {
-  const std::size_t errors = effects.s1.size() / std::max<std::size_t>(1, responses);
-  for (std::size_t r = 0; r < responses; ++r) {
-    const std::size_t at = r * errors + error;
+void leave_out_correlated(const Plan& plan, MainEffects& effects) {
+  const std::size_t errors = plan.factors().size();
+  for (std::size_t at = 0; at < effects.s1.size(); ++at) {
+    if (!plan.is_correlated(at % errors)) continue;
     for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) (*list)[at] = kNaN;
     for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) {
       std::ranges::fill(std::span(*list).subspan(at * kEffectBins, kEffectBins), kNaN);
     }
   }
+}
+
+std::vector<BinSpread> bin_spreads(const Plan& plan) {
+  const std::vector<double> grid = bin_spread_grid();
+  std::vector<BinSpread> spreads;
+  for (const Distribution& distribution : plan.distributions()) {
+    std::vector<double> quantiles = grid;
+    distribution.transform(quantiles);
+    spreads.push_back(bin_spread(quantiles));
+  }
+  return spreads;
+}
+
+EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const BinSpread> errors, double conf_level) {
+  EffectResult found;
+  found.conf_level = conf_level;
+  for (const PoseIndex pose : poses) found.s1_poses.push_back(pose.value);
+  for (const BinSpread& spread : errors) {
+    found.bin_error.insert(found.bin_error.end(), spread.mean.begin(), spread.mean.end());
+  }
+  return found;
 }
 
 YieldVerdict judge_yield(const YieldResult& found, double asked) {

@@ -5,10 +5,12 @@
 #include "engine/kinds/monte_carlo/machine_unit.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/run/result.h"
+#include "engine/stats/first_order.h"
 #include "engine/stats/machines.h"
 #include "engine/stats/main_effects.h"
 #include "engine/stats/quantile_sketch.h"
 #include "engine/stats/yield_gradient.h"
+#include "engine/study/plan.h"
 #include "engine/study/study.h"
 
 /// From counts and sums over machines to what a result says of them.
@@ -23,13 +25,19 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
                      double conf_level);
 
 /// First-order indices and curves of all errors: the indices added up over the poses that `at_poses` are of, the curves
-/// of `curve`.
-MainEffects main_effects(std::span<const MainEffectSums> at_poses, const MainEffectSums& curve,
+/// of `curve`. errors: [P].
+MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
-/// Makes index and curves of an error NaN: of one that is correlated, because what its uniform does is not what the
-/// error does, and others go with it.
-void leave_out(std::size_t error, std::size_t responses, MainEffects& effects);
+/// Makes indices and curves of correlated errors NaN: what the uniform of such an error does is not what the error
+/// does, and others go with it.
+void leave_out_correlated(const Plan& plan, MainEffects& effects);
+
+/// How the errors of a study lie in their bins, [P].
+std::vector<BinSpread> bin_spreads(const Plan& plan);
+
+/// What is found at these poses, but for the effects.
+EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const BinSpread> errors, double conf_level);
 
 /// What is shown of the yield that is asked for, 0 for none: kept if the one-sided lower limit at the result's level is
 /// at least that, not kept if the upper limit is below it.

@@ -133,7 +133,7 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
   }
   add_convergence(result, kConvergence, found.convergence);
   add_solver(result, kByPose, found.solves);
-  add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
+  add_failures(result, found.failures, {std::string(kAllFactors)}, found.failed_samples);
 }
 
 void read(const h5::File& file, StoredResult& result) {

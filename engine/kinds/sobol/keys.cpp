@@ -79,11 +79,7 @@ KeyValue<SobolOptions> design() {
 }
 
 KeyValue<SobolOptions> yes_or_no(bool SobolOptions::*member) {
-  const auto read = [](const StudyValue& value) {
-    const auto asked = value.boolean();
-    if (!asked) value.fail("is neither true nor false", "write true or false, without quotes");
-    return *asked;
-  };
+  const auto read = [](const StudyValue& value) { return value.yes_or_no(); };
   const auto text = [](bool asked) { return std::string(asked ? "true" : "false"); };
   return value_at("true or false", "", read, text, member);
 }

@@ -94,7 +94,8 @@ PanelSums::PanelSums(const IndexPanel& panel)
       moments(panel.responses * panel.poses),
       least(panel.responses, std::numeric_limits<double>::infinity()),
       solves(panel.poses),
-      failed(panel.poses) {}
+      failed(panel.poses),
+      failures(panel.poses) {}
 
 void PanelSums::merge(const PanelSums& later) {
   const auto merge_indices = [](std::vector<IndexSums>& list, const std::vector<IndexSums>& other) {
@@ -112,6 +113,7 @@ void PanelSums::merge(const PanelSums& later) {
   for (std::size_t m = 0; m < solves.size(); ++m) {
     solves[m].merge(later.solves[m]);
     failed[m].merge(later.failed[m]);
+    failures[m] += later.failures[m];
   }
 }
 
@@ -134,7 +136,10 @@ void PanelSums::write(ByteWriter& to) const {
   for (const Moments& one : moments) one.write(to);
   to.reals(least);
   for (const SolveCounts& counts : solves) counts.write(to);
-  for (const FailedSamples& list : failed) list.write(to);
+  for (std::size_t m = 0; m < failed.size(); ++m) {
+    to.number(failures[m]);
+    failed[m].write(to);
+  }
 }
 
 PanelSums PanelSums::read(ByteReader& from, const IndexPanel& panel, std::uint64_t end) {
@@ -148,7 +153,8 @@ PanelSums PanelSums::read(ByteReader& from, const IndexPanel& panel, std::uint64
   from.reals(sums.least);
   for (SolveCounts& counts : sums.solves) counts = SolveCounts::read(from);
   for (std::size_t m = 0; m < panel.poses; ++m) {
-    sums.failed[m] = FailedSamples::read(from, sums.solves[m].not_converged(), 0, end);
+    sums.failures[m] = from.number_up_to(sums.solves[m].not_converged());
+    sums.failed[m] = FailedSamples::read(from, sums.failures[m], 0, end);
   }
   return sums;
 }
@@ -191,6 +197,7 @@ PanelEvaluator::PanelEvaluator(const Plan& plan, const Model& model, const Index
     shapley_between_.resize(panel.responses * kB);
   }
   group_counts_.resize(groups * kB);
+  for (std::size_t r = 0; r < panel.responses; ++r) rounding_.push_back(model.rounding(r));
   status_.resize(kB);
   iterations_.resize(kB);
 }
@@ -283,6 +290,20 @@ void PanelEvaluator::draw_given(std::span<const std::size_t> groups) {
   }
 }
 
+void PanelEvaluator::absorb() {
+  const std::size_t rows = panel_->responses + panel_->details;
+  for (std::size_t b = 0; b < unit_.count; ++b) {
+    bool same = true;
+    for (std::size_t r = 0; r < panel_->responses; ++r) {
+      const std::size_t at = r * unit_.count + b;
+      same = same && std::abs(of_a_.values[at] - of_mixed_.values[at]) <= rounding_[r];
+    }
+    for (std::size_t k = 0; same && k < rows; ++k) {
+      of_mixed_.values[k * unit_.count + b] = of_a_.values[k * unit_.count + b];
+    }
+  }
+}
+
 void PanelEvaluator::add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
                                              std::span<double> sum) const {
   for (const std::size_t component : panel_->components(quantity)) {
@@ -295,6 +316,7 @@ void PanelEvaluator::add_squared_differences(std::size_t quantity, const Outcome
 void PanelEvaluator::add_samples(PoseIndex pose) {
   for (std::size_t b = 0; b < unit_.count; ++b) {
     sums_.failed[pose.value].add(SampleIndex(unit_.number + b), status_[b]);
+    sums_.failures[pose.value] += solved(status_[b]) ? 0 : 1;
   }
 }
 
@@ -328,6 +350,7 @@ void PanelEvaluator::add_group(PoseIndex pose, std::size_t group) {
   const std::array one{group};
   mix(one);
   solve(pose, mixed_, of_mixed_);
+  absorb();
   unmix(one);
   if (panel_->shapley) keep_differences(panel_->subsets() - 1 - (std::size_t{1} << group));
   if (panel_->split[group] == 0) add_indices(pose, group);
@@ -353,6 +376,7 @@ void PanelEvaluator::add_shapley(PoseIndex pose) {
     if (others.size() == 1) continue;  // has been solved
     mix(others);
     solve(pose, mixed_, of_mixed_);
+    absorb();
     unmix(others);
     keep_differences(subset);
   }
@@ -414,10 +438,10 @@ void PanelEvaluator::add_indices(PoseIndex pose, std::size_t group) {
 void PanelEvaluator::add_pair(PoseIndex pose, std::size_t pair) {
   const auto [i, j] = panel_->pairs[pair];
   const std::size_t groups = panel_->groups.size();
-  const std::array both{i, j};
-  mix(both);
+  const std::array pair_groups{i, j};
+  mix(pair_groups);
   solve(pose, mixed_, of_mixed_);
-  unmix(both);
+  unmix(pair_groups);
   for (std::size_t r = 0; r < panel_->responses; ++r) {
     const double* const y_b = of_b_.values.data() + r * unit_.count;
     const double* const y_c = of_mixed_.values.data() + r * unit_.count;

@@ -54,14 +54,15 @@ struct PanelSums {
   PanelSums() = default;
   explicit PanelSums(const IndexPanel& panel);  ///< Of no samples.
 
-  std::vector<IndexSums> at_poses;    ///< [R x P x M]
-  std::vector<IndexSums> aggregated;  ///< [(R + V) x P]
-  std::vector<RatioSums> pairs;       ///< [R x pairs] second-order indices
-  std::vector<RatioSums> shapley;     ///< [R x P] Shapley effects; or empty
-  std::vector<Moments> moments;       ///< [R x M] of the samples A and B
-  std::vector<double> least;          ///< [R] smallest of these; infinite without samples
-  std::vector<SolveCounts> solves;    ///< [M]
-  std::vector<FailedSamples> failed;  ///< [M] samples of A that were not solved
+  std::vector<IndexSums> at_poses;      ///< [R x P x M]
+  std::vector<IndexSums> aggregated;    ///< [(R + V) x P]
+  std::vector<RatioSums> pairs;         ///< [R x pairs] second-order indices
+  std::vector<RatioSums> shapley;       ///< [R x P] Shapley effects; or empty
+  std::vector<Moments> moments;         ///< [R x M] of the samples A and B
+  std::vector<double> least;            ///< [R] smallest of these; infinite without samples
+  std::vector<SolveCounts> solves;      ///< [M]
+  std::vector<FailedSamples> failed;    ///< [M] the first samples of A that were not solved
+  std::vector<std::uint64_t> failures;  ///< [M] how many there are
 
   /// Precondition: the samples of `later` come after those of this, and are of the same panel.
   void merge(const PanelSums& later);
@@ -142,6 +143,8 @@ class PanelEvaluator {
   void keep_differences(std::size_t subset);
   void add_shapley(PoseIndex pose);
   void take(std::size_t group, const Rows& from);
+  /// Makes samples of C equal to A where they differ by rounding alone: their error is absorbed.
+  void absorb();
   std::span<double> row(Rows& rows, std::size_t number) const;
   /// Adds the squared differences of a quantity's components.
   void add_squared_differences(std::size_t quantity, const Outcomes& one, const Outcomes& other,
@@ -151,6 +154,7 @@ class PanelEvaluator {
   const IndexPanel* panel_;
   const PanelDesign* design_;
   std::unique_ptr<Evaluator> evaluator_;
+  std::vector<double> rounding_;  ///< [R] as Model::rounding gives it
   PanelUnit unit_{};
   Rows a_;  ///< [errors x B], as b_ and mixed_
   Rows b_;

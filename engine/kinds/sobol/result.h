@@ -90,6 +90,7 @@ struct SobolResult {
   std::vector<double> Sh_ci_high;          ///< [R x P] upper ends
   std::vector<SolveCounts> solves;         ///< [M]
   std::vector<Failure> failures;           ///< the first, in the order of poses and samples
+  std::uint64_t failed_samples = 0;        ///< how many there are of them; other solves have no addresses
   std::optional<ConvergenceResult> convergence = std::nullopt;  ///< where the study has adaptive samples
 
   std::size_t groups() const { return group_names.size(); }  ///< P

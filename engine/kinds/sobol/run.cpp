@@ -255,7 +255,10 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   }
   found.solves = sums.solves;
   if (asked_of<SobolOptions>(study.analysis).design != Design::random) return found;  // others have no addresses
-  for (std::size_t m = 0; m < panel.poses; ++m) append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
+  for (std::size_t m = 0; m < panel.poses; ++m) {
+    append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
+    found.failed_samples += sums.failures[m];
+  }
   return found;
 }
 

@@ -12,6 +12,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sobol/result.h"
 #include "engine/run/evaluation.h"
 #include "engine/stats/main_effects.h"
 #include "tests/support/fake_model.h"
@@ -171,9 +172,11 @@ class Example {
       values->histogram_edges = result.histogram_edges;
       values->histogram_counts = result.histogram_counts;
     }
-    found.s1_poses = {0, 2};
-    fill(found.bin_error, 2 * kEffectBins);
-    for (MainEffects* effects : {&found.effects, &found.effects_on_largest}) {
+    EffectResult& bins = result.effects.emplace();
+    bins.conf_level = result.conf_level;
+    bins.s1_poses = {0, 2};
+    fill(bins.bin_error, 2 * kEffectBins);
+    for (MainEffects* effects : {&bins.effects, &found.effects_on_largest}) {
       for (auto* list : {&effects->s1, &effects->s1_ci_low, &effects->s1_ci_high}) fill(*list, 4);
       for (auto* list : {&effects->mean, &effects->ci_low, &effects->ci_high}) fill(*list, 4 * kEffectBins);
     }
@@ -329,12 +332,56 @@ class Example {
   void write_sensitivity(const std::string& path) const {
     poesy::write_result(path, study, poses, sensitivity(), facts);
   }
+  /// Two errors, each a group of its own, with their interaction, and two vectors.
+  SobolResult sobol() {
+    study.analysis.kind = &kSobolStudy;
+    asked_of<SobolOptions>(study.analysis).second_order = true;
+    SobolResult result;
+    result.responses = 2;
+    result.poses = kPoses;
+    for (const FactorIndex factor : study.analysis.factors) {
+      result.group_names.push_back(study.model().factors[factor.value].name);
+    }
+    result.group_members = result.group_names;
+    const std::size_t groups = result.groups();
+    result.vectors = {"twist_21_omega", "twist_21_v"};
+    double next = 0.0;
+    const auto fill = [&](std::vector<double>& values, std::size_t length) {
+      for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.0078125);
+      values.back() = std::numeric_limits<double>::quiet_NaN();
+    };
+    for (const auto& [indices, length] : {std::pair(&result.at_poses, 2 * groups * kPoses),
+                                          {&result.aggregated, 2 * groups},
+                                          {&result.of_vectors, 2 * groups}}) {
+      indices->conf_level = 0.9;
+      for (auto* values : {&indices->S1, &indices->S1_ci_low, &indices->S1_ci_high, &indices->ST, &indices->ST_ci_low,
+                           &indices->ST_ci_high}) {
+        fill(*values, length);
+      }
+    }
+    for (auto* values : {&result.S2, &result.S2_ci_low, &result.S2_ci_high}) fill(*values, 2 * groups * groups);
+    for (auto* values : {&result.mean, &result.variance}) fill(*values, 2 * kPoses);
+    for (std::size_t k = 0; k < 2 * groups * kPoses; ++k) result.n.push_back(100 + k);
+    result.without_sign = {0, 1};
+    result.solves.resize(kPoses);
+    for (SolveCounts& solves : result.solves) {
+      for (std::size_t s = 0; s < 5; ++s) solves.add(SolveStatus::converged, 3);
+    }
+    result.solves[1].add(SolveStatus::not_converged, 50);
+    result.failures = {{0, PoseIndex(1), {SampleIndex(2), SolveStatus::not_converged}}};
+    result.failed_samples = 1;
+    return result;
+  }
   void write_monte_carlo(const std::string& path) {
     const MonteCarloResult result = monte_carlo();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_machines(const std::string& path) {
     const MonteCarloResult result = machines();
+    poesy::write_result(path, study, poses, result, facts);
+  }
+  void write_sobol(const std::string& path) {
+    const SobolResult result = sobol();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_coupling(const std::string& path) {

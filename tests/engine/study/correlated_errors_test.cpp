@@ -129,12 +129,13 @@ TEST_F(MeasuredErrors, AreRefusedWithThePlaceInTheStudy) {
   const auto refused = [&](const std::string& own, const std::vector<std::string>& words) {
     expect_refused(study_text("[errors.override]\ndelta_1 = " + own + "\n"), words, path());
   };
+  const std::string eight = "[\"1 mm\", \"2 mm\", \"3 mm\", \"4 mm\", \"5 mm\", \"6 mm\", \"7 mm\", \"8 mm\"]";
   refused("^{ distribution = \"measured\", file = \"parts.csv\", column = \"equal\" }", {"must not all be equal"});
   refused("^{ distribution = \"measured\" }", {"'file' is missing", "values = [...]"});
   refused("^{ distribution = \"measured\", file = \"parts.csv\" }", {"'column' is missing"});
   refused("{ distribution = \"measured\", values = [\"1 mm\", ^2] }", {"bare number"});
-  refused("^{ distribution = \"measured\", values = [\"1 mm\", \"2 mm\"] }", {"at least 8, not 2"});
-  refused("{ distribution = \"measured\", values = [\"1 mm\"], ^file = \"parts.csv\" }", {"does not belong"});
+  refused("{ distribution = \"measured\", values = ^[\"1 mm\", \"2 mm\"] }", {"has 2 values", "at least 8"});
+  refused("{ distribution = \"measured\", values = " + eight + ", ^file = \"parts.csv\" }", {"does not belong"});
   refused("{ distribution = \"normal\", sigma = \"1 mm\", ^file = \"parts.csv\" }", {"does not belong"});
 }
 

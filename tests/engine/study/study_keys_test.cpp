@@ -105,7 +105,8 @@ std::vector<std::string> studies() {
           by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
           both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
           head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
-              "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\nconf_level = 0.95\nquantiles = [0.1, 0.2]\n" +
+              "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\ndraws = \"per machine\"\nconf_level = "
+              "0.95\nquantiles = [0.1, 0.2]\n" +
               background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
           head +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
@@ -136,7 +137,12 @@ std::vector<std::string> studies() {
               "[\"delta_2\"] }]\n",
           measured +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nshapley = true\n"
-              "second_order = false\n"};
+              "second_order = false\nfactors = \"all\"\nsamples = 80\nconf_level = 0.9\ndesign = \"lhs\"\n"
+              "groups = { both = [\"delta_1\", \"delta_2\"] }\nreplicates = 8\n" +
+              background,
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"lhs\"\n"
+              "samples = 80\ngroups = \"limb\"\n"};
 }
 
 using OnTable = std::function<void(toml::table& table, const std::string& path)>;
@@ -329,18 +335,21 @@ struct Outside {
 };
 
 TEST(StudyKeys, HaveTheBoundsThatTheyName) {
-  const std::array known{Outside{"at least 0", {"-1"}, "it must be at least 0"},
-                         Outside{"at least 1", {"0"}, "it must be at least 1"},
-                         Outside{"at least 2", {"1"}, "it must be at least 2"},
-                         Outside{"greater than 0",
-                                 {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
-                                 "it must be greater than zero"},
-                         Outside{"at least 1e-30 m or rad",
-                                 {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
-                                 "it must be at least 1e-30 m or 1e-30 rad"},
-                         Outside{"greater than 1", {"1"}, "it must be greater than 1"},
-                         Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
-                         Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
+  const std::array known{
+      Outside{"at least 0", {"-1"}, "it must be at least 0"},
+      Outside{"at least 1", {"0"}, "it must be at least 1"},
+      Outside{"at least 2", {"1"}, "it must be at least 2"},
+      Outside{"greater than 0",
+              {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
+              "it must be greater than zero"},
+      Outside{"at least 1e-30 m or rad",
+              {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
+              "it must be at least 1e-30 m or 1e-30 rad"},
+      Outside{"greater than 1", {"1"}, "it must be greater than 1"},
+      Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
+      Outside{"at least 8", {"7", "[\"1 mm\"]"}, "at least 8"},
+      Outside{"symmetric, ones on its diagonal, positive definite", {"[[1, 2], [2, 1]]"}, "between -1 and 1"},
+      Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
   for (const Use& use : all_uses()) {
     if (use.key->bounds.empty()) continue;
     const auto outside = std::ranges::find(known, use.key->bounds, &Outside::bounds);

@@ -10,6 +10,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/random/stream.h"
 #include "engine/run/run_options.h"
+#include "engine/stats/main_effects.h"
 #include "tests/engine/stats/plain_sort.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"
@@ -111,11 +112,36 @@ TEST(Machines, FindTheYieldOfALinearModel) {
     EXPECT_NEAR(yield.gradient[p], kGradient[p], half * kErrors / 1.96);
     EXPECT_LT(half, 0.1 * std::abs(kGradient[p]));
     // Each error makes a third of the variance.
-    EXPECT_NEAR(found.machines->effects.s1[p], 1.0 / 3.0, 0.02);
-    EXPECT_LT(found.machines->effects.s1_ci_low[p], 1.0 / 3.0);
-    EXPECT_GT(found.machines->effects.s1_ci_high[p], 1.0 / 3.0);
+    EXPECT_NEAR(found.effects->effects.s1[p], 1.0 / 3.0, 0.02);
+    EXPECT_LT(found.effects->effects.s1_ci_low[p], 1.0 / 3.0);
+    EXPECT_GT(found.effects->effects.s1_ci_high[p], 1.0 / 3.0);
   }
-  EXPECT_TRUE(std::ranges::is_sorted(std::span(found.machines->effects.mean).first(32)));
+  for (std::size_t k = 0; k < 3 * kEffectBins; ++k) {
+    const double half = 0.5 * (found.effects->effects.ci_high[k] - found.effects->effects.ci_low[k]);
+    EXPECT_NEAR(found.effects->effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects->bin_error[k],
+                half * 4.9 / 1.96);
+  }
+}
+
+/// Indices and curves of draws that are made anew at each pose.
+TEST(MonteCarloEffects, AreThoseOfALinearModel) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 11, 5'500, {0.1, 0.05, 0.2});
+  study.analysis.draws = Draws::per_pose;
+  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::rms;
+  const MonteCarloResult found = run(study, LinearModel());
+  ASSERT_TRUE(found.effects);
+  EXPECT_EQ(found.effects->s1_poses, (std::vector<std::uint64_t>{0, 1, 2, 4, 5, 6, 8, 9}));
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double half = 0.5 * (found.effects->effects.s1_ci_high[p] - found.effects->effects.s1_ci_low[p]);
+    EXPECT_NEAR(found.effects->effects.s1[p], 1.0 / 3.0, half * 4.0 / 1.96);
+    EXPECT_LT(half, 0.02);
+  }
+  for (std::size_t k = 0; k < 3 * kEffectBins; ++k) {
+    const double half = 0.5 * (found.effects->effects.ci_high[k] - found.effects->effects.ci_low[k]);
+    EXPECT_NEAR(found.effects->effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects->bin_error[k],
+                half * 4.9 / 1.96);
+  }
 }
 
 /// Everything that can be counted by hand, from the draws' addresses.
@@ -222,9 +248,9 @@ TEST(Machines, StopWhenTheMeansOfMachinesAreKnown) {
 
 TEST(MachineTable, HasSmallerUnitsForMorePoses) {
   EXPECT_EQ(MachineTable::unit_machines(1), 1000u);
-  EXPECT_EQ(MachineTable::unit_machines(158), 500u);
-  EXPECT_EQ(MachineTable::unit_machines(2000), 50u);
-  EXPECT_EQ(MachineTable::units_for(1001, 158), 3u);
+  EXPECT_EQ(MachineTable::unit_machines(158), 200u);
+  EXPECT_EQ(MachineTable::unit_machines(2000), 40u);
+  EXPECT_EQ(MachineTable::units_for(1001, 158), 6u);
 }
 
 }  // namespace

@@ -351,7 +351,7 @@ TEST_P(KnownShapley, OfCorrelatedErrorsAreWithinTheirIntervals) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Designs, KnownShapley, ::testing::Values(Design::random, Design::lhs, Design::sobol),
-                         [](const auto& info) { return std::string(name(info.param)); });
+                         [](const auto& of) { return std::string(name(of.param)); });
 
 // Of independent errors the effect is S1 with an even part of each interaction: of Ishigami's first and third half of
 // theirs.

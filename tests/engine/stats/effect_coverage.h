@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "engine/stats/yield_gradient.h"
+#include "tests/engine/stats/coverage.h"
+#include "tests/engine/stats/effect_functions.h"
+
+// Repeated experiments: how often 95 % intervals of first-order indices, main effects and gradients of a yield hold the
+// truth.
+
+namespace poesy::test {
+
+/// The intervals of all first-order indices of a function.
+inline std::vector<Coverage> index_coverage(const EffectFunction& function, std::size_t samples, int repetitions,
+                                            std::uint64_t seed) {
+  EffectExperiment experiment(seed);
+  const BinSpread spread = spread_of(function.distribution);
+  std::vector<Coverage> coverage(function.errors());
+  for (int r = 0; r < repetitions; ++r) {
+    const MainEffectSums sums = experiment.sums(function, samples);
+    for (std::size_t p = 0; p < coverage.size(); ++p) {
+      const BinnedVariance variance = sums.variance(0, p, spread);
+      coverage[p].add(first_order_index(std::span(&variance, 1), Dependence::independent, 0.95).interval,
+                      function.first_order[p]);
+    }
+  }
+  return coverage;
+}
+
+/// The intervals of all bins of all curves of a function together, one for each error.
+inline std::vector<Coverage> curve_coverage(const EffectFunction& function, std::size_t samples, int repetitions,
+                                            std::uint64_t seed) {
+  EffectExperiment experiment(seed);
+  std::vector<std::array<double, kEffectBins>> truth;
+  for (std::size_t p = 0; p < function.errors(); ++p) truth.push_back(bin_means(function, p));
+  std::vector<Coverage> coverage(function.errors());
+  for (int r = 0; r < repetitions; ++r) {
+    const MainEffectSums sums = experiment.sums(function, samples);
+    for (std::size_t p = 0; p < coverage.size(); ++p) {
+      const auto curve = sums.curve(0, p, 0.95);
+      for (std::size_t b = 0; b < kEffectBins; ++b) coverage[p].add(curve[b].interval, truth[p][b]);
+    }
+  }
+  return coverage;
+}
+
+/// Four poses at which two errors act in different directions, and at one of them by the magnitude.
+struct FourPoses {
+  std::vector<EffectFunction> functions{linear({.8, .2}), linear({.5, .5}), linear({.2, .8}), folded()};
+  double aggregated() const {
+    const double folded = 1.0 - 2.0 / std::numbers::pi;
+    return (.8 + .5 + .2 + folded * functions[3].first_order[0]) / (3.0 + folded);
+  }
+};
+
+inline Coverage aggregated_coverage(Dependence dependence, std::size_t samples, int repetitions, std::uint64_t seed) {
+  EffectExperiment experiment(seed);
+  const FourPoses poses;
+  const BinSpread spread = spread_of(poses.functions[0].distribution);
+  Coverage coverage;
+  for (int n = 0; n < repetitions; ++n) {
+    std::vector<BinnedVariance> parts;
+    if (dependence == Dependence::unknown) {
+      const MainEffectSums sums = experiment.sums(poses.functions, samples);
+      for (std::size_t r = 0; r < poses.functions.size(); ++r) parts.push_back(sums.variance(r, 0, spread));
+    } else {
+      for (const EffectFunction& pose : poses.functions) {
+        parts.push_back(experiment.sums(pose, samples).variance(0, 0, spread));
+      }
+    }
+    coverage.add(first_order_index(parts, dependence, 0.95).interval, poses.aggregated());
+  }
+  return coverage;
+}
+
+/// The gradient of P(|z1 / 10 + ...| <= limit) for the three errors of the reference case (yield_gradient_test.cpp).
+inline Coverage gradient_coverage(double limit, std::size_t machines, int repetitions, std::uint64_t seed) {
+  constexpr std::array kSlope{1.0, 2.0, 0.5};
+  constexpr std::array kSigma{0.1, 0.05, 0.2};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double deviation = std::sqrt(0.03);
+  const double density = std::exp(-0.5 * limit * limit / 0.03) / std::sqrt(2.0 * std::numbers::pi);
+  boost::random::mt19937_64 engine(seed);
+  std::vector<double> errors(3 * machines);
+  std::vector<std::uint8_t> rejected(machines);
+  Coverage coverage;
+  for (int r = 0; r < repetitions; ++r) {
+    for (double& error : errors) error = uniform_from_bits(engine());
+    for (std::size_t p = 0; p < 3; ++p) {
+      Distribution::normal(kSigma[p]).transform(std::span(errors).subspan(p * machines, machines));
+    }
+    for (std::size_t b = 0; b < machines; ++b) {
+      double y = 0.0;
+      for (std::size_t p = 0; p < 3; ++p) y += kSlope[p] * errors[p * machines + b];
+      rejected[b] = static_cast<std::uint8_t>(std::abs(y) > limit);
+    }
+    ScoreSums scores(std::array{ErrorScale{kSigma[0], kInfinity}, ErrorScale{kSigma[1], kInfinity},
+                                ErrorScale{kSigma[2], kInfinity}});
+    scores.add(errors, rejected);
+    const std::vector<Estimate> gradient = scores.gradient(0.95);
+    for (std::size_t p = 0; p < 3; ++p) {
+      const double slope = kSlope[p] * kSlope[p] * kSigma[p];
+      coverage.add(gradient[p].interval, -2.0 * density * limit * slope / (deviation * deviation * deviation));
+    }
+  }
+  return coverage;
+}
+
+}  // namespace poesy::test

@@ -1,0 +1,141 @@
+#include "engine/stats/machines.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <boost/random/mersenne_twister.hpp>
+#include <cmath>
+#include <limits>
+
+#include "engine/stats/moments.h"
+#include "tests/engine/stats/stored_bytes.h"
+
+namespace poesy {
+namespace {
+
+using test::expect_no_harm;
+using test::read_all;
+using test::written;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+using Flags = std::vector<std::uint8_t>;
+
+/// Two responses of four machines at two poses. Machine 0 is good, 1 breaks the first limit at pose 1, 2 is not
+/// solved at pose 0, 3 breaks both limits and is not solved at pose 1.
+MachineBlock four_machines() {
+  MachineBlock block(std::array{1.0, 10.0}, 4);
+  block.add_pose(std::array{0.5, -1.0, kNone, -1.5,  //
+                            3.0, 4.0, kNone, 11.0},
+                 Flags{1, 1, 0, 1});
+  block.add_pose(std::array{-1.0, 1.25, 0.0, kNone,  //
+                            -4.0, 3.0, 0.0, kNone},
+                 Flags{1, 1, 1, 0});
+  return block;
+}
+
+TEST(MachineBlock, CountsRejectsBothWays) {
+  const MachineBlock block = four_machines();
+  const MachineCounts counts = block.counts();
+  EXPECT_EQ(block.poses(), 2U);
+  EXPECT_EQ(counts.machines, 4U);
+  EXPECT_EQ(counts.unsolved, 2U);
+  EXPECT_EQ(counts.all, (Rejects{3, 2}));
+  EXPECT_EQ(counts.by_limit, (std::vector<Rejects>{{3, 2}, {2, 1}}));
+  EXPECT_EQ(counts.at_pose, (std::vector<Rejects>{{2, 1}, {2, 1}, {2, 1}, {1, 0}}));
+  EXPECT_EQ(block.rejected(), (Flags{0, 1, 1, 1}));
+  EXPECT_EQ(Flags(block.solved().begin(), block.solved().end()), (Flags{1, 1, 0, 0}));
+}
+
+TEST(MachineBlock, GivesLargestAndRootMeanSquareOfSolvedMachines) {
+  const MachineBlock block = four_machines();
+  const std::vector<double> largest = block.largest();
+  const std::vector<double> rms = block.root_mean_square();
+  EXPECT_EQ(largest[0], 1.0);
+  EXPECT_EQ(largest[1], 1.25);
+  EXPECT_EQ(largest[4], 4.0);
+  EXPECT_DOUBLE_EQ(rms[0], std::sqrt(0.625));
+  EXPECT_DOUBLE_EQ(rms[5], std::sqrt(12.5));
+  for (const std::size_t unsolved : {2U, 3U, 6U, 7U}) {
+    EXPECT_TRUE(std::isnan(largest[unsolved])) << unsolved;
+    EXPECT_TRUE(std::isnan(rms[unsolved])) << unsolved;
+  }
+}
+
+TEST(MachineBlock, WithoutALimitRejectsNothingButTheUnsolved) {
+  MachineBlock block(std::array{kInfinity}, 3);
+  block.add_pose(std::array{1e300, kNone, -1e300}, Flags{1, 0, 1});
+  const MachineCounts counts = block.counts();
+  EXPECT_EQ(counts.all, (Rejects{1, 0}));
+  EXPECT_EQ(counts.by_limit.front(), (Rejects{1, 0}));
+}
+
+TEST(MachineBlock, RejectsWhatIsNotANumber) {
+  MachineBlock block(std::array{1.0}, 1);
+  block.add_pose(std::array{kNone}, Flags{1});
+  EXPECT_EQ(block.counts().all, (Rejects{1, 1}));
+}
+
+/// Outcomes of some machines, cut into blocks of this size.
+MachineCounts in_blocks(std::size_t block_size) {
+  constexpr std::size_t kMachines = 600;
+  constexpr std::size_t kPoses = 5;
+  constexpr std::array kLimits{0.9, 0.95, kInfinity};
+  boost::random::mt19937_64 engine(7);
+  std::vector<double> responses(kPoses * kLimits.size() * kMachines);
+  Flags solved(kPoses * kMachines);
+  for (double& response : responses) response = 2.0 * static_cast<double>(engine() >> 11U) * 0x1p-53 - 1.0;
+  for (std::uint8_t& flag : solved) flag = static_cast<std::uint8_t>(engine() % 50 != 0);
+  MachineCounts counts;
+  for (std::size_t first = 0; first < kMachines; first += block_size) {
+    MachineBlock block(kLimits, block_size);
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      std::vector<double> values;
+      for (std::size_t r = 0; r < kLimits.size(); ++r) {
+        const auto row = responses.begin() + static_cast<std::ptrdiff_t>((m * kLimits.size() + r) * kMachines + first);
+        values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(block_size));
+      }
+      block.add_pose(values, std::span(solved).subspan(m * kMachines + first, block_size));
+    }
+    counts.merge(block.counts());
+  }
+  return counts;
+}
+
+TEST(MachineCounts, DoNotDependOnBlocks) {
+  const MachineCounts whole = in_blocks(600);
+  EXPECT_GT(whole.all.strict, whole.all.lenient);
+  EXPECT_GT(whole.all.lenient, whole.by_limit[0].lenient);
+  EXPECT_EQ(in_blocks(1), whole);
+  EXPECT_EQ(in_blocks(200), whole);
+}
+
+TEST(MachineCounts, OfNothingTakeAndLeave) {
+  MachineCounts counts = in_blocks(600);
+  const MachineCounts same = counts;
+  counts.merge({});
+  EXPECT_EQ(counts, same);
+}
+
+TEST(StoredMachineCounts, ComeBack) {
+  const MachineCounts counts = in_blocks(600);
+  const auto read = [](ByteReader& from) { return MachineCounts::read(from, 3, 5); };
+  EXPECT_EQ(read_all(written(counts), read), counts);
+  expect_no_harm(written(counts), read);
+}
+
+TEST(StoredMachineCounts, OfNoMachinesAreRefused) {
+  const auto read = [](ByteReader& from) { return MachineCounts::read(from, 1, 1); };
+  const auto refused = [&](const MachineCounts& counts) { EXPECT_THROW(read_all(written(counts), read), BytesError); };
+  EXPECT_NO_THROW(read_all(written(MachineCounts{9, 2, {5, 3}, {{5, 3}}, {{5, 3}}}), read));
+  refused({9, 10, {9, 0}, {{9, 0}}, {{9, 0}}});  // more unsolved than there are
+  refused({9, 2, {1, 0}, {{1, 0}}, {{1, 0}}});   // unsolved but not rejected
+  refused({9, 2, {5, 2}, {{5, 2}}, {{5, 2}}});   // rejected without a reason
+  refused({9, 2, {5, 3}, {{6, 3}}, {{5, 3}}});   // more by one limit than by all
+  refused({9, 2, {5, 3}, {{1, 0}}, {{1, 0}}});   // unsolved but within a limit
+  refused({9, 2, {5, 3}, {{5, 3}}, {{5, 4}}});   // more at one pose than at all
+}
+
+}  // namespace
+}  // namespace poesy

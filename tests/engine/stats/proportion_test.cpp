@@ -1,0 +1,84 @@
+#include "engine/stats/proportion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace poesy {
+namespace {
+
+double binomial(std::uint64_t k, std::uint64_t n, double p) {
+  const auto x = static_cast<double>(k);
+  const auto m = static_cast<double>(n);
+  const double choices = std::lgamma(m + 1.0) - std::lgamma(x + 1.0) - std::lgamma(m - x + 1.0);
+  return std::exp(choices + x * std::log(p) + (m - x) * std::log1p(-p));
+}
+
+TEST(Proportion, HasTheReferenceLimits) {
+  EXPECT_NEAR(proportion_at_most(200, 100000, 0.95), 0.00224846, 5e-9);
+  EXPECT_NEAR(proportion_at_most(0, 1000, 0.95), 0.00299125, 5e-9);
+  const Estimate half = proportion(10, 20, 0.95);  // tables of Clopper and Pearson
+  EXPECT_EQ(half.value, 0.5);
+  EXPECT_NEAR(half.interval.low, 0.2719578, 5e-8);
+  EXPECT_NEAR(half.interval.high, 0.7280422, 5e-8);
+}
+
+TEST(Proportion, LeavesOutItsTails) {
+  constexpr std::uint64_t kTrials = 30;
+  for (std::uint64_t k = 1; k < kTrials; ++k) {
+    const Interval limits = proportion(k, kTrials, 0.9).interval;
+    double up_to = 0.0;  // P(X <= k) at the upper limit
+    double from = 0.0;   // P(X >= k) at the lower limit
+    for (std::uint64_t j = 0; j <= k; ++j) up_to += binomial(j, kTrials, limits.high);
+    for (std::uint64_t j = k; j <= kTrials; ++j) from += binomial(j, kTrials, limits.low);
+    EXPECT_NEAR(up_to, 0.05, 1e-10) << k;
+    EXPECT_NEAR(from, 0.05, 1e-10) << k;
+  }
+}
+
+TEST(Proportion, CoversEveryShare) {
+  constexpr std::uint64_t kTrials = 40;
+  for (double p = 0.005; p < 1.0; p += 0.01) {
+    double coverage = 0.0;
+    for (std::uint64_t k = 0; k <= kTrials; ++k) {
+      const Interval limits = proportion(k, kTrials, 0.95).interval;
+      if (limits.low <= p && p <= limits.high) coverage += binomial(k, kTrials, p);
+    }
+    EXPECT_GE(coverage, 0.95) << p;
+  }
+}
+
+TEST(Proportion, IsTheSameForBothWays) {
+  for (const std::uint64_t k : {0U, 1U, 17U, 999U, 1000U}) {
+    EXPECT_NEAR(proportion_at_least(k, 1000, 0.99), 1.0 - proportion_at_most(1000 - k, 1000, 0.99), 1e-14) << k;
+  }
+}
+
+TEST(Proportion, OfAllOrNothingHasOneLimit) {
+  EXPECT_EQ(proportion(0, 50, 0.95).interval.low, 0.0);
+  EXPECT_EQ(proportion(50, 50, 0.95).interval.high, 1.0);
+  EXPECT_NEAR(proportion_at_most(0, 50, 0.95), 1.0 - std::pow(0.05, 1.0 / 50.0), 1e-15);
+}
+
+TEST(Proportion, OfNoTrialsIsNotKnown) {
+  const Estimate share = proportion(0, 0, 0.95);
+  EXPECT_TRUE(std::isnan(share.value));
+  EXPECT_EQ(share.interval.low, 0.0);
+  EXPECT_EQ(share.interval.high, 1.0);
+}
+
+TEST(TrialsWithoutFailure, AreTheFewestThatShowTheShare) {
+  EXPECT_EQ(trials_without_failure(0.9973, 0.95), 1109U);
+  for (const double share : {0.5, 0.9, 0.99, 0.9973, 0.999999}) {
+    for (const double confidence : {0.5, 0.9, 0.95, 0.999}) {
+      const std::uint64_t n = trials_without_failure(share, confidence);
+      EXPECT_GE(proportion_at_least(n, n, confidence), share * (1.0 - 1e-13)) << share << ' ' << confidence;
+      if (n > 1) {
+        EXPECT_LT(proportion_at_least(n - 1, n - 1, confidence), share) << share << ' ' << confidence;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace poesy

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "engine/base/bytes.h"
+
+namespace poesy::test {
+
+template <class Stats>
+Bytes written(const Stats& stats) {
+  ByteWriter to;
+  stats.write(to);
+  return to.take();
+}
+
+/// What read(ByteReader&) gives for all of these bytes.
+template <class Read>
+auto read_all(const Bytes& bytes, const Read& read) {
+  ByteReader from(bytes);
+  auto stats = read(from);
+  from.expect_end();
+  return stats;
+}
+
+/// Bytes that end too early are refused wherever they end, and what one changed byte makes of them is refused or read
+/// without harm.
+template <class Read>
+void expect_no_harm(const Bytes& sound, const Read& read) {
+  for (std::size_t length = 0; length < sound.size(); length += 1 + sound.size() / 200) {
+    const Bytes cut(sound.begin(), sound.begin() + static_cast<std::ptrdiff_t>(length));
+    EXPECT_THROW(read_all(cut, read), BytesError) << length;
+  }
+  for (std::size_t at = 0; at < sound.size(); at += 1 + sound.size() / 200) {
+    for (const auto flip : {std::byte{1}, std::byte{0x80}, std::byte{0xff}}) {
+      Bytes changed = sound;
+      changed[at] ^= flip;
+      try {
+        read_all(changed, read);
+      } catch (const BytesError&) {
+        continue;
+      }
+    }
+  }
+}
+
+}  // namespace poesy::test
