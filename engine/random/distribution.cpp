@@ -10,9 +10,11 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/instruction_sets.h"
+#include "engine/random/normal_share.h"
 
 namespace poesy {
 
@@ -130,8 +132,9 @@ POESY_EACH_INSTRUCTION_SET void mark_tails(const double* shares, std::size_t cou
   }
 }
 
-// Every distribution here is symmetric, so a quantile functor maps the tail share t = min(u, 1 - u), 0 < t <= 1/2,
-// to the distance from zero. 1 - u is exact for u >= 1/2, so both tails get the same precision and the same numbers.
+// Every shape but the measured one is symmetric, so a quantile functor maps the tail share t = min(u, 1 - u), 0 < t <=
+// 1/2, to the distance from zero. 1 - u is exact for u >= 1/2, so both tails get the same precision and the same
+// numbers.
 
 struct TruncatedNormalTail {
   TruncatedNormalTail(double parent_sigma, double cut)
@@ -184,6 +187,38 @@ POESY_EACH_INSTRUCTION_SET void uniform_quantiles(double half_width, std::span<d
 
 POESY_EACH_INSTRUCTION_SET void triangular_quantiles(double half_width, std::span<double> uniforms) {
   replace_by_quantiles(TriangularTail{half_width}, uniforms);
+}
+
+/// The quantile function that is linear between values[0 .. last], ascending. A draw is below 1, so that its cell is
+/// one.
+[[gnu::always_inline]] inline double between_values(const double* values, double last, double u) {
+  const double place = u * last;
+  const double cell = std::min(std::floor(place), last - 1.0);
+  const double* const low = values + static_cast<std::ptrdiff_t>(cell);
+  return low[0] + (place - cell) * (low[1] - low[0]);
+}
+
+void measured_quantiles(std::span<const double> values, std::span<double> uniforms) {
+  const auto last = static_cast<double>(values.size() - 1);
+  for (double& u : uniforms) u = between_values(values.data(), last, u);
+}
+
+/// Moments about c of a distribution that is uniform between neighbours of these values, each pair equally likely.
+struct BetweenValues {
+  double mean = 0.0;    ///< of x - c
+  double square = 0.0;  ///< of (x - c)^2
+};
+
+BetweenValues moments_between(std::span<const double> values, double c) {
+  BetweenValues sums;
+  for (std::size_t k = 0; k + 1 < values.size(); ++k) {
+    const double a = values[k] - c;
+    const double b = values[k + 1] - c;
+    sums.mean += 0.5 * (a + b);
+    sums.square += (a * a + a * b + b * b) / 3.0;
+  }
+  const auto count = static_cast<double>(values.size() - 1);
+  return {sums.mean / count, sums.square / count};
 }
 
 void expect_positive(const char* parameter, double value) {
@@ -271,6 +306,24 @@ Distribution Distribution::triangular(double half_width) {
   return {Shape::triangular, 0.0, half_width, half_width / std::sqrt(6.0)};
 }
 
+Distribution Distribution::measured(std::vector<double> values) {
+  if (values.size() < kLeastMeasured) {
+    throw std::invalid_argument("values must be at least " + std::to_string(kLeastMeasured) + ", not " +
+                                std::to_string(values.size()));
+  }
+  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+    throw std::invalid_argument("values must be finite numbers");
+  }
+  std::ranges::sort(values);
+  if (values.front() == values.back()) throw std::invalid_argument("values must not all be equal");
+  const double mean = values.front() + moments_between(values, values.front()).mean;
+  Distribution made(Shape::measured, 0.0, std::max(std::abs(values.front()), std::abs(values.back())),
+                    std::sqrt(moments_between(values, mean).square));
+  made.mean_ = mean;
+  made.values_ = std::move(values);
+  return made;
+}
+
 double Distribution::quantile(double u) const {
   switch (shape_) {
     case Shape::normal:
@@ -281,6 +334,9 @@ double Distribution::quantile(double u) const {
       return quantile_of(UniformTail{half_width_}, u);
     case Shape::triangular:
       return quantile_of(TriangularTail{half_width_}, u);
+    case Shape::measured:
+      POESY_EXPECTS(u > 0.0 && u < 1.0);
+      return between_values(values_.data(), static_cast<double>(values_.size() - 1), u);
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -295,12 +351,23 @@ void Distribution::transform(std::span<double> uniforms) const {
       return uniform_quantiles(half_width_, uniforms);
     case Shape::triangular:
       return triangular_quantiles(half_width_, uniforms);
+    case Shape::measured:
+      return measured_quantiles(values_, uniforms);
   }
   throw std::logic_error("unknown shape of distribution");
 }
 
+void Distribution::transform_scores(std::span<double> scores) const {
+  if (shape_ == Shape::normal) {
+    for (double& score : scores) score *= sigma_;
+    return;
+  }
+  normal_shares(scores);
+  transform(scores);
+}
+
 std::string_view name(Distribution::Shape shape) {
-  constexpr std::array<std::string_view, 4> kNames{"normal", "truncated-normal", "uniform", "triangular"};
+  constexpr std::array<std::string_view, 5> kNames{"normal", "truncated-normal", "uniform", "triangular", "measured"};
   return kNames.at(static_cast<std::size_t>(shape));
 }
 

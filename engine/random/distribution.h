@@ -3,14 +3,19 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace poesy {
 
-/// A distribution of one error source, symmetric about zero: its quantile function and standard deviation.
+/// A distribution of one error source: its quantile function, mean and standard deviation. All but the measured one are
+/// symmetric about zero.
 class Distribution {
  public:
-  /// Shapes of the density about zero.
-  enum class Shape { normal, truncated_normal, uniform, triangular };
+  /// Shapes of the density.
+  enum class Shape { normal, truncated_normal, uniform, triangular, measured };
+
+  /// Of so many measured values a distribution is made.
+  static constexpr std::size_t kLeastMeasured = 8;
 
   /// sigma > 0. Each of these throws std::invalid_argument with a clause that names the parameter
   /// and the rule it breaks.
@@ -20,17 +25,30 @@ class Distribution {
   static Distribution uniform(double half_width);     ///< Constant density on +-half_width > 0.
   static Distribution triangular(double half_width);  ///< Density falling linearly from zero error to +-half_width > 0.
 
-  Shape shape() const { return shape_; }             ///< Which it is.
-  double sigma() const { return sigma_; }            ///< Parameter of the (parent) normal; 0 for other shapes.
-  double half_width() const { return half_width_; }  ///< Largest possible error; infinity for the normal.
-  /// The distribution's own standard deviation (after truncation).
+  /// Of measured values x_0 <= ... <= x_n, in any order: a share k / n lies below x_k, and the quantile function is
+  /// linear between (Hyndman and Fan 1996, Am. Stat. 50, 361-365, type 7). So no draw is beyond the smallest and the
+  /// largest of them. The mean need not be zero. At least kLeastMeasured values, finite, not all equal.
+  static Distribution measured(std::vector<double> values);
+
+  Shape shape() const { return shape_; }   ///< Which it is.
+  double sigma() const { return sigma_; }  ///< Parameter of the (parent) normal; 0 for other shapes.
+  /// The largest possible magnitude of an error; infinity for the normal.
+  double half_width() const { return half_width_; }
+  double mean() const { return mean_; }  ///< Of the distribution; 0 unless it is measured.
+  /// The distribution's own standard deviation about its mean (after truncation, and with straight lines between
+  /// measured values, hence not the sample's).
   double standard_deviation() const { return standard_deviation_; }
+  std::span<const double> values() const { return values_; }  ///< Measured, ascending; empty for other shapes.
 
   /// The value below which a share u of all draws lies. Precondition: 0 < u < 1.
   double quantile(double u) const;
   void transform(std::span<double> uniforms) const;  ///< Replaces each uniform by its quantile.
+  /// Replaces each normal score z, a standard normal, by the value at the same share: sigma z for the normal, else the
+  /// quantile of Phi(z).
+  void transform_scores(std::span<double> scores) const;
 
-  friend bool operator==(const Distribution&, const Distribution&) = default;  ///< Shape and parameters.
+  /// Whether shape, parameters and measured values are the same.
+  friend bool operator==(const Distribution&, const Distribution&) = default;
 
  private:
   Distribution(Shape shape, double sigma, double half_width, double standard_deviation);
@@ -38,7 +56,9 @@ class Distribution {
   Shape shape_;
   double sigma_;
   double half_width_;
+  double mean_ = 0.0;
   double standard_deviation_;
+  std::vector<double> values_;
 };
 
 /// The value below which a share u of a normal with standard deviation sigma lies, to a few units in the last place.
@@ -49,7 +69,7 @@ double normal_quantile(double sigma, double u);
 /// (0, 1); the fewer of them below 2^-54, the faster.
 void normal_quantiles(double sigma, std::span<double> shares);
 
-/// "normal", "truncated-normal", "uniform", "triangular": as in a study file.
+/// "normal", "truncated-normal", "uniform", "triangular", "measured": as in a study file.
 std::string_view name(Distribution::Shape shape);
 
 }  // namespace poesy

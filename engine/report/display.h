@@ -90,7 +90,7 @@ inline constexpr std::string_view kTooSmall = "rounding";  ///< Stands for an in
 struct StudySetting {
   std::string section;  ///< "errors"; of repeated sections with their number, "analysis.cases 2"; empty at the top
   std::string key;      ///< "linear"
-  std::string value;    ///< as it is written: "\"newton\"", "1000"
+  std::string value;    ///< as it is written, a list of several lines as one: "\"newton\"", "1000"
 };
 
 /// All that a resolved study sets, in its order.

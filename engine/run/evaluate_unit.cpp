@@ -1,6 +1,7 @@
 #include "engine/run/evaluate_unit.h"
 
 #include <array>
+#include <cmath>
 
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
@@ -9,9 +10,9 @@
 namespace poesy {
 namespace {
 
-/// Largest error to expect: one draw in 16 000 of a normal lies beyond four standard deviations.
+/// Largest magnitude to expect: one draw in 16 000 of a normal lies beyond four standard deviations.
 double expected_range(const Distribution& distribution) {
-  return std::min(distribution.half_width(), 4.0 * distribution.standard_deviation());
+  return std::min(distribution.half_width(), std::abs(distribution.mean()) + 4.0 * distribution.standard_deviation());
 }
 
 /// Counts how the unit's samples ended.
@@ -118,18 +119,16 @@ UnitSolver::UnitSolver(const Plan& plan, const Model& model, std::size_t varied)
       status_(Plan::kUnitSamples),
       iterations_(Plan::kUnitSamples) {}
 
-void UnitSolver::draw(const WorkUnit& unit, std::size_t slot, std::span<double> row) const {
+void UnitSolver::draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const {
   fill_uniforms(plan_->address(slot, unit.pose), unit.first, row);
-  plan_->distributions()[slot].transform(row);
 }
 
 EffectBins UnitSolver::draw_in_bins(const WorkUnit& unit) {
   const std::size_t errors = plan_->factors().size();
-  const auto row = [&](std::size_t v) { return std::span(values_).subspan(v * unit.count, unit.count); };
-  for (std::size_t v = 0; v < errors; ++v) fill_uniforms(plan_->address(v, unit.pose), unit.first, row(v));
-  const std::span<const double> uniforms = std::span(values_).first(errors * unit.count);
-  EffectBins bins(uniforms, errors);
-  for (std::size_t v = 0; v < errors; ++v) plan_->distributions()[v].transform(row(v));
+  const std::span<double> values = std::span(values_).first(errors * unit.count);
+  for (std::size_t v = 0; v < errors; ++v) draw_uniforms(unit, v, values.subspan(v * unit.count, unit.count));
+  EffectBins bins(values, errors);
+  plan_->transform(values, unit.count);
   return bins;
 }
 
@@ -152,7 +151,8 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   const std::size_t count = scales.size() * unit.count;
   POESY_EXPECTS(count <= Plan::kUnitSamples);
   const std::span draws = std::span(values_).first(unit.count);
-  draw(unit, unit.slot, draws);
+  draw_uniforms(unit, unit.slot, draws);
+  plan_->distributions()[unit.slot].transform(draws);
   for (std::size_t k = scales.size(); k-- > 0;) {  // the first ones last, because the others are made of them
     for (std::size_t b = 0; b < unit.count; ++b) values_[k * unit.count + b] = scales[k] * draws[b];
   }
@@ -192,8 +192,9 @@ PoseUnitEvaluator::PoseUnitEvaluator(const Plan& plan, const Model& model)
 
 UnitOutcomes PoseUnitEvaluator::solve(const WorkUnit& unit) {
   for (std::size_t v = 0; v < plan_->factors().size(); ++v) {
-    draw(unit, v, std::span(values_).subspan(v * unit.count, unit.count));
+    draw_uniforms(unit, v, std::span(values_).subspan(v * unit.count, unit.count));
   }
+  plan_->transform(std::span(values_).first(plan_->factors().size() * unit.count), unit.count);
   return solve_drawn(unit);
 }
 

@@ -91,8 +91,8 @@ class UnitSolver {
   /// varied: errors that vary at once.
   UnitSolver(const Plan& plan, const Model& model, std::size_t varied);
 
-  /// Fills a row of draws of the factor in this slot.
-  void draw(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
+  /// Fills a row with the uniforms from which the errors of this slot are made.
+  void draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
   /// Fills values_ with the draws of all factors, one row behind the other, and gives the bins into which they fall.
   EffectBins draw_in_bins(const WorkUnit& unit);
   /// Solves the first [varied x count] of values_ at a pose.

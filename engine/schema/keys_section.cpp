@@ -68,8 +68,8 @@ void StudyValue::fail(std::string_view problem, std::string_view remedy) const {
 
 void StudyValue::wrong_type(std::string_view remedy) const { fail("is " + described(*node_), remedy); }
 
-bool StudyValue::flag() const {
-  if (const auto flag = boolean()) return *flag;
+bool StudyValue::yes_or_no() const {
+  if (const auto answer = boolean()) return *answer;
   wrong_type("write true or false, without quotes");
 }
 

@@ -34,7 +34,7 @@ class StudyValue {
   /// Whether it is true or false; empty for any other value.
   std::optional<bool> boolean() const { return node_->value_exact<bool>(); }
 
-  bool flag() const;         ///< True or false.
+  bool yes_or_no() const;    ///< True or false.
   std::string text() const;  ///< A text in quotes.
   /// An integer within these bounds, both included.
   std::int64_t whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max()) const;

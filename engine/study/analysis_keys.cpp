@@ -162,8 +162,8 @@ const InnerRows<Background>& background_keys() {
 void read_background(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection section = value.section();
   Background background{.factors = {},
-                        .linear = usual_distribution(reading.root, Dimension::length).standard_deviation(),
-                        .angular = usual_distribution(reading.root, Dimension::angle).standard_deviation()};
+                        .linear = usual_distribution(reading, Dimension::length).standard_deviation(),
+                        .angular = usual_distribution(reading, Dimension::angle).standard_deviation()};
   read_keys(background_keys(), section, background, Nothing());
   background.factors = read_factors(section.require("factors"), study.model());
   study.analysis.background = std::move(background);

@@ -6,6 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/study/study_kind.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 namespace {
@@ -15,19 +16,42 @@ using Shape = Distribution::Shape;
 /// SI. Fourth powers of an error, and of indices down to rounding times it, then are far above the smallest double.
 constexpr double kSmallest = 1e-30;
 
+/// A measured distribution has at most so many values: they become part of every result.
+constexpr std::size_t kMostMeasured = 10'000;
+
 /// What a study says of a distribution.
 struct Parameters {
   Shape shape = Shape::normal;
   double sigma = 0.0;       ///< SI; 0 where the shape has none
   double half_width = 0.0;  ///< likewise
   Dimension dimension = Dimension::length;
+  std::string file = {};            ///< of measured values
+  std::string column = {};          ///< of the file
+  std::vector<double> values = {};  ///< that were measured, SI
 };
 
 Distribution distribution_of(const Parameters& parameters) {
-  const auto& [shape, sigma, half_width, dimension] = parameters;
-  if (shape == Shape::normal) return Distribution::normal(sigma);
-  if (shape == Shape::truncated_normal) return Distribution::truncated_normal(sigma, half_width);
-  return shape == Shape::uniform ? Distribution::uniform(half_width) : Distribution::triangular(half_width);
+  switch (parameters.shape) {
+    case Shape::normal:
+      return Distribution::normal(parameters.sigma);
+    case Shape::truncated_normal:
+      return Distribution::truncated_normal(parameters.sigma, parameters.half_width);
+    case Shape::uniform:
+      return Distribution::uniform(parameters.half_width);
+    case Shape::triangular:
+      return Distribution::triangular(parameters.half_width);
+    case Shape::measured:
+      break;
+  }
+  if (parameters.values.size() > kMostMeasured) {
+    throw std::invalid_argument(fmt::format("values must be at most {}", kMostMeasured));
+  }
+  Distribution measured = Distribution::measured(parameters.values);
+  if (measured.standard_deviation() < kSmallest) {
+    throw std::invalid_argument(
+        "values are so close to each other that squares of their differences lose their digits");
+  }
+  return measured;
 }
 
 KeyValue<Parameters> size_at(double Parameters::*member) {
@@ -40,10 +64,20 @@ KeyValue<Parameters> size_at(double Parameters::*member) {
   return {.type = "quantity", .bounds = "at least 1e-30 m or rad", .read = read};
 }
 
+KeyValue<Parameters> values_value() {
+  const auto read = [](const StudyValue& value, Parameters& parameters) {
+    for (const StudyValue& one : value.list()) parameters.values.push_back(one.quantity(parameters.dimension));
+    if (parameters.values.size() >= Distribution::kLeastMeasured) return;
+    value.fail(fmt::format("has {} values", parameters.values.size()),
+               fmt::format("a distribution is made of at least {}", Distribution::kLeastMeasured));
+  };
+  return {.type = "list of quantities", .bounds = "at least 8", .read = read};
+}
+
 const InnerRows<Parameters>& distribution_keys() {
   static const InnerRows<Parameters> keys{
       .paths = {"errors.linear", "errors.angular", "errors.override.FACTOR"},
-      .meaning = "A distribution about zero.",
+      .meaning = "A distribution about zero, or of measured values.",
       .chooser = "distribution",
       .owner = "the distribution",
       .rows = {InnerRow<Parameters>{
@@ -52,7 +86,10 @@ const InnerRows<Parameters>& distribution_keys() {
                        {{Shape::normal, "with sigma"},
                         {Shape::truncated_normal, "with sigma, cut off at -half_width and half_width"},
                         {Shape::uniform, "between -half_width and half_width"},
-                        {Shape::triangular, "likeliest at 0, down to nothing at -half_width and half_width"}},
+                        {Shape::triangular, "likeliest at 0, down to nothing at -half_width and half_width"},
+                        {Shape::measured,
+                         "as values scatter that were measured, between the smallest and the largest "
+                         "of them"}},
                        &Parameters::shape),
                    .missing = "write e.g. {}",
                    .example = "\"normal\"",
@@ -67,11 +104,49 @@ const InnerRows<Parameters>& distribution_keys() {
                    .value = size_at(&Parameters::half_width),
                    .required = true,
                    .only_for = {name(Shape::truncated_normal), name(Shape::uniform), name(Shape::triangular)},
-                   .meaning = "Largest possible size of the error."}}};
+                   .meaning = "Largest possible size of the error."},
+               InnerRow<Parameters>{.name = "file",
+                                    .value = text_at(&Parameters::file),
+                                    .usual = "",
+                                    .only_for = {name(Shape::measured)},
+                                    .meaning = "Table with measured values, relative to the study's folder: CSV, the "
+                                               "first line names its columns."},
+               InnerRow<Parameters>{.name = "column",
+                                    .value = text_at(&Parameters::column),
+                                    .usual = "",
+                                    .only_for = {name(Shape::measured)},
+                                    .meaning = "The column of the file; its numbers are in SI (m, rad) unless its name "
+                                               "has a unit behind it: hole [mm]."},
+               InnerRow<Parameters>{.name = "values",
+                                    .value = values_value(),
+                                    .usual = "",
+                                    .only_for = {name(Shape::measured)},
+                                    .meaning = "Instead of file and column: the values. A resolved study has them."}}};
   return keys;
 }
 
-Distribution read_distribution(const StudyValue& value, Dimension dimension) {
+Distribution default_distribution(Dimension dimension) { return Distribution::normal(display_unit(dimension).si); }
+
+/// The values of a file, where the study names one; whether there are any values. Files are opened to run alone.
+bool take_values(const StudySection& section, StudyUse use, Parameters& parameters) {
+  if (section.find("values")) {
+    for (const std::string_view key : {"file", "column"}) section.refuse(key, "a distribution with values");
+    return true;
+  }
+  static_cast<void>(section.require("file", "write file = \"parts.csv\" and column = \"...\", or values = [...]"));
+  static_cast<void>(section.require("column", "name the column of the file that has the values"));
+  if (use != StudyUse::run) return false;
+  const std::string path = beside_study(section, parameters.file);
+  parameters.values = read_column(path, parameters.column, parameters.dimension);
+  if (parameters.values.size() >= Distribution::kLeastMeasured) return true;
+  throw InputError(
+      {path},
+      fmt::format("column '{}' has too few values for a distribution: {}", printable(parameters.column),
+                  parameters.values.size()),
+      fmt::format("measure at least {} parts, or write a distribution with sigma", Distribution::kLeastMeasured));
+}
+
+Distribution read_distribution(const StudyValue& value, Dimension dimension, StudyUse use) {
   const StudySection section = value.section();
   Parameters parameters{.dimension = dimension};
   read_keys(distribution_keys(), section, parameters, Nothing());
@@ -80,6 +155,9 @@ Distribution read_distribution(const StudyValue& value, Dimension dimension) {
     if (!row.required || !holds_for(row.only_for, word)) continue;
     static_cast<void>(section.require(row.name, "the distribution \"" + word + "\" needs it"));
   }
+  if (parameters.shape == Shape::measured && !take_values(section, use, parameters)) {
+    return default_distribution(dimension);
+  }
   try {
     return distribution_of(parameters);
   } catch (const std::invalid_argument& reason) {
@@ -87,26 +165,36 @@ Distribution read_distribution(const StudyValue& value, Dimension dimension) {
   }
 }
 
-Distribution default_distribution(Dimension dimension) { return Distribution::normal(display_unit(dimension).si); }
-
 template <Dimension kDimension>
-void read_usual(const StudyValue& value, Study& study, const Reading&) {
-  const Distribution distribution = read_distribution(value, kDimension);
+void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
+  const Distribution distribution = read_distribution(value, kDimension, reading.use);
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     if (study.model().factors[f].dimension == kDimension) study.errors.by_factor[f] = distribution;
   }
 }
 
-void read_override(const StudyValue& value, Study& study, const Reading&) {
+void read_override(const StudyValue& value, Study& study, const Reading& reading) {
   const std::vector<Factor>& factors = study.model().factors;
   read_named(value.section(), factors, "factor", [&](std::size_t f, const StudyValue& own) {
-    study.errors.by_factor[f] = read_distribution(own, factors[f].dimension);
+    study.errors.by_factor[f] = read_distribution(own, factors[f].dimension, reading.use);
   });
+}
+
+/// A TOML list over several lines, because a line of a study file is not endless.
+std::string values_text(std::span<const double> values, Dimension dimension, ValueText value) {
+  constexpr std::size_t kOfLine = 5;
+  std::string text = "[";
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    text += (k % kOfLine == 0 ? "\n  " : " ") + value(values[k], dimension) + ",";
+  }
+  return text + "\n]";
 }
 
 std::string distribution_text(const Distribution& distribution, Dimension dimension, ValueText value) {
   const Shape shape = distribution.shape();
   std::string text = fmt::format("{{ distribution = {}", in_quotes(name(shape)));
+  if (shape == Shape::measured)
+    return text + ", values = " + values_text(distribution.values(), dimension, value) + " }";
   if (shape == Shape::normal || shape == Shape::truncated_normal) {
     text += ", sigma = " + value(distribution.sigma(), dimension);
   }
@@ -170,7 +258,10 @@ StudyRow usual_row(std::string_view meaning) {
   const auto value = own ? own : errors.find(error_kind(factor.dimension));
   if (!value) refuse_error(errors, error_kind(factor.dimension), problem);
   const StudySection distribution = value->section();
-  refuse_error(distribution, distribution.find("half_width") ? "half_width" : "sigma", problem);
+  for (const std::string_view key : {"half_width", "values", "column"}) {
+    if (distribution.find(key)) refuse_error(distribution, key, problem);
+  }
+  refuse_error(distribution, "sigma", problem);
 }
 
 /// Of the distributions of what varies: the largest possible error, for a normal its standard deviation.
@@ -189,7 +280,7 @@ void check_distributions(const StudySection& root, const Study& study, const Mod
 
 const StudyRows& errors_keys() {
   static const StudyRows keys{.paths = {"errors"},
-                              .meaning = "How the errors that vary scatter about zero, by their dimension.",
+                              .meaning = "How the errors that vary scatter, by their dimension.",
                               .rows = {usual_row<Dimension::length>("Distribution of every length."),
                                        usual_row<Dimension::angle>("Distribution of every angle."),
                                        StudyRow{.name = "override",
@@ -198,7 +289,8 @@ const StudyRows& errors_keys() {
                                                 .meaning = "Single errors with a distribution of their own.",
                                                 .reader = read_override,
                                                 .lines = override_lines,
-                                                .shown = shown_override}}};
+                                                .shown = shown_override},
+                                       correlated_row()}};
   return keys;
 }
 
@@ -210,12 +302,13 @@ StudyTables errors_tables() {
                      .type = "table",
                      .usual = "that of its dimension",
                      .meaning = "Distribution of this error."}}},
-          described(distribution_keys())};
+          described(distribution_keys()),
+          correlated_table()};
 }
 
-Distribution usual_distribution(const StudySection& root, Dimension dimension) {
-  const auto value = root.section("errors").find(error_kind(dimension));
-  return value ? read_distribution(*value, dimension) : default_distribution(dimension);
+Distribution usual_distribution(const Reading& reading, Dimension dimension) {
+  const auto value = reading.root.section("errors").find(error_kind(dimension));
+  return value ? read_distribution(*value, dimension, reading.use) : default_distribution(dimension);
 }
 
 void read_errors_section(Study& study, const Reading& reading) {

@@ -14,11 +14,28 @@ std::size_t slots_of(const Analysis& analysis) {
   return analysis.kind->varies == Varies::together ? 1 : analysis.factors.size();
 }
 
+std::vector<CorrelatedSlots> correlated_slots(const Study& study) {
+  const std::vector<FactorIndex>& varied = study.analysis.factors;
+  std::vector<CorrelatedSlots> blocks;
+  if (study.analysis.kind->varies != Varies::together) return blocks;
+  for (const CorrelatedErrors& block : study.errors.correlated) {
+    std::vector<std::size_t> slots;
+    for (const FactorIndex factor : block.factors) {
+      const auto place = std::ranges::find(varied, factor);
+      POESY_EXPECTS(place != varied.end());
+      slots.push_back(static_cast<std::size_t>(place - varied.begin()));
+    }
+    blocks.push_back({std::move(slots), NormalCopula(block.correlation)});
+  }
+  return blocks;
+}
+
 }  // namespace
 
 Plan::Plan(const Study& study, PoseSet poses)
     : poses_(std::move(poses)),
       factors_(study.analysis.factors),
+      correlated_(correlated_slots(study)),
       background_(background_errors(study.analysis.background, study.model())),
       slots_(slots_of(study.analysis)),
       samples_(study.analysis.samples),
@@ -31,6 +48,30 @@ Plan::Plan(const Study& study, PoseSet poses)
   for (const FactorIndex factor : factors_) background_[factor.value] = 0.0;
   distributions_.reserve(factors_.size());
   for (const FactorIndex factor : factors_) distributions_.push_back(study.errors.by_factor[factor.value]);
+}
+
+bool Plan::is_correlated(std::size_t slot) const {
+  return std::ranges::any_of(correlated_, [&](const CorrelatedSlots& block) {
+    return std::ranges::find(block.slots, slot) != block.slots.end();
+  });
+}
+
+void Plan::transform(std::span<double> uniforms, std::size_t count) const {
+  POESY_EXPECTS(uniforms.size() == factors_.size() * count);
+  const auto row = [&](std::size_t slot) { return uniforms.subspan(slot * count, count); };
+  std::vector<std::span<double>> rows;
+  for (const CorrelatedSlots& block : correlated_) {
+    rows.clear();
+    for (const std::size_t slot : block.slots) {
+      normal_quantiles(1.0, row(slot));
+      rows.push_back(row(slot));
+    }
+    block.copula.correlate(rows);
+    for (const std::size_t slot : block.slots) distributions_[slot].transform_scores(row(slot));
+  }
+  for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
+    if (!is_correlated(slot)) distributions_[slot].transform(row(slot));
+  }
 }
 
 Plan Plan::with_samples(std::size_t samples) const {

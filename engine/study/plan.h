@@ -9,6 +9,7 @@
 
 #include "engine/base/index.h"
 #include "engine/random/distribution.h"
+#include "engine/random/normal_copula.h"
 #include "engine/random/stream.h"
 #include "engine/study/study.h"
 
@@ -20,6 +21,12 @@ struct WorkUnit {
   PoseIndex pose;     ///< among the study's
   SampleIndex first;  ///< the first of consecutive samples
   std::size_t count;  ///< B
+};
+
+/// Errors that depend on each other, as the plan knows them.
+struct CorrelatedSlots {
+  std::vector<std::size_t> slots;  ///< positions among the plan's factors
+  NormalCopula copula;             ///< in this order
 };
 
 /// A study of sampled errors, expanded: an immutable table of work units in the order in which they are merged. A
@@ -60,6 +67,12 @@ class Plan {
   std::span<const FactorIndex> factors() const { return factors_; }  ///< That vary, positions in the model's list.
   /// Distribution of each varied factor, in the order of factors().
   std::span<const Distribution> distributions() const { return distributions_; }
+  /// Blocks of errors that depend on each other; a factor is in one at the most. Empty where errors vary one by one.
+  std::span<const CorrelatedSlots> correlated() const { return correlated_; }
+  bool is_correlated(std::size_t slot) const;  ///< Whether the factor of this slot is in such a block.
+  /// Replaces the uniforms of all factors, [P x B] in the order of factors(), by errors, SI. Each factor takes the
+  /// uniforms of its own address; one that is correlated with others takes theirs too, of the same sample.
+  void transform(std::span<double> uniforms, std::size_t count) const;
   /// Constant errors, [F]; zero for those that vary, also while another one does.
   std::span<const double> background() const { return background_; }
   const SolverOptions& solver() const { return solver_; }        ///< For each sample.
@@ -70,6 +83,7 @@ class Plan {
   PoseSet poses_;
   std::vector<FactorIndex> factors_;
   std::vector<Distribution> distributions_;
+  std::vector<CorrelatedSlots> correlated_;
   std::vector<double> background_;
   std::size_t slots_;
   std::size_t samples_;

@@ -42,9 +42,16 @@ struct MechanismChoice {
   std::optional<MechanismText> file = std::nullopt;
 };
 
+/// Errors that depend on each other: a Gaussian copula over their own distributions.
+struct CorrelatedErrors {
+  std::vector<FactorIndex> factors;  ///< [k], at least two
+  std::vector<double> correlation;   ///< [k x k] of their normal scores: a correlation matrix, positive definite
+};
+
 /// How each error source is distributed.
 struct ErrorModel {
-  std::vector<Distribution> by_factor;  ///< [F], for all factors of the model
+  std::vector<Distribution> by_factor;            ///< [F], for all factors of the model
+  std::vector<CorrelatedErrors> correlated = {};  ///< a factor is in one of them at the most
 };
 
 /// Errors held constant while others vary.

@@ -109,7 +109,10 @@ Study study_from(const Reading& reading) {
   read_errors_section(study, reading);
   read_analysis(study, reading);
   read_keys(run_keys(), root.section("run"), study, reading);
-  if (reading.use == StudyUse::run) check_fidelities(study, reading);
+  if (reading.use == StudyUse::run) {
+    check_fidelities(study, reading);
+    check_correlated(study, reading);
+  }
   check_size(root, study);
   return study;
 }

@@ -153,7 +153,14 @@ void read_solver(Study& study, const Reading& reading);
 /// @}
 
 /// What errors of this dimension have that have no distribution of their own.
-Distribution usual_distribution(const StudySection& root, Dimension dimension);
+Distribution usual_distribution(const Reading& reading, Dimension dimension);
+/// [errors] correlated: how it is read, written and described. The distributions must have been read.
+/// @{
+StudyRow correlated_row();
+StudyTable correlated_table();
+/// @}
+/// Throws InputError at the block's place where correlated errors do not vary together.
+void check_correlated(const Study& study, const Reading& reading);
 /// A file named by the study, relative to the study's folder.
 std::string beside_study(const StudySection& section, const std::string& file);
 /// A factor set, "all", or a list of names without repetition.

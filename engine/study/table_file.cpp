@@ -335,6 +335,29 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
   return table;
 }
 
+std::vector<double> read_column(const std::string& path, std::string_view column, Dimension dimension) {
+  CsvLines lines(path, "table of measured values");
+  const Place header = lines.next_place();
+  std::vector<TableColumn> columns;
+  Names known;
+  bool found = false;
+  for (const CsvCell& cell : lines.next()) {
+    const Title title(cell.text);
+    known.push_back(title.name);
+    if (cell.text != column && title.name != column) {
+      columns.push_back({.role = TableColumn::Role::fact, .name = title.name, .title = cell.text});
+      continue;
+    }
+    if (found) {
+      throw InputError(cell.place, "column '" + printable(column) + "' stands here a second time", "remove it");
+    }
+    found = true;
+    columns.push_back({TableColumn::Role::number, title.name, cell.text, dimension, size_of(cell, title, dimension)});
+  }
+  if (!found) throw InputError(header, "no column is '" + printable(column) + "'", suggestion(column, known));
+  return read_rows(lines, columns, {}).values;
+}
+
 std::optional<std::string> label_problem(std::string_view label) {
   constexpr std::size_t kMostBytes = 60;
   if (label.empty()) return "is empty";

@@ -44,6 +44,13 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 /// read_poses; an unknown factor is an InputError too, and so is an error that makes no sense (Model::error_bound).
 ErrorTable read_errors(const std::string& path, const Model& model);
 
+/// Reads one column of measured values from CSV, SI. The first line names columns; the asked one by its name with its
+/// unit or without, "hole [mm]" or "hole", and without a unit its numbers are SI. Other columns may hold anything.
+/// Throws InputError with line and column for a column that is missing or there twice, a unit that does not fit, a cell
+/// of the column that is not a finite number, a line with too few or many cells, or no data; FileError when the file
+/// cannot be read.
+std::vector<double> read_column(const std::string& path, std::string_view column, Dimension dimension);
+
 /// What a name that a user gives to a row may not be, as a clause ("begins with '='"), or none when it may stand in
 /// tables, CSV, spreadsheets and pages as it is: 1 to 60 bytes of printable UTF-8 on one line, without commas,
 /// semicolons and quotes, and not beginning with = + - or @, which spreadsheets take for a formula.

@@ -82,7 +82,7 @@ inline Study function_study(const CatalogEntry& entry, const StudyKind& kind, co
                             std::size_t samples) {
   Study study;
   study.mechanism.entry = &entry;
-  study.errors.by_factor.assign(entry.description.factors.size(), distribution);
+  study.errors.by_factor = std::vector<Distribution>(entry.description.factors.size(), distribution);
   study.analysis.kind = &kind;
   for (std::size_t p = 0; p < entry.description.factors.size(); ++p) study.analysis.factors.emplace_back(p);
   study.analysis.samples = samples;

@@ -185,6 +185,7 @@ EffectResult MonteCarloCollector::effects() const {
   }
   EffectResult found = effect_result(poses, spreads, conf_level);
   found.effects = main_effects(at_poses, Dependence::independent, all, spreads, responses_, conf_level);
+  leave_out_correlated(*plan_, found.effects);
   return found;
 }
 

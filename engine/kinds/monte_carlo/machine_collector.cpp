@@ -133,6 +133,7 @@ MachineResult MachineCollector::machines(const MachineSums& sums, std::span<cons
   found.effects_on_largest =
       main_effects(std::span(sums.effects).subspan(at_poses + 1, 1), Dependence::unknown, sums.effects[at_poses + 1],
                    spreads, table_->responses(), analysis_->conf_level);
+  leave_out_correlated(table_->plan(), found.effects_on_largest);
   if (sums.scores) found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
   return found;
 }
@@ -142,6 +143,7 @@ EffectResult MachineCollector::effects(const MachineSums& sums, std::span<const 
   EffectResult found = effect_result(table_->effect_poses(), spreads, analysis_->conf_level);
   found.effects = main_effects(std::span(sums.effects).first(at_poses), Dependence::unknown, sums.effects[at_poses],
                                spreads, table_->responses(), analysis_->conf_level);
+  leave_out_correlated(table_->plan(), found.effects);
   return found;
 }
 

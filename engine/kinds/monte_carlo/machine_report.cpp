@@ -91,7 +91,7 @@ Table gradient_table(const StoredResult& result) {
       .caption = fmt::format("What the yield changes by if the sigma of one error grows by {}", percent_text(kPart)),
       .columns = {},
       .notes = {fmt::format("low, high: {} interval; slope: of the yield by sigma, 1/mm or 1/deg; - where an "
-                            "error is not made of a normal, or no machine is rejected",
+                            "error is not made of a normal or is correlated, or no machine is rejected",
                             percent_text(yield.conf_level))},
       .ranked = true};
   fill(table, largest_first(result.factors.size(), [&](std::size_t p) { return -change(yield.gradient)(p); }),
@@ -126,12 +126,24 @@ Table rejects_table(const StoredResult& result) {
 std::string indices_note(const StoredResult& result, std::size_t r) {
   const std::size_t factors = result.factors.size();
   double sum = 0.0;
-  for (const double s1 : std::span(effects_of(result).effects.s1).subspan(r * factors, factors)) sum += s1;
+  std::size_t without = 0;
+  for (const double s1 : std::span(effects_of(result).effects.s1).subspan(r * factors, factors)) {
+    sum += std::isnan(s1) ? 0.0 : s1;
+    without += std::isnan(s1) ? 1 : 0;
+  }
+  if (without == factors) {
+    return result.responses[r].name + ": no error has an index, because it does not vary or errors are correlated";
+  }
   return fmt::format(
       "{}: the indices sum to {}; what is missing from 1 is what errors do together. A response without sign makes "
       "such "
       "interaction of its own, so an error with a small index is not one without effect",
       result.responses[r].name, number_text(sum, 3));
+}
+
+/// Of errors that have no index of their own.
+bool has_correlated(const StoredResult& result) {
+  return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
 }
 
 /// Values [R x P] of the responses in this order.
@@ -272,6 +284,11 @@ Table effect_table(const StoredResult& result) {
                                     percent_text(monte_carlo_of(result).conf_level)),
                         indices_note(result, ranking)},
               .ranked = true};
+  if (has_correlated(result)) {
+    table.notes.emplace_back(
+        "- for an error that is correlated with others: nothing is its effect alone; indices of groups and Shapley "
+        "effects divide the variance of such errors");
+  }
   fill(table, largest_first(factors, [&](std::size_t p) { return effects.s1[ranking * factors + p]; }), columns);
   return table;
 }

@@ -15,8 +15,10 @@ MachineTable::MachineTable(const Plan& plan, std::size_t responses, const Analys
       limits_(responses_, std::numeric_limits<double>::infinity()) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
   for (const ResponseLimit& limit : analysis.limits) limits_[limit.response] = limit.most;
-  for (const Distribution& distribution : plan.distributions()) {
-    scales_.push_back({distribution.sigma(), distribution.half_width()});
+  for (std::size_t p = 0; p < plan.factors().size(); ++p) {
+    // The score of an error by itself is not that of one whose others go with it: then there is none.
+    const Distribution& distribution = plan.distributions()[p];
+    scales_.push_back({plan.is_correlated(p) ? 0.0 : distribution.sigma(), distribution.half_width()});
   }
   effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, scales_.size());
 }

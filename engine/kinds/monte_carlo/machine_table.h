@@ -33,9 +33,10 @@ class MachineTable {
   /// Whether it is as large as any.
   bool is_whole(std::size_t n) const { return unit(n).count == unit_machines(plan_->poses().size()); }
 
-  bool has_limits() const { return has_limits_; }                 ///< Whether machines may be rejected.
-  std::span<const double> limits() const { return limits_; }      ///< [R] on magnitudes, infinite for none.
-  std::span<const ErrorScale> scales() const { return scales_; }  ///< [P]
+  bool has_limits() const { return has_limits_; }             ///< Whether machines may be rejected.
+  std::span<const double> limits() const { return limits_; }  ///< [R] on magnitudes, infinite for none.
+  /// [P] a correlated error has no sigma here, so that it has no score.
+  std::span<const ErrorScale> scales() const { return scales_; }
 
   /// The poses at which main effects are added up (engine/run/effect_poses.h).
   std::span<const PoseIndex> effect_poses() const { return effect_poses_; }

@@ -96,6 +96,17 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
   return effects;
 }
 
+void leave_out_correlated(const Plan& plan, MainEffects& effects) {
+  const std::size_t errors = plan.factors().size();
+  for (std::size_t at = 0; at < effects.s1.size(); ++at) {
+    if (!plan.is_correlated(at % errors)) continue;
+    for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) (*list)[at] = kNaN;
+    for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) {
+      std::ranges::fill(std::span(*list).subspan(at * kEffectBins, kEffectBins), kNaN);
+    }
+  }
+}
+
 std::vector<BinSpread> bin_spreads(const Plan& plan) {
   const std::vector<double> grid = bin_spread_grid();
   std::vector<BinSpread> spreads;

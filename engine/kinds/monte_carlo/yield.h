@@ -29,6 +29,10 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
+/// Makes indices and curves of correlated errors NaN: what the uniform of such an error does is not what the error
+/// does, and others go with it.
+void leave_out_correlated(const Plan& plan, MainEffects& effects);
+
 /// How the errors of a study lie in their bins, [P].
 std::vector<BinSpread> bin_spreads(const Plan& plan);
 

@@ -198,6 +198,10 @@ void add_distribution_note(std::vector<std::string>& notes, const StoredResult& 
                   "error, the same as of an error of another distribution where effects are linear",
                   count, counted(result.factors.size(), "error is", count == 1 ? "errors is" : "errors are"),
                   fmt::join(shapes, ", ")));
+  if (std::ranges::find(shapes, "measured") == shapes.end()) return;
+  notes.emplace_back(
+      "measured errors need not have a mean of zero: what their means do to the response counts as if it were scatter "
+      "here, and means of several errors do not add as scatter does. Confirm by a Monte Carlo study");
 }
 
 /// How many errors have a tolerance larger than the size at which they were studied, of a limit by either way to share

@@ -16,7 +16,8 @@ Group<SobolIndices> indices_group(std::string path, std::string description, con
           {},
           {{"S1", &SobolIndices::S1, axes, "1",
             "First-order index: the share of the variance that the error makes alone; of several errors their closed "
-            "index. NaN where the response has no variance"},
+            "index. NaN where the response has no variance, and for a group with errors that are correlated with "
+            "errors of others"},
            {"S1_ci_low", &SobolIndices::S1_ci_low, axes, "1", "Lower end of the interval of S1"},
            {"S1_ci_high", &SobolIndices::S1_ci_high, axes, "1", "Upper end of the interval of S1"},
            {"ST", &SobolIndices::ST, axes, "1",
@@ -66,7 +67,22 @@ struct Layout {
                {"response", axis, "other"},
                "1",
                "Upper end of the interval of S2",
-               "S2"}} {}
+               "S2"}},
+        effects{
+            {"Sh",
+             &SobolResult::Sh,
+             {"response", axis},
+             "1",
+             "Shapley effect: the share of the variance, what is made together divided evenly; all add up to 1, "
+             "also where errors are correlated",
+             "Sh"},
+            {"Sh_ci_low", &SobolResult::Sh_ci_low, {"response", axis}, "1", "Lower end of the interval of Sh", "Sh"},
+            {"Sh_ci_high",
+             &SobolResult::Sh_ci_high,
+             {"response", axis},
+             "1",
+             "Upper end of the interval of Sh",
+             "Sh"}} {}
 
   std::string axis;
   Group<SobolIndices> at_poses;
@@ -74,6 +90,7 @@ struct Layout {
   Group<SobolIndices> of_vectors;
   Fields<SobolResult> beside;
   Fields<SobolResult> pairs;
+  Fields<SobolResult> effects;
 };
 
 const CourseWords kConvergence = convergence_words(kByResponse, "ST", "1", "Largest aggregated ST of any error",
@@ -112,6 +129,7 @@ void write(ResultBuilder& result, const Study& study, const std::any& any) {
     write_fields(result, rows.aggregated.path, rows.pairs, found);
     result.show_axes(rows.aggregated.path, rows.pairs.front().axes);
   }
+  if (!found.Sh.empty()) write_fields(result, rows.aggregated.path, rows.effects, found);
   if (!found.vectors.empty()) write_group(result, rows.of_vectors, found.of_vectors);
   if (found.joined) {
     result.add("/sobol/members", {"group"}, found.group_members, {"1", "Errors of the group, with blanks between"});
@@ -137,6 +155,7 @@ void read(const h5::File& file, StoredResult& result) {
   read_fields(file, rows.at_poses.path, rows.beside, found);
   read_group(file, rows.aggregated, found.aggregated);
   read_fields(file, rows.aggregated.path, rows.pairs, found);
+  read_fields(file, rows.aggregated.path, rows.effects, found);
   if (!found.vectors.empty()) read_group(file, rows.of_vectors, found.of_vectors);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);
@@ -171,6 +190,14 @@ CsvTable indices_table(const StoredResult& result, std::string name, const Group
     }
   }
   return table;
+}
+
+/// Columns for the Shapley effects on one response.
+void append_shapley(CsvTable& table, const SobolResult& found, std::size_t r) {
+  const std::size_t first = r * found.groups();
+  append_salib_columns(table, "Sh", found.Sh, found.Sh_ci_low, found.Sh_ci_high, first);
+  table.columns.push_back(list_column("Sh_ci_low", found.Sh_ci_low, first));
+  table.columns.push_back(list_column("Sh_ci_high", found.Sh_ci_high, first));
 }
 
 /// A table for each index at the poses, with a column for each of them.
@@ -210,7 +237,9 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   const Layout& rows = layout(found.joined);
   tables.push_back(sigma_table(result));
   for (std::size_t r = 0; r < found.responses; ++r) {
-    tables.push_back(indices_table(result, "sobol_" + result.responses[r].name, rows.aggregated, found.aggregated, r));
+    CsvTable table = indices_table(result, "sobol_" + result.responses[r].name, rows.aggregated, found.aggregated, r);
+    if (!found.Sh.empty()) append_shapley(table, found, r);
+    tables.push_back(std::move(table));
   }
   for (std::size_t v = 0; v < found.vectors.size(); ++v) {
     tables.push_back(indices_table(result, "sobol_vector_" + found.vectors[v], rows.of_vectors, found.of_vectors, v));

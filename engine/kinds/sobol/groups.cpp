@@ -137,6 +137,22 @@ std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescri
   return joined_by(analysis, [&](std::size_t p) { return factor_at(analysis, model, p).name; });
 }
 
+std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const Study& study) {
+  std::vector<std::uint8_t> split(groups.size(), 0);
+  for (const CorrelatedErrors& block : study.errors.correlated) {
+    const auto is_in_block = [&](std::size_t p) {
+      return std::ranges::find(block.factors, study.analysis.factors[p]) != block.factors.end();
+    };
+    std::vector<std::size_t> holders;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (std::ranges::any_of(groups[g].members, is_in_block)) holders.push_back(g);
+    }
+    if (holders.size() < 2) continue;
+    for (const std::size_t g : holders) split[g] = 1;
+  }
+  return split;
+}
+
 std::vector<SignedVector> signed_vectors(const ModelDescription& model) {
   std::vector<SignedVector> vectors;
   for (std::size_t r = 0; r < model.responses.size(); ++r) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +27,9 @@ bool matches(std::string_view pattern, std::string_view text);
 
 /// The groups of a study: each error is in one. With named groups, errors that none of them has come last, as "others".
 std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model);
+
+/// Of each group whether an error of it is correlated with one of another group: 0 or 1, [P].
+std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const Study& study);
 
 /// A vector with a sign, whose components have one unit: its mean square does not depend on the axes.
 struct SignedVector {

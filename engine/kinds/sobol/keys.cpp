@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/base/text.h"
 #include "engine/kinds/sobol/groups.h"
@@ -11,8 +12,8 @@
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 8> kSobolKeys{"factors",      "samples", "conf_level", "groups",
-                                                     "second_order", "design",  "replicates", "background"};
+constexpr std::array<std::string_view, 9> kSobolKeys{"factors", "samples", "conf_level", "groups",    "second_order",
+                                                     "shapley", "design",  "replicates", "background"};
 
 constexpr std::array kGroupings{GroupsBy::none, GroupsBy::limb, GroupsBy::frame};
 
@@ -77,10 +78,10 @@ KeyValue<SobolOptions> design() {
       &SobolOptions::design);
 }
 
-KeyValue<SobolOptions> second_order() {
-  const auto read = [](const StudyValue& value) { return value.flag(); };
+KeyValue<SobolOptions> yes_or_no(bool SobolOptions::*member) {
+  const auto read = [](const StudyValue& value) { return value.yes_or_no(); };
   const auto text = [](bool asked) { return std::string(asked ? "true" : "false"); };
-  return value_at("true or false", "", read, text, &SobolOptions::second_order);
+  return value_at("true or false", "", read, text, member);
 }
 
 std::string replicates_line(const Study& study) {
@@ -103,8 +104,12 @@ std::vector<StudyRow> sobol_rows() {
                    .late = 1,
                    .shown = shown_groups},
           StudyRow{.name = "second_order",
-                   .value = asked_value(second_order()),
+                   .value = asked_value(yes_or_no(&SobolOptions::second_order)),
                    .meaning = "Whether the interaction of each pair is asked for; it takes a solve for each of them."},
+          StudyRow{.name = "shapley",
+                   .value = asked_value(yes_or_no(&SobolOptions::shapley)),
+                   .meaning = "Whether Shapley effects are asked for, which divide all of the variance, also among "
+                              "errors that are correlated; with G groups, at most 8, it takes 2^G solves of a sample."},
           StudyRow{.name = "design", .value = asked_value(design()), .meaning = "How samples fill the errors' space."},
           StudyRow{.name = "replicates",
                    .value = asked_value(whole_at(8, 100'000, &SobolOptions::replicates)),
@@ -169,6 +174,41 @@ void check_replicates(const Study& study, const StudySection& analysis) {
   throw InputError(analysis.place(), "analysis.samples " + problem, remedy);
 }
 
+std::string names_of(const std::vector<FactorIndex>& factors, const Study& study) {
+  std::string text;
+  for (const FactorIndex factor : factors)
+    text += (text.empty() ? "" : ", ") + study.model().factors[factor.value].name;
+  return printable(text, 120);
+}
+
+/// Indices are of errors that vary independently of all others.
+void check_correlation(const Study& study, const StudySection& analysis) {
+  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const std::vector<ErrorGroup> groups = error_groups(study.analysis, study.model());
+  if (asked.shapley && groups.size() > kMostShapleyGroups) {
+    analysis.require("shapley").fail(
+        fmt::format("is true, but there are {} groups, and each subset of them takes a solve", groups.size()),
+        fmt::format("join the errors to at most {} groups with analysis.groups", kMostShapleyGroups));
+  }
+  for (const CorrelatedErrors& block : study.errors.correlated) {
+    Study alone = study;
+    alone.errors.correlated = {block};
+    if (std::ranges::count(split_groups(groups, alone), 1) == 0) continue;
+    const std::string problem = "are correlated, but belong to different groups";
+    const std::string names = names_of(block.factors, study);
+    if (asked.shapley && !asked.second_order) continue;
+    if (asked.shapley) {
+      analysis.require("second_order")
+          .fail("is true, but the errors " + names + " " + problem,
+                "remove it, or take groups that hold them together");
+    }
+    const auto value = analysis.find("groups");
+    throw InputError(value ? value->place() : analysis.place(), "the errors " + names + " " + problem,
+                     "take groups that hold them together, e.g. groups = { NAME = [...] }, or shapley = true for "
+                     "Shapley effects");
+  }
+}
+
 void check_sobol(Study& study, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
   study.analysis.draws = Draws::per_machine;
@@ -180,16 +220,18 @@ void check_sobol(Study& study, const Reading& reading) {
   if (asked_of<SobolOptions>(study.analysis).groups_by == GroupsBy::name) {
     check_named_groups(study, analysis.section("groups"));
   }
+  if (reading.use == StudyUse::run) check_correlation(study, analysis);
   if (error_groups(study.analysis, study.model()).size() > 1 || reading.use != StudyUse::run) return;
   throw InputError(analysis.place(), "all errors are one group, so there is nothing to compare",
                    "name more factors, or other groups");
 }
 
-/// Samples A and B, one for each group, and for each pair of groups where these are asked for.
+/// Samples A and B, one for each group or subset of groups, and for each pair of groups where these are asked for.
 double solves_of_sample(const Study& study) {
   const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
-  const bool pairs = asked_of<SobolOptions>(study.analysis).second_order;
-  return 2.0 + groups + (pairs ? 0.5 * groups * (groups - 1.0) : 0.0);
+  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  return (asked.shapley ? std::exp2(groups) : 2.0 + groups) +
+         (asked.second_order ? 0.5 * groups * (groups - 1.0) : 0.0);
 }
 
 AtPose sobol_at_pose(const Study& study) {

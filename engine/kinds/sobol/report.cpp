@@ -21,6 +21,15 @@ std::string word(const SobolResult& found) { return found.joined ? "group" : "er
 
 double or_least(double value) { return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value; }
 
+/// Of the aggregated indices by Shapley effect where there is one, else by total index, the largest first. first: its
+/// position in the indices.
+std::vector<std::size_t> by_share(const SobolResult& found, std::size_t first) {
+  const std::vector<double>& shares = found.Sh.empty() ? found.aggregated.ST : found.Sh;
+  std::vector<std::size_t> order = positions(found.groups());
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t g) { return or_least(shares[first + g]); });
+  return order;
+}
+
 /// The groups by their total index, the largest first. first: its position in the indices.
 std::vector<std::size_t> by_total_index(const SobolResult& found, const SobolIndices& indices, std::size_t first) {
   std::vector<std::size_t> order = positions(found.groups());
@@ -31,7 +40,7 @@ std::vector<std::size_t> by_total_index(const SobolResult& found, const SobolInd
 
 /// As the user asked for them; the groups have no index per unit, so this is their total index where he asked for one.
 std::vector<std::size_t> ordered(const SobolResult& found, std::size_t first, RowOrder order) {
-  std::vector<std::size_t> rows = by_total_index(found, found.aggregated, first);
+  std::vector<std::size_t> rows = by_share(found, first);
   if (order == RowOrder::study) rows = positions(found.groups());
   if (order == RowOrder::name) {
     std::ranges::stable_sort(rows, {}, [&](std::size_t g) { return found.group_names[g]; });
@@ -57,12 +66,25 @@ std::vector<FilledColumn> index_columns(const SobolResult& found, const SobolInd
            [&indices, first](std::size_t g) { return number_cell(indices.ST[first + g] - indices.S1[first + g]); }}};
 }
 
+void append_shapley(std::vector<FilledColumn>& columns, const SobolResult& found, std::size_t first) {
+  const auto add = [&](std::string name, std::string heading, const std::vector<double>& values, int dispensable) {
+    columns.push_back({number_column(std::move(name), std::move(heading), "", dispensable),
+                       [&values, first](std::size_t g) { return number_cell(values[first + g]); }});
+  };
+  add("Sh", "Sh", found.Sh, 0);
+  add("Sh_low", "low", found.Sh_ci_low, 1);
+  add("Sh_high", "high", found.Sh_ci_high, 1);
+}
+
 double sum_of(const std::vector<double>& values, std::size_t first, std::size_t count) {
   const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
   return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count), 0.0);
 }
 
 std::string sums_text(const SobolResult& found, const SobolIndices& indices, std::size_t first) {
+  if (std::isnan(sum_of(indices.ST, first, found.groups()))) {
+    return fmt::format("- for a {} with errors that are correlated with others outside it", word(found));
+  }
   return fmt::format("the S1 of all add up to {}, their ST to {}: what is missing from 1, or beyond it, is interaction",
                      number_text(sum_of(indices.S1, first, found.groups()), 3),
                      number_text(sum_of(indices.ST, first, found.groups()), 3));
@@ -87,7 +109,14 @@ Table response_table(const StoredResult& result, std::size_t r, RowOrder order) 
                             percent_text(found.aggregated.conf_level), sums_text(found, found.aggregated, first))},
       .ranked = true};
   if (found.without_sign[r] != 0) table.notes.push_back(without_sign_text(result.responses[r]));
-  fill(table, ordered(found, first, order), index_columns(found, found.aggregated, first));
+  std::vector<FilledColumn> columns = index_columns(found, found.aggregated, first);
+  if (!found.Sh.empty()) {
+    append_shapley(columns, found, first);
+    table.notes.emplace_back(
+        "Sh: Shapley effect, in which what is made together is divided evenly; they add up to 1, also where errors are "
+        "correlated");
+  }
+  fill(table, ordered(found, first, order), columns);
   return table;
 }
 

@@ -35,11 +35,15 @@ struct NamedGroup {
   std::vector<std::string> patterns;  ///< '*' stands for any letters, '?' for one
 };
 
+/// Shapley effects take a solve for each subset of the groups, so there are at most so many.
+inline constexpr std::size_t kMostShapleyGroups = 8;
+
 /// What a study of Sobol' indices alone asks.
 struct SobolOptions {
   GroupsBy groups_by = GroupsBy::none;   ///< how errors are joined
   std::vector<NamedGroup> named_groups;  ///< for GroupsBy::name
   bool second_order = false;             ///< whether the index of each pair of groups is asked for
+  bool shapley = false;                  ///< whether Shapley effects are asked for
   Design design = Design::random;        ///< how samples are drawn
   std::size_t replicates = 16;           ///< independent repetitions of a design that is not random
 };
@@ -50,7 +54,8 @@ std::string_view name(Design design);  ///< As a study file has it.
 /// The kind of study that divides the variance of each response among the errors.
 extern const StudyKind kSobolStudy;
 
-/// Indices of some quantities to P groups, with their intervals: shares of a variance, NaN where there is none.
+/// Indices of some quantities to P groups, with their intervals: shares of a variance, NaN where there is none, and for
+/// a group with errors that are correlated with errors of other groups.
 struct SobolIndices {
   double conf_level = 0.95;        ///< of the intervals
   std::vector<double> S1;          ///< first-order index; of several errors their closed index
@@ -80,6 +85,9 @@ struct SobolResult {
   std::vector<double> S2;                  ///< [R x P x P] aggregated, of a pair without its members' own; or empty
   std::vector<double> S2_ci_low;           ///< [R x P x P] lower ends; NaN where no pair is
   std::vector<double> S2_ci_high;          ///< [R x P x P] upper ends
+  std::vector<double> Sh;                  ///< [R x P] aggregated Shapley effects, which add up to 1; or empty
+  std::vector<double> Sh_ci_low;           ///< [R x P] lower ends
+  std::vector<double> Sh_ci_high;          ///< [R x P] upper ends
   std::vector<SolveCounts> solves;         ///< [M]
   std::vector<Failure> failures;           ///< the first, in the order of poses and samples
   std::uint64_t failed_samples = 0;        ///< how many there are of them; other solves have no addresses

@@ -22,6 +22,12 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kKind = 6;  ///< no other state begins with this number
 
+/// The group's ST, or its Shapley effect where it has no ST.
+Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t place, double conf_level) {
+  const bool split = panel.split[place % panel.groups.size()] != 0;
+  return (split ? sums.shapley[place] : sums.aggregated[place].total).estimate(conf_level);
+}
+
 /// How sure the indices of a panel are: of each response the largest ST, and the largest half-width of any.
 std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums, double conf_level) {
   const std::size_t groups = panel.groups.size();
@@ -29,8 +35,8 @@ std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelS
   for (std::size_t r = 0; r < panel.responses; ++r) {
     double value = 0.0;
     double half_width = 0.0;
-    for (const IndexSums& index : std::span(sums.aggregated).subspan(r * groups, groups)) {
-      const Estimate total = index.total.estimate(conf_level);
+    for (std::size_t g = 0; g < groups; ++g) {
+      const Estimate total = headline_index(panel, sums, r * groups + g, conf_level);
       const double half = 0.5 * (total.interval.high - total.interval.low);
       value = std::max(value, total.value);
       half_width = std::isnan(half) ? kInfinity : std::max(half_width, half);
@@ -136,8 +142,9 @@ class PanelWork {
     tree_.add(next_ / units_per_leaf_ - 1, design_.independent() ? std::move(open_) : open_.as_one());
   }
   /// What a state begins with.
-  std::array<std::uint64_t, 5> sizes() const {
-    return {kKind, panel_.quantities(), panel_.groups.size(), panel_.poses, panel_.pairs.size()};
+  std::array<std::uint64_t, 6> sizes() const {
+    return {kKind,        panel_.quantities(), panel_.groups.size(),
+            panel_.poses, panel_.pairs.size(), panel_.shapley ? 1U : 0U};
   }
   /// Samples of a design that is not random belong together, so a longer study has others and cannot go on.
   void restore_one(ByteReader& from) {
@@ -242,6 +249,9 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   for (const double least : sums.least) found.without_sign.push_back(least >= 0.0 ? 1 : 0);
   for (std::size_t r = 0; r < panel.responses && !panel.pairs.empty(); ++r) {
     append_pairs(panel, std::span(sums.pairs).subspan(r * panel.pairs.size(), panel.pairs.size()), level, found);
+  }
+  for (const RatioSums& effect : sums.shapley) {
+    append(effect.estimate(level), found.Sh, found.Sh_ci_low, found.Sh_ci_high);
   }
   found.solves = sums.solves;
   if (asked_of<SobolOptions>(study.analysis).design != Design::random) return found;  // others have no addresses

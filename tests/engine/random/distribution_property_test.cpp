@@ -41,6 +41,8 @@ Law lower_half(const Distribution& d, long double x) {
       return {0.5L * (width + x) / width, 0.5L / width};
     case Distribution::Shape::triangular:
       return {0.5L * (width + x) * (width + x) / (width * width), (width + x) / (width * width)};
+    case Distribution::Shape::measured:
+      break;
   }
   return {};
 }

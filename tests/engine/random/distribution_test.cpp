@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace poesy {
 namespace {
@@ -54,6 +56,7 @@ TEST(Distribution, NamesOfShapesAreThoseOfStudyFiles) {
   EXPECT_EQ(name(Distribution::Shape::truncated_normal), "truncated-normal");
   EXPECT_EQ(name(Distribution::Shape::uniform), "uniform");
   EXPECT_EQ(name(Distribution::Shape::triangular), "triangular");
+  EXPECT_EQ(name(Distribution::Shape::measured), "measured");
 }
 
 TEST(Distribution, RefusesImpossibleParametersByName) {
@@ -67,6 +70,87 @@ TEST(Distribution, RefusesImpossibleParametersByName) {
     EXPECT_EQ(refusal([bad] { Distribution::triangular(bad); }), width_rule) << bad;
   }
   EXPECT_EQ(refusal([] { Distribution::truncated_normal(1e-6, 1e-9); }), "");
+}
+
+const std::vector<double> kMeasured{3.0, 1.0, 4.0, 1.5, 9.0, 2.5, 5.0, 3.5};
+
+// As numpy.quantile(values, u) gives them.
+TEST(MeasuredDistribution, IsLinearBetweenOrderStatistics) {
+  const Distribution measured = Distribution::measured(kMeasured);
+  EXPECT_EQ(measured.quantile(0x1p-53), 1.0 + 7.0 * 0x1p-53 * 0.5);
+  EXPECT_DOUBLE_EQ(measured.quantile(0.1), 1.35);
+  EXPECT_DOUBLE_EQ(measured.quantile(1.0 / 7.0), 1.5);
+  EXPECT_DOUBLE_EQ(measured.quantile(0.25), 2.25);
+  EXPECT_DOUBLE_EQ(measured.quantile(0.5), 3.25);
+  EXPECT_DOUBLE_EQ(measured.quantile(0.9), 6.2);
+  EXPECT_DOUBLE_EQ(measured.quantile(1.0 - 0x1p-53), 9.0);
+  EXPECT_LE(measured.quantile(1.0 - 0x1p-53), 9.0);
+}
+
+TEST(MeasuredDistribution, HasMeanAndDeviationOfItsQuantileFunction) {
+  const Distribution measured = Distribution::measured(kMeasured);
+  constexpr int kSteps = 700'000;  // a multiple of the 7 cells
+  double sum = 0.0;
+  double squares = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double x = measured.quantile((k + 0.5) / kSteps);
+    sum += x;
+    squares += x * x;
+  }
+  const double mean = sum / kSteps;
+  EXPECT_NEAR(measured.mean(), mean, 1e-10);
+  EXPECT_NEAR(measured.standard_deviation(), std::sqrt(squares / kSteps - mean * mean), 1e-9);
+  EXPECT_EQ(measured.half_width(), 9.0);
+  EXPECT_EQ(measured.sigma(), 0.0);
+  EXPECT_EQ(Distribution::normal(1.0).mean(), 0.0);
+}
+
+TEST(MeasuredDistribution, TransformsAsItsQuantileFunctionDoes) {
+  const Distribution measured = Distribution::measured(kMeasured);
+  std::vector<double> values;
+  for (int k = 0; k < 1001; ++k) values.push_back((k + 0.5) / 1001);
+  std::vector<double> transformed = values;
+  measured.transform(transformed);
+  for (std::size_t k = 0; k < values.size(); ++k) EXPECT_EQ(transformed[k], measured.quantile(values[k]));
+}
+
+TEST(MeasuredDistribution, KnowsItsValuesInAnyOrder) {
+  std::vector<double> sorted = kMeasured;
+  std::ranges::sort(sorted);
+  const Distribution measured = Distribution::measured(kMeasured);
+  EXPECT_TRUE(std::ranges::equal(measured.values(), sorted));
+  EXPECT_EQ(measured, Distribution::measured(sorted));
+  std::vector<double> other = kMeasured;
+  other[1] = 1.25;
+  EXPECT_NE(measured, Distribution::measured(other));
+  EXPECT_TRUE(Distribution::normal(1.0).values().empty());
+}
+
+TEST(MeasuredDistribution, RefusesWhatIsNoSample) {
+  const auto refused = [](std::vector<double> values) { return refusal([&] { Distribution::measured(values); }); };
+  EXPECT_EQ(refused({1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0}), "values must be at least 8, not 7");
+  EXPECT_EQ(refused(std::vector<double>(20, 1.0)), "values must not all be equal");
+  std::vector<double> bad = kMeasured;
+  bad[3] = kNaN;
+  EXPECT_EQ(refused(bad), "values must be finite numbers");
+}
+
+TEST(TransformScores, GivesTheValueAtTheSameShare) {
+  const std::vector<double> scores{-9.5, -3.0, -0.25, 0.0, 0.5, 2.0, 9.5};
+  for (const Distribution& distribution : {Distribution::truncated_normal(1.0, 2.0), Distribution::uniform(2.0),
+                                           Distribution::triangular(1.0), Distribution::measured(kMeasured)}) {
+    std::vector<double> values = scores;
+    distribution.transform_scores(values);
+    for (std::size_t k = 1; k + 1 < scores.size(); ++k) {
+      const double share = 0.5 * std::erfc(-scores[k] / std::sqrt(2.0));
+      EXPECT_NEAR(values[k], distribution.quantile(share), 1e-13) << name(distribution.shape());
+    }
+    EXPECT_NEAR(values.front(), distribution.quantile(0x1p-53), 1e-7);
+    EXPECT_NEAR(values.back(), distribution.quantile(1.0 - 0x1p-53), 1e-7);
+  }
+  std::vector<double> values = scores;
+  Distribution::normal(0.5).transform_scores(values);
+  for (std::size_t k = 0; k < scores.size(); ++k) EXPECT_EQ(values[k], 0.5 * scores[k]);
 }
 
 TEST(NormalQuantile, MatchesTabulatedValues) {

@@ -130,6 +130,16 @@ TEST(NotConverged, IsAWarningAboveATenthOfAPercent) {
   }
 }
 
+TEST(StudySettings, ListsGoOnOverLines) {
+  const auto settings = study_settings(
+      "[errors.override]\nx = { distribution = \"measured\", values = [\n  \"1 m\", \"2 m\",\n  \"3 m [\",\n] }\n"
+      "[analysis]\nsamples = 2\n");
+  ASSERT_EQ(settings.size(), 2u);
+  EXPECT_EQ(settings[0].value, "{ distribution = \"measured\", values = [ \"1 m\", \"2 m\", \"3 m [\", ] }");
+  EXPECT_EQ(settings[1].section, "analysis");
+  EXPECT_EQ(settings[1].value, "2");
+}
+
 TEST(StudySettings, CountRepeatedSections) {
   const auto settings = study_settings("title = \"x\"\n[[case]]\nname = \"a\"\n\n[[case]]\nname = \"b\"\n");
   ASSERT_EQ(settings.size(), 3U);

@@ -89,6 +89,14 @@ std::vector<std::string> studies() {
                       "\"platform\"\npoints = [[\"1 m\", 0, 0], [0, \"1 m\", 0], [0, 0, \"1 m\"]]");
   std::string from_file = head;
   from_file.replace(from_file.find("model = \"fake\""), 14, "file = \"mechanism.toml\"");
+  std::string measured = head;
+  const std::size_t override_at = measured.find("override = ");
+  measured.replace(
+      override_at, measured.find('\n', override_at) - override_at,
+      "override = { delta_1 = { distribution = \"measured\", file = \"parts.csv\", column = \"hole\" }, "
+      "delta_2 = { distribution = \"measured\", values = [\"1 mm\", \"2 mm\", \"3 mm\", \"4 mm\", \"5 mm\", "
+      "\"6 mm\", \"7 mm\", \"8 mm\"] } }\n"
+      "correlated = [{ factors = [\"delta_1\", \"delta_2\"], correlation = [[1, 0.5], [0.5, 1]] }]");
   const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
   return {head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
               "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" +
@@ -133,7 +141,15 @@ std::vector<std::string> studies() {
               "[analysis]\nkind = \"coupling\"\nlinear = [\"1 mm\"]\nangular = [\"1 deg\"]\nlimbs = \"independent\"\n"
               "components = \"independent\"\nsources = [{ name = \"A\", factors = \"deforming\" }, { name = \"B\", "
               "factors = "
-              "[\"delta_2\"] }]\n"};
+              "[\"delta_2\"] }]\n",
+          measured +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nshapley = true\n"
+              "second_order = false\nfactors = \"all\"\nsamples = 80\nconf_level = 0.9\ndesign = \"lhs\"\n"
+              "groups = { both = [\"delta_1\", \"delta_2\"] }\nreplicates = 8\n" +
+              background,
+          head +
+              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"lhs\"\n"
+              "samples = 80\ngroups = \"limb\"\n"};
 }
 
 using OnTable = std::function<void(toml::table& table, const std::string& path)>;
@@ -238,6 +254,8 @@ std::string changed(const Use& use, std::string_view value) {
 std::string read(const std::string& text) {
   static const test::TempFolder folder;
   static const std::string poses = folder.write("poses.csv", "z,beta,gamma\n-0.2,0,0\n");
+  static const std::string parts =
+      folder.write("parts.csv", "part,hole [mm]\na,1\nb,2\nc,3\nd,4\ne,5\nf,6\ng,7\nh,8\n");
   static const std::string mechanism = folder.write("mechanism.toml", "of no interest");
   static const std::string curve = folder.write("curve.csv", "t,z,beta,gamma\n0,-0.2,0,0\n1,-0.2,0.1,0\n");
   return resolved_text(read_study(folder.write("study.toml", text), kCatalog, StudyUse::run));
@@ -324,19 +342,21 @@ struct Outside {
 };
 
 TEST(StudyKeys, HaveTheBoundsThatTheyName) {
-  const std::array known{Outside{"at least 0", {"-1"}, "it must be at least 0"},
-                         Outside{"at least 1", {"0"}, "it must be at least 1"},
-                         Outside{"at least 2", {"1"}, "it must be at least 2"},
-                         Outside{"at least 8", {"7"}, "it must be at least 8"},
-                         Outside{"greater than 0",
-                                 {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
-                                 "it must be greater than zero"},
-                         Outside{"at least 1e-30 m or rad",
-                                 {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
-                                 "it must be at least 1e-30 m or 1e-30 rad"},
-                         Outside{"greater than 1", {"1"}, "it must be greater than 1"},
-                         Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
-                         Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
+  const std::array known{
+      Outside{"at least 0", {"-1"}, "it must be at least 0"},
+      Outside{"at least 1", {"0"}, "it must be at least 1"},
+      Outside{"at least 2", {"1"}, "it must be at least 2"},
+      Outside{"greater than 0",
+              {"0", "\"0 mm\"", "\"0 deg\"", "[\"0 mm\"]", "[\"0 deg\"]"},
+              "it must be greater than zero"},
+      Outside{"at least 1e-30 m or rad",
+              {"\"9.99e-31 m\"", "\"9.99e-31 rad\""},
+              "it must be at least 1e-30 m or 1e-30 rad"},
+      Outside{"greater than 1", {"1"}, "it must be greater than 1"},
+      Outside{"between 0 and 1", {"0", "1", "[0]", "[1]"}, "it must lie between 0 and 1"},
+      Outside{"at least 8", {"7", "[\"1 mm\"]"}, "at least 8"},
+      Outside{"symmetric, ones on its diagonal, positive definite", {"[[1, 2], [2, 1]]"}, "between -1 and 1"},
+      Outside{"from 0 to 1", {"-0.001", "1.001"}, "from 0 to 1"}};
   for (const Use& use : all_uses()) {
     if (use.key->bounds.empty()) continue;
     const auto outside = std::ranges::find(known, use.key->bounds, &Outside::bounds);

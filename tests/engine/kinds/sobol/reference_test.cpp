@@ -303,6 +303,116 @@ TEST(SobolPanel, EndsWhenEveryIntervalIsNarrowEnough) {
   EXPECT_EQ(run(fixed, model).aggregated.ST, found.aggregated.ST);
 }
 
+/// y = x1 + x2 + x3 with standard deviations 1, 1 and 2, of which the last two are correlated by 0.9.
+void sum_of_three(std::span<const double> x, double, std::span<double> y) { y[0] = x[0] + x[1] + x[2]; }
+
+Study correlated_study(const CatalogEntry& entry, std::size_t samples) {
+  Study study = function_study(entry, kSobolStudy, Distribution::normal(1.0), samples);
+  study.errors.by_factor[2] = Distribution::normal(2.0);
+  study.errors.correlated = {{{FactorIndex(1), FactorIndex(2)}, {1.0, 0.9, 0.9, 1.0}}};
+  study.analysis.conf_level = 1.0 - 1e-5;
+  return study;
+}
+
+void expect_shapley(const SobolResult& found, const std::vector<double>& expected) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < expected.size(); ++p) {
+    EXPECT_LE(found.Sh_ci_low[p], expected[p] + 5e-9) << p;
+    EXPECT_GE(found.Sh_ci_high[p], expected[p] - 5e-9) << p;
+    EXPECT_LT(found.Sh_ci_high[p] - found.Sh_ci_low[p], 0.03) << p;
+    sum += found.Sh[p];
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+class KnownShapley : public ::testing::TestWithParam<Design> {};
+
+// 13 intervals at a level of 1 - 1e-5 for each design. The linear function's effects are known in closed form (Owen and
+// Prieur 2017, SIAM/ASA J. Uncertain. Quantif. 5, 986-1002).
+TEST_P(KnownShapley, OfCorrelatedErrorsAreWithinTheirIntervals) {
+  const FunctionModel model(3, {"y"}, sum_of_three);
+  const CatalogEntry entry{model.description(), nullptr};
+  Study study = correlated_study(entry, 65536);
+  asked_of<SobolOptions>(study.analysis).design = GetParam();
+  asked_of<SobolOptions>(study.analysis).shapley = true;
+  const SobolResult found = run(study, model);
+  expect_shapley(found, {0.10416667, 0.41822917, 0.47760417});
+  EXPECT_NEAR(found.variance[0], 9.6, 0.3);
+  // The first error is independent of the others: its indices are known too. Those of the others have no meaning.
+  EXPECT_LE(found.aggregated.S1_ci_low[0], 1.0 / 9.6);
+  EXPECT_GE(found.aggregated.S1_ci_high[0], 1.0 / 9.6);
+  EXPECT_LE(found.aggregated.ST_ci_low[0], 1.0 / 9.6);
+  EXPECT_GE(found.aggregated.ST_ci_high[0], 1.0 / 9.6);
+  for (const std::size_t p : {1U, 2U}) {
+    EXPECT_TRUE(std::isnan(found.aggregated.S1[p]));
+    EXPECT_TRUE(std::isnan(found.aggregated.ST_ci_high[p]));
+    EXPECT_TRUE(std::isnan(found.at_poses.ST[p]));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Designs, KnownShapley, ::testing::Values(Design::random, Design::lhs, Design::sobol),
+                         [](const auto& of) { return std::string(name(of.param)); });
+
+// Of independent errors the effect is S1 with an even part of each interaction: of Ishigami's first and third half of
+// theirs.
+TEST(SobolPanel, ShapleyEffectsDivideInteractionsEvenly) {
+  const FunctionModel model(4, {"y"}, ishigami);
+  const CatalogEntry entry{model.description(), nullptr};
+  Study study = function_study(entry, kSobolStudy, Distribution::uniform(std::numbers::pi), 65536);
+  study.analysis.conf_level = 1.0 - 1e-5;
+  asked_of<SobolOptions>(study.analysis).shapley = true;
+  const SobolResult found = run(study, model);
+  const double half = 0.5 * 0.24368366406215;
+  expect_shapley(found, {0.31390519114781 + half, 0.44241114479004, half, 0.0});
+  EXPECT_EQ(found.Sh[3], 0.0);
+  EXPECT_EQ(found.Sh_ci_high[3], 0.0);
+  asked_of<SobolOptions>(study.analysis).shapley = false;
+  EXPECT_EQ(run(study, model).aggregated.ST, found.aggregated.ST);
+}
+
+TEST(SobolPanel, GroupsThatHoldCorrelatedErrorsHaveIndices) {
+  const FunctionModel model(3, {"y"}, sum_of_three);
+  const CatalogEntry entry{model.description(), nullptr};
+  Study study = correlated_study(entry, 20000);
+  SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  asked.groups_by = GroupsBy::name;
+  asked.named_groups = {{"two", {"x2", "x3"}}};
+  asked.shapley = true;
+  const SobolResult found = run(study, model);
+  const double two = 8.6 / 9.6;
+  expect_shapley(found, {two, 1.0 - two});
+  for (const auto* ends : {&found.aggregated.S1_ci_low, &found.aggregated.ST_ci_low}) EXPECT_LT((*ends)[0], two);
+  for (const auto* ends : {&found.aggregated.S1_ci_high, &found.aggregated.ST_ci_high}) EXPECT_GT((*ends)[0], two);
+}
+
+// Both errors have the same distribution and the same part in the product, so each has one half.
+TEST(SobolPanel, ShapleyEffectsOfTwoThatAreAlikeAreEqual) {
+  const auto product = [](std::span<const double> x, double, std::span<double> y) { y[0] = x[0] * x[1]; };
+  const FunctionModel model(2, {"y"}, product);
+  const CatalogEntry entry{model.description(), nullptr};
+  for (const Distribution& distribution : {Distribution::normal(1.0), Distribution::uniform(2.0)}) {
+    Study study = function_study(entry, kSobolStudy, distribution, 20000);
+    study.errors.correlated = {{{FactorIndex(0), FactorIndex(1)}, {1.0, 0.7, 0.7, 1.0}}};
+    study.analysis.conf_level = 1.0 - 1e-5;
+    asked_of<SobolOptions>(study.analysis).shapley = true;
+    const SobolResult found = run(study, model);
+    EXPECT_LT(found.Sh_ci_low[0], 0.5);
+    EXPECT_GT(found.Sh_ci_high[0], 0.5);
+    EXPECT_LT(found.Sh_ci_high[0] - found.Sh_ci_low[0], 0.1);
+  }
+}
+
+TEST(SobolPanel, ShapleyEffectsHaveTheSameBitsOnOneThread) {
+  const FunctionModel model(3, {"y"}, sum_of_three);
+  const CatalogEntry entry{model.description(), nullptr};
+  Study study = correlated_study(entry, 1000);
+  asked_of<SobolOptions>(study.analysis).shapley = true;
+  const SobolResult one = run(study, model, {0.2, 0.4}, 1);
+  const SobolResult two = run(study, model, {0.2, 0.4}, 2);
+  EXPECT_EQ(one.Sh, two.Sh);
+  EXPECT_EQ(one.Sh_ci_low, two.Sh_ci_low);
+}
+
 TEST(SobolPanel, SaysWhichResponsesHaveNoSign) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = x[0];
