@@ -138,11 +138,11 @@ std::vector<std::string> studies() {
           measured +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nshapley = true\n"
               "second_order = false\nfactors = \"all\"\nsamples = 80\nconf_level = 0.9\ndesign = \"lhs\"\n"
-              "groups = { both = [\"delta_1\", \"delta_2\"] }\nreplicates = 8\n" +
+              "groups = { one = [\"delta_1\"], other = \"delta_2\" }\nreplicates = 8\n" +
               background,
           head +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"lhs\"\n"
-              "samples = 80\ngroups = \"limb\"\n"};
+              "samples = 80\ngroups = \"limb\"\nshapley = false\n"};
 }
 
 using OnTable = std::function<void(toml::table& table, const std::string& path)>;
@@ -181,9 +181,9 @@ bool is_name_of_model(const StudyKey& key) {
   return std::ranges::all_of(key.name, [](unsigned char letter) { return std::isupper(letter) != 0; });
 }
 
-/// The description of a name in a table: its own, or that of names of the model's.
-const StudyKey* description(const StudyTable& table, const std::string& name) {
-  if (const StudyKey* key = table.find(name)) return key;
+/// The description of a name in a table whose chooser is this word: its own, or that of names of the model's.
+const StudyKey* description(const StudyTable& table, const std::string& name, const std::string& word) {
+  if (const StudyKey* key = table.find(name, word)) return key;
   const bool is_set = kCatalog.front().description.find_set(name) != nullptr;
   for (const StudyKey& key : table.keys) {
     if (is_name_of_model(key) && (key.name == "SET") == is_set) return &key;
@@ -210,7 +210,7 @@ std::vector<Use> uses() {
       const std::string word = word_of(table, *described);
       for (auto&& [key, value] : table) {
         const std::string name(key.str());
-        found.push_back({described, description(*described, name), s, visited, name,
+        found.push_back({described, description(*described, name, word), s, visited, name,
                          (path.empty() ? "" : path + ".") + name, word});
       }
       ++visited;
