@@ -145,11 +145,11 @@ std::vector<std::string> studies() {
           measured +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nshapley = true\n"
               "second_order = false\nfactors = \"all\"\nsamples = 80\nconf_level = 0.9\ndesign = \"lhs\"\n"
-              "groups = { both = [\"delta_1\", \"delta_2\"] }\nreplicates = 8\n" +
+              "groups = { one = [\"delta_1\"], other = \"delta_2\" }\nreplicates = 8\n" +
               background,
           head +
               "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"lhs\"\n"
-              "samples = 80\ngroups = \"limb\"\n"};
+              "samples = 80\ngroups = \"limb\"\nshapley = false\n"};
 }
 
 using OnTable = std::function<void(toml::table& table, const std::string& path)>;
@@ -188,7 +188,7 @@ bool is_name_of_model(const StudyKey& key) {
   return std::ranges::all_of(key.name, [](unsigned char letter) { return std::isupper(letter) != 0; });
 }
 
-/// The description of a name in a table: its own, or that of names of the model's.
+/// The description of a name in a table whose chooser is this word: its own, or that of names of the model's.
 const StudyKey* description(const StudyTable& table, const std::string& name, const std::string& word) {
   if (const StudyKey* key = table.find(name, word)) return key;
   const bool is_set = kCatalog.front().description.find_set(name) != nullptr;
