@@ -11,8 +11,9 @@
 /// The tolerances at least cost where every part has one process.
 namespace poesy {
 
+/// What was found, and its proof.
 struct ChosenAllocation {
-  Allocation allocation;
+  Allocation allocation;           ///< at least cost
   double lower_bound = 0.0;        ///< on the cost with these processes
   std::vector<double> multiplier;  ///< [L] from which the bound follows
   std::vector<std::size_t> rows;   ///< limits that took part in the search for prices

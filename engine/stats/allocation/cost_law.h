@@ -46,7 +46,7 @@ class CostLaw {
   double fixed() const { return fixed_; }
   bool is_constant() const { return form_ == Form::constant; }  ///< Whether no tolerance costs more than another.
 
-  bool operator==(const CostLaw&) const = default;
+  bool operator==(const CostLaw&) const = default;  ///< Same form and numbers.
 
  private:
   enum class Form { constant, power, exponential };

@@ -51,7 +51,7 @@ struct Allocation {
 
 /// The tolerances at least cost and why nothing costs less.
 struct LeastCost {
-  Allocation best;
+  Allocation best;             ///< no choice that keeps the limits is known to cost less
   double lower_bound;          ///< no tolerances within bounds and limits cost less: a proof, rounding counted
   std::vector<AtBound> bound;  ///< [N] of best
   std::vector<double>
@@ -69,14 +69,19 @@ struct WithoutEnd {
   std::vector<std::size_t> parts;  ///< by position
 };
 
+/// What comes of an allocation: tolerances, or why there are none.
 using AllocationOutcome = std::variant<LeastCost, CannotBeMet, WithoutEnd>;
 
 /// The tolerances at least cost. A part whose process costs the same at any tolerance gets the lowest one, or the
-/// largest if it has no effect. The same problem has the same bits; on other machines the last digits may differ where
-/// a law is exponential or its power is not 1 or 2.
+/// largest if it has no effect. The same problem has the same bits, where roots, exponentials and powers of the
+/// mathematics library have.
 ///
-/// A limit counts as broken by the lowest bounds where its sum as computed is above its room, or at its room to
-/// rounding while that would cost an infinite amount.
+/// Limits cannot be met where the lowest bounds need more than their room, or leave nothing at all to a part that costs
+/// an infinite amount then. Where they leave next to nothing the gap is what rounding makes of it: up to 1e-13 of the
+/// sum of multiplier x room.
+///
+/// Preconditions: room and effects are finite, effects are not negative, every part has a process, with lo <= hi, and
+/// hi > 0 where its law divides by T; most_nodes > 0.
 AllocationOutcome least_cost(const AllocationProblem& problem, const SearchOptions& options = {});
 
 }  // namespace poesy

@@ -13,8 +13,8 @@ namespace poesy {
 
 /// What a tolerance may be: 0 <= lo <= hi, SI; hi may be infinite.
 struct ToleranceRange {
-  double lo;
-  double hi;
+  double lo;  ///< >= 0
+  double hi;  ///< >= lo
 };
 
 /// Proportions [N] of equal effect: every part alone uses the same share of the limit that it uses most,

@@ -14,8 +14,8 @@ namespace poesy {
 
 /// Processes of a part that are allowed: [first, last) of its menu, at least one.
 struct MenuRange {
-  std::size_t first;
-  std::size_t last;
+  std::size_t first;  ///< by its place in the menu
+  std::size_t last;   ///< the one after the last, > first
 
   std::size_t size() const { return last - first; }  ///< How many.
 };

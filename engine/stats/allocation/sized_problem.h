@@ -13,7 +13,7 @@ namespace poesy {
 
 /// A process in sizes.
 struct SizedProcess {
-  CostLaw cost;
+  CostLaw cost;         ///< over the tolerance
   double lo;            ///< size
   double hi;            ///< size, finite: no larger than what the limits leave when all other parts are at their lowest
   std::size_t process;  ///< position among the processes of the part
@@ -32,8 +32,9 @@ double rounding_margin(std::size_t parts);
 /// sum of a_k b_k, in eight sums.
 double dot(std::span<const double> a, std::span<const double> b);
 
+/// The whole problem in sizes.
 struct SizedProblem {
-  Stacking stacking;
+  Stacking stacking;                             ///< what a size is
   std::size_t limits;                            ///< L
   std::span<const double> effects;               ///< [L x N], effects_by_room()
   std::vector<double> largest_effect;            ///< [N] of the part, on any limit
@@ -42,6 +43,7 @@ struct SizedProblem {
   std::vector<char> full;
 
   std::size_t parts() const { return menus.size(); }  ///< N
+  /// [N] effects on one limit.
   std::span<const double> row(std::size_t l) const { return effects.subspan(l * parts(), parts()); }
 };
 

@@ -12,8 +12,8 @@ namespace poesy {
 
 /// L limits on N parts: sum over the parts of effects_li size_i <= room_l, with sizes T^2, or T in the worst case.
 struct ToleranceLimits {
-  Stacking stacking = Stacking::root_sum_square;
-  std::size_t parts = 0;        ///< N
+  Stacking stacking = Stacking::root_sum_square;  ///< how effects add up
+  std::size_t parts = 0;                          ///< N
   std::vector<double> effects;  ///< [L x N] >= 0: what one unit of size adds, such as a^2, or |a| in the worst case
   std::vector<double> room;     ///< [L] what there is for all parts, such as L^2 - b^2 with a background b
 

@@ -12,6 +12,7 @@ Usage: reference_costs.py write FILE       all 1000, as lines NUMBER,COST
 
 import math
 import sys
+import warnings
 
 try:
     import numpy as np
@@ -166,6 +167,7 @@ def check(lines):
 
 def main():
     np.seterr(all="ignore")
+    warnings.simplefilter("ignore")
     task, path = sys.argv[1:]
     if task == "check":
         with open(path, encoding="utf-8") as file:
