@@ -17,7 +17,12 @@ from pathlib import Path
 REGISTRY = "engine/kinds/registry.cpp"
 # What a model does, and the command that solves rows of errors.
 # Sobol' points are a sequence of engine/random.
-WORDS_OF_OTHERS = {"evaluate": ("engine/app/evaluate.cpp",), "sobol": ("engine/random/low_discrepancy.cpp",)}
+# Tolerances at least cost are a part of engine/stats.
+WORDS_OF_OTHERS = {
+    "evaluate": ("engine/app/evaluate.cpp",),
+    "sobol": ("engine/random/low_discrepancy.cpp",),
+    "allocation": (),
+}
 TEXT = re.compile(r'"(?:\\.|[^"\\])*"')
 COMMENT = re.compile(r'"(?:\\.|[^"\\])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 

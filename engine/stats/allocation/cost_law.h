@@ -1,0 +1,63 @@
+#pragma once
+
+/// What a part costs that is made to a tolerance. The laws are those of the literature on tolerance allocation
+/// (Chase, Greenwood, Loosli and Hauglund 1990, Manuf. Rev. 3, 49-59).
+namespace poesy {
+
+/// How the effects of tolerances add up under a limit.
+enum class Stacking {
+  root_sum_square,  ///< sum of a^2 T^2 <= L^2: the limit is linear in T^2
+  worst_case        ///< sum of |a| T <= L: the limit is linear in T
+};
+
+/// The size of a tolerance T >= 0, in which limits are linear: T^2, or T in the worst case.
+double size_of(double tolerance, Stacking stacking);
+/// The tolerance of a size >= 0.
+double tolerance_of(double size, Stacking stacking);
+
+/// A cost and its derivatives by the size.
+struct CostCurve {
+  double value;      ///< in the unit of the costs
+  double slope;      ///< <= 0
+  double curvature;  ///< >= 0
+};
+
+/// The cost of a part as a function of its tolerance. Each law is convex and never rises, in T and in T^2, so that the
+/// least cost under limits is a convex programme. A law with b = 0 is constant.
+class CostLaw {
+ public:
+  /// The same cost for every tolerance.
+  static CostLaw constant(double cost);
+  /// fixed + b / T. Precondition: b >= 0.
+  static CostLaw reciprocal(double fixed, double b);
+  /// fixed + b / T^power. Preconditions: b >= 0, power > 0.
+  static CostLaw reciprocal_power(double fixed, double b, double power);
+  /// fixed + b exp(-T / decay). Preconditions: b >= 0, decay > 0, in the unit of T.
+  static CostLaw exponential(double fixed, double b, double decay);
+
+  /// The cost of a tolerance T >= 0; infinite for T = 0 where T divides.
+  double at(double tolerance) const;
+  /// The cost of a size > 0 and its derivatives by the size.
+  CostCurve curve(double size, Stacking stacking) const;
+  /// The size at which cost + price x size is least, among all sizes > 0; infinite for price 0. Preconditions: price
+  /// >= 0, the law is not constant.
+  double cheapest_size(double price, Stacking stacking) const;
+  /// What is left of the cost at any large tolerance.
+  double fixed() const { return fixed_; }
+  bool is_constant() const { return form_ == Form::constant; }  ///< Whether no tolerance costs more than another.
+
+  bool operator==(const CostLaw&) const = default;  ///< Same form and numbers.
+
+ private:
+  enum class Form { constant, power, exponential };
+  CostLaw(Form form, double fixed, double b, double shape);
+  /// Exponent of the size in 1 / size^exponent.
+  double exponent(Stacking stacking) const;
+
+  Form form_;
+  double fixed_;
+  double b_;
+  double shape_;  ///< exponent of T, or the decay
+};
+
+}  // namespace poesy

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+/// Grades of ISO 286-1: the width of the tolerance zone of a linear size.
+namespace poesy {
+
+/// The twenty grades, from the finest one.
+enum class ItGrade {
+  it01,
+  it0,
+  it1,
+  it2,
+  it3,
+  it4,
+  it5,
+  it6,
+  it7,
+  it8,
+  it9,
+  it10,
+  it11,
+  it12,
+  it13,
+  it14,
+  it15,
+  it16,
+  it17,
+  it18
+};
+
+/// "IT7" -> ItGrade::it7; none for another text.
+std::optional<ItGrade> it_grade(std::string_view name);
+/// ItGrade::it01 -> "IT01".
+std::string it_grade_name(ItGrade grade);
+
+/// The width of the zone in metres, for a nominal size in metres: of +-T it is 2 T. From the standard's own table (ISO
+/// 286-1:2010, Table 1; IT01 and IT0: ISO 286-1:1988, Table 5). The formulas of the 1988 edition, 7 i, 10 i, 16 i, ...
+/// with i = 0.45 D^(1/3) + 0.001 D in micrometres, give other values for small and large sizes, and then the table
+/// counts. None where the standard has no value: sizes of 0 or above 3150 mm, IT01 and IT0 above 500 mm, IT14 and
+/// coarser up to 1 mm.
+std::optional<double> it_grade_width(double nominal_size, ItGrade grade);
+
+}  // namespace poesy
