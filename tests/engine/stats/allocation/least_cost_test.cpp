@@ -75,7 +75,7 @@ TEST(OverrunningClutch, HasOtherProcessesInTheWorstCase) {
   EXPECT_LE(found.gap(), 1e-9 * found.best.cost);
 }
 
-TEST(LeastCostOfTolerances, OfReciprocalCostsIsTheClosedForm) {
+TEST(LeastCost, OfReciprocalCostsIsTheClosedForm) {
   // min sum b / T with sum g^2 T^2 = L^2: T is proportional to (b / g^2)^(1/3).
   const std::vector<double> b{0.3, 2.0, 0.04, 7.0, 1.1};
   const std::vector<double> g{0.1, 0.7, 3.0, 0.02, 1.0};
@@ -95,7 +95,7 @@ TEST(LeastCostOfTolerances, OfReciprocalCostsIsTheClosedForm) {
   EXPECT_LE(found.gap(), 1e-11 * found.best.cost);
 }
 
-TEST(LeastCostOfTolerances, HasMultipliersThatSayWhatMoreRoomSaves) {
+TEST(LeastCost, HasMultipliersThatSayWhatMoreRoomSaves) {
   AllocationProblem problem{{Stacking::root_sum_square, 3, {4, 1, 2, 1, 9, 1, 1, 1, 1}, {1.0, 1.3, 100.0}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0, kInfinity}},
                    {{CostLaw::exponential(0, 5, 0.2), 0.1, 2.0}},
@@ -113,7 +113,7 @@ TEST(LeastCostOfTolerances, HasMultipliersThatSayWhatMoreRoomSaves) {
   EXPECT_EQ(found.multiplier[2], 0.0);
 }
 
-TEST(LeastCostOfTolerances, LoosensEverythingWhereNoLimitIsReached) {
+TEST(LeastCost, LoosensEverythingWhereNoLimitIsReached) {
   AllocationProblem problem{{Stacking::worst_case, 2, {1, 1}, {10.0}}, {}};
   problem.parts = {{{CostLaw::reciprocal(1, 1), 0.1, 2.0}}, {{CostLaw::exponential(1, 1, 1), 0.1, 3.0}}};
   const LeastCost found = solved(problem);
@@ -123,7 +123,7 @@ TEST(LeastCostOfTolerances, LoosensEverythingWhereNoLimitIsReached) {
   EXPECT_DOUBLE_EQ(found.use.share, 0.5);
 }
 
-TEST(LeastCostOfTolerances, OfOneLimitThatStandsTwiceIsThatOfOne) {
+TEST(LeastCost, OfOneLimitThatStandsTwiceIsThatOfOne) {
   const std::vector<CostLaw> laws{CostLaw::reciprocal(0, 1), CostLaw::reciprocal(0, 2),
                                   CostLaw::exponential(0, 5, 0.3)};
   const LeastCost once = solved(unbounded({Stacking::root_sum_square, 3, {1, 2, 3}, {0.5}}, laws));
@@ -134,7 +134,7 @@ TEST(LeastCostOfTolerances, OfOneLimitThatStandsTwiceIsThatOfOne) {
   EXPECT_NEAR(twice.multiplier[0] + twice.multiplier[1], once.multiplier[0], 1e-9 * once.multiplier[0]);
 }
 
-TEST(LeastCostOfTolerances, TakesManyLimitsOfWhichFewMatter) {
+TEST(LeastCost, TakesManyLimitsOfWhichFewMatter) {
   const std::size_t limits = 3000;
   ToleranceLimits many{Stacking::root_sum_square, 3, {}, {}};
   for (std::size_t l = 0; l < limits; ++l) {
@@ -149,7 +149,7 @@ TEST(LeastCostOfTolerances, TakesManyLimitsOfWhichFewMatter) {
   EXPECT_LE(std::ranges::count_if(found.multiplier, [](double multiplier) { return multiplier > 0.0; }), 20);
 }
 
-TEST(LeastCostOfTolerances, GivesAPartWithoutEffectItsUpperBound) {
+TEST(LeastCost, GivesAPartWithoutEffectItsUpperBound) {
   AllocationProblem problem{{Stacking::root_sum_square, 2, {1, 0}, {1.0}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0, kInfinity}}, {{CostLaw::reciprocal(0, 1), 0.1, 0.7}}};
   const LeastCost found = solved(problem);
@@ -158,7 +158,7 @@ TEST(LeastCostOfTolerances, GivesAPartWithoutEffectItsUpperBound) {
   EXPECT_EQ(found.bound[1], AtBound::upper);
 }
 
-TEST(LeastCostOfTolerances, RefusesPartsThatCouldBeLoosenedForEver) {
+TEST(LeastCost, RefusesPartsThatCouldBeLoosenedForEver) {
   AllocationProblem problem{{Stacking::root_sum_square, 3, {1, 0, 0}, {1.0}}, {}};
   const Process endless{CostLaw::reciprocal(0, 1), 0, kInfinity};
   problem.parts = {{endless}, {endless}, {{CostLaw::constant(1), 0.1, 0.7}, endless}};
@@ -167,7 +167,7 @@ TEST(LeastCostOfTolerances, RefusesPartsThatCouldBeLoosenedForEver) {
   EXPECT_EQ(std::get<WithoutEnd>(least_cost(problem)).parts, (std::vector<std::size_t>{0, 1, 2}));
 }
 
-TEST(LeastCostOfTolerances, WithoutLimitsIsThatOfTheUpperBounds) {
+TEST(LeastCost, WithoutLimitsIsThatOfTheUpperBounds) {
   AllocationProblem problem{{Stacking::root_sum_square, 1, {}, {}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0, 4.0}}};
   const LeastCost found = solved(problem);
@@ -175,7 +175,7 @@ TEST(LeastCostOfTolerances, WithoutLimitsIsThatOfTheUpperBounds) {
   EXPECT_NEAR(found.lower_bound, 0.25, 1e-12);
 }
 
-TEST(LeastCostOfTolerances, TakesTheTightestWhereTightnessCostsNothing) {
+TEST(LeastCost, TakesTheTightestWhereTightnessCostsNothing) {
   AllocationProblem problem{{Stacking::worst_case, 2, {1, 1}, {1.0}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0, kInfinity}}, {{CostLaw::constant(3), 0.25, 0.5}}};
   const LeastCost found = solved(problem);
@@ -184,7 +184,7 @@ TEST(LeastCostOfTolerances, TakesTheTightestWhereTightnessCostsNothing) {
   EXPECT_EQ(found.bound[1], AtBound::lower);
 }
 
-TEST(LeastCostOfTolerances, KeepsFixedParts) {
+TEST(LeastCost, KeepsFixedParts) {
   AllocationProblem problem{{Stacking::worst_case, 2, {1, 1}, {1.0}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0, kInfinity}}, {fixed_process(0.4)}};
   const LeastCost found = solved(problem);
@@ -193,7 +193,7 @@ TEST(LeastCostOfTolerances, KeepsFixedParts) {
   EXPECT_EQ(found.bound[1], AtBound::single);
 }
 
-TEST(LeastCostOfTolerances, SaysWhichLimitCannotBeMet) {
+TEST(LeastCost, SaysWhichLimitCannotBeMet) {
   AllocationProblem problem{{Stacking::root_sum_square, 2, {4, 1, 9, 1, 1, 1}, {1.0, 1.0, 2.0}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0.5, 2.0}, {CostLaw::reciprocal(0, 1), 0.4, 2.0}},
                    {{CostLaw::reciprocal(0, 1), 0.1, 2.0}}};
@@ -203,7 +203,7 @@ TEST(LeastCostOfTolerances, SaysWhichLimitCannotBeMet) {
   EXPECT_EQ(broken.room, 1.0);
 }
 
-TEST(LeastCostOfTolerances, CannotMeetALimitWithoutRoom) {
+TEST(LeastCost, CannotMeetALimitWithoutRoom) {
   AllocationProblem problem{{Stacking::root_sum_square, 1, {4, 1}, {1.0, -0.5}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0.0, 2.0}}};
   const auto broken = std::get<CannotBeMet>(least_cost(problem));
@@ -211,7 +211,7 @@ TEST(LeastCostOfTolerances, CannotMeetALimitWithoutRoom) {
   EXPECT_EQ(broken.room, -0.5);
 }
 
-TEST(LeastCostOfTolerances, IsAtTheLowerBoundsWhereTheseFillALimit) {
+TEST(LeastCost, IsAtTheLowerBoundsWhereTheseFillALimit) {
   AllocationProblem problem{{Stacking::worst_case, 3, {1, 1, 1, 0, 1, 1}, {0.75, 100.0}}, {}};
   problem.parts = {
       {{CostLaw::reciprocal(0, 1), 0.25, 2.0}}, {fixed_process(0.25)}, {{CostLaw::reciprocal(0, 1), 0.25, 2.0}}};
@@ -222,7 +222,7 @@ TEST(LeastCostOfTolerances, IsAtTheLowerBoundsWhereTheseFillALimit) {
   EXPECT_DOUBLE_EQ(found.multiplier[0], 16.0);  // 1 / T^2: more room would go to either of the two
 }
 
-TEST(LeastCostOfTolerances, CannotLeaveNothingToAPartThatCostsInfinitelyMuchThen) {
+TEST(LeastCost, CannotLeaveNothingToAPartThatCostsInfinitelyMuchThen) {
   AllocationProblem problem{{Stacking::worst_case, 2, {1, 1}, {0.5}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0.0, 2.0}}, {fixed_process(0.5)}};
   const auto broken = std::get<CannotBeMet>(least_cost(problem));
@@ -230,7 +230,7 @@ TEST(LeastCostOfTolerances, CannotLeaveNothingToAPartThatCostsInfinitelyMuchThen
   EXPECT_EQ(broken.need, broken.room);
 }
 
-TEST(LeastCostOfTolerances, WorksAtAnyScale) {
+TEST(LeastCost, WorksAtAnyScale) {
   for (const double money : {1e-9, 1.0, 1e12}) {
     for (const double metre : {1e-9, 1.0, 1e6}) {
       AllocationProblem problem{{Stacking::root_sum_square, 2, {1, 3, 2, 1}, {metre * metre, 1.5 * metre * metre}}, {}};
@@ -243,7 +243,7 @@ TEST(LeastCostOfTolerances, WorksAtAnyScale) {
   }
 }
 
-TEST(LeastCostOfTolerances, HasTheSameBitsTwice) {
+TEST(LeastCost, HasTheSameBitsTwice) {
   const LeastCost one = solved(clutch_problem(Stacking::root_sum_square));
   const LeastCost two = solved(clutch_problem(Stacking::root_sum_square));
   EXPECT_EQ(one.best.tolerance, two.best.tolerance);
