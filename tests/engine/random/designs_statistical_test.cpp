@@ -114,7 +114,7 @@ TEST(LatinHypercube, PermutationsAreAllAsLikely) {
   }
 }
 
-TEST(LatinHypercube, NeighboursAreIndependentBeyondTheirStrata) {
+TEST(LatinHypercube, NeighboursAreIndependent) {
   // Strata of samples k and k + 1 of a large design.
   const LatinHypercube design(100000, 16);
   std::vector<double> uniforms(100000);
@@ -191,7 +191,7 @@ void expect_better(const Fill& fill, Terms terms, double times) {
   EXPECT_LT(design.variance() * times, random.variance());
 }
 
-TEST(ScrambledSobol, MeansOfSmoothFunctionsAreUnbiasedAndMuchSurer) {
+TEST(ScrambledSobol, MeansOfSmoothFunctionsAreSurer) {
   const ScrambledSobol points(6, 19);
   const Fill fill = [&](std::size_t dimension, std::size_t replicate, std::span<double> uniforms) {
     points.fill({.dimension = dimension, .replicate = replicate}, SampleIndex(0), uniforms);

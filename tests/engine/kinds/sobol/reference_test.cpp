@@ -187,7 +187,7 @@ TEST_P(Of, AreWithinTheirIntervals) {
 
 INSTANTIATE_TEST_SUITE_P(Indices, Of, ::testing::ValuesIn(cases()), case_name);
 
-TEST(SobolPanel, AnAbsorbedErrorHasIndicesThatAreZeroInEveryBit) {
+TEST(SobolPanel, AbsorbedErrorsAreZeroInEveryBit) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) { y[0] = std::exp(x[0] + x[2]); };
   const FunctionModel model(3, {"y"}, function);
   const CatalogEntry entry{model.description(), nullptr};
@@ -206,7 +206,7 @@ void linear_vector(std::span<const double> x, double place, std::span<double> y)
   y[2] = place * x[1];
 }
 
-TEST(SobolPanel, GeneralisedIndicesOfALinearVectorAreItsMeanSquareShares) {
+TEST(SobolPanel, LinearVectorsHaveMeanSquareShares) {
   const FunctionModel model(3, {"tip_x", "tip_y", "tip_z"}, linear_vector);
   const CatalogEntry entry{model.description(), nullptr};
   Study study = function_study(entry, kSobolStudy, Distribution::normal(0.1), 20000);
@@ -329,7 +329,7 @@ class KnownShapley : public ::testing::TestWithParam<Design> {};
 
 // 13 intervals at a level of 1 - 1e-5 for each design. The linear function's effects are known in closed form (Owen and
 // Prieur 2017, SIAM/ASA J. Uncertain. Quantif. 5, 986-1002).
-TEST_P(KnownShapley, OfCorrelatedErrorsAreWithinTheirIntervals) {
+TEST_P(KnownShapley, IsWithinItsInterval) {
   const FunctionModel model(3, {"y"}, sum_of_three);
   const CatalogEntry entry{model.description(), nullptr};
   Study study = correlated_study(entry, 65536);

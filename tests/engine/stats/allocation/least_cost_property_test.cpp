@@ -75,7 +75,7 @@ TEST(RandomProgrammes, AreSolvedWithAProofOfTheirOwn) {
   }
 }
 
-TEST(RandomProgrammes, KeepTheirBoundsAndLimitsInWhateverOrderTheSumsAreMade) {
+TEST(RandomProgrammes, KeepTheirBoundsAndLimits) {
   for (std::uint64_t number = 0; number < kProgrammes; ++number) {
     const AllocationProblem problem = random_programme(number).problem;
     const LeastCost found = std::get<LeastCost>(least_cost(problem));
@@ -121,7 +121,7 @@ TEST(RandomProgrammes, CostNoMoreThanAnotherSolverFinds) {
   EXPECT_GE(found_too, kProgrammes * 95 / 100);  // the reference is worth comparing with
 }
 
-TEST(RandomProgrammes, CostLessWithMoreRoomAndNoLessWithMoreLimits) {
+TEST(RandomProgrammes, CostLessWithMoreRoom) {
   for (std::uint64_t number = 0; number < 200; ++number) {
     const AllocationProblem problem = random_programme(number).problem;
     const double cost = std::get<LeastCost>(least_cost(problem)).best.cost;
@@ -136,7 +136,7 @@ TEST(RandomProgrammes, CostLessWithMoreRoomAndNoLessWithMoreLimits) {
 }
 
 /// A problem whose lower bounds leave little of its limits, from a tenth down to a billionth.
-TEST(RandomProgrammes, ThatHardlyHaveRoomAreSolvedUpToRounding) {
+TEST(RandomProgrammes, ThatHardlyHaveRoomAreSolved) {
   for (std::uint64_t number = 0; number < 500; ++number) {
     AllocationProblem problem = random_programme(number).problem;
     testing::SplitMix draw(number);

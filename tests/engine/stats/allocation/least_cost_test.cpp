@@ -222,7 +222,7 @@ TEST(LeastCost, IsAtTheLowerBoundsWhereTheseFillALimit) {
   EXPECT_DOUBLE_EQ(found.multiplier[0], 16.0);  // 1 / T^2: more room would go to either of the two
 }
 
-TEST(LeastCost, CannotLeaveNothingToAPartThatCostsInfinitelyMuchThen) {
+TEST(LeastCost, LeavesSomethingToEachPart) {
   AllocationProblem problem{{Stacking::worst_case, 2, {1, 1}, {0.5}}, {}};
   problem.parts = {{{CostLaw::reciprocal(0, 1), 0.0, 2.0}}, {fixed_process(0.5)}};
   const auto broken = std::get<CannotBeMet>(least_cost(problem));
