@@ -142,6 +142,7 @@ class Sobol(ResumptionTest):
         self.succeeds("report", "out.h5", "-o", "report.html")
         page = (self.folder / "report.html").read_text(encoding="utf-8")
         self.assertIn("has no sign", page)
+        self.assertIn("have no sign, so they are not additive", page)
         self.assertIn("Which errors interact", page)
 
     def test_named_groups(self):

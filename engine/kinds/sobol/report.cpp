@@ -90,11 +90,12 @@ std::string sums_text(const SobolResult& found, const SobolIndices& indices, std
                      number_text(sum_of(indices.ST, first, found.groups()), 3));
 }
 
-std::string without_sign_text(const NamedUnit& response) {
+std::string without_sign_text(const std::string& responses, bool several) {
   return fmt::format(
-      "{} has no sign, so it is not additive even where the mechanism is linear: a small S1 does not mean a small "
-      "share. Judge an error by its ST, or by the index of a vector with a sign",
-      response.name);
+      "{} no sign, so {} not additive even where the mechanism is linear: a small S1 does not mean a small share. "
+      "Judge "
+      "an error by its ST, or by the index of a vector with a sign",
+      responses + (several ? " have" : " has"), several ? "they are" : "it is");
 }
 
 Table response_table(const StoredResult& result, std::size_t r, RowOrder order) {
@@ -108,7 +109,7 @@ Table response_table(const StoredResult& result, std::size_t r, RowOrder order) 
       .notes = {fmt::format("S1: the share that it makes alone; ST: with all its interactions; {} intervals; {}",
                             percent_text(found.aggregated.conf_level), sums_text(found, found.aggregated, first))},
       .ranked = true};
-  if (found.without_sign[r] != 0) table.notes.push_back(without_sign_text(result.responses[r]));
+  if (found.without_sign[r] != 0) table.notes.push_back(without_sign_text(result.responses[r].name, false));
   std::vector<FilledColumn> columns = index_columns(found, found.aggregated, first);
   if (!found.Sh.empty()) {
     append_shapley(columns, found, first);
@@ -282,9 +283,11 @@ Settling settling(const StoredResult& result) { return {"largest total indices",
 
 void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
+  std::vector<std::string> names;
   for (const std::size_t r : result.headline) {
-    if (sobol_of(result).without_sign[r] != 0) list.push_back(without_sign_text(result.responses[r]) + ".");
+    if (sobol_of(result).without_sign[r] != 0) names.push_back(result.responses[r].name);
   }
+  if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
