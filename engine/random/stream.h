@@ -14,7 +14,8 @@ enum class Purpose : std::uint64_t {
   sampling_design = 2,
   scrambled_sobol = 3,
   latin_hypercube = 4,
-  second_error_samples = 5  ///< independent of error_samples, of the same errors
+  second_error_samples = 5,  ///< independent of error_samples, of the same errors
+  certificate_seed = 6       ///< of a study that tries fresh machines
 };
 
 /// The address of a run of draws: one factor at one pose. The sample index completes it.

@@ -90,6 +90,9 @@ struct StudyKind {
   /// Throws InputError for an error of its own keys that makes no sense on this model (Model::error_bound).
   void (*check_errors)(const StudySection& analysis, const Study& study, const Model& model) = nullptr;
   AtPose (*at_pose)(const Study& study);  ///< what a study of it asks for
+  /// Makes a study, already of this kind, one of machines of which this share must keep all limits; null: it judges no
+  /// machines.
+  void (*ask_yield)(Study& study, double yield) = nullptr;
 
   /// Whether a key of [analysis] holds for it; `kind` itself is none of its keys.
   bool has_key(std::string_view key) const;

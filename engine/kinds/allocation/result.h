@@ -75,7 +75,7 @@ struct AllocatedPart {
 enum class Aim {
   least_cost,       ///< the least sum of the parts' costs
   equal_effect,     ///< each part uses the same share of the limit that it uses most
-  equal_tolerance,  ///< the same T for all lengths; an angle has that T at a radius of 1 m
+  equal_tolerance,  ///< one T for all lengths and one for all angles, in the ratio of their usual sizes in [errors]
   common_factor     ///< the standard deviations of [errors], all times the largest factor that limits allow
 };
 
@@ -132,7 +132,8 @@ struct AllocationResult {
 
   Aim aim = Aim::least_cost;  ///< that was asked for
   double total_cost = 0.0;    ///< of all parts; NaN for an aim without costs
-  double lower_bound = 0.0;   ///< no tolerances cost less under the final limits on root mean squares; NaN likewise
+  double lower_bound = 0.0;   ///< no tolerances cost less under the last limits on root mean squares; NaN likewise
+  double gap = 0.0;           ///< by how much the tolerances of these limits may cost too much; NaN likewise
   double wanted_yield = 0.0;  ///< that was asked for
   double confidence = 0.95;   ///< that was asked for
 

@@ -152,6 +152,13 @@ AtPose monte_carlo_at_pose(const Study& study) {
           static_cast<double>(study.analysis.samples), "samples"};
 }
 
+void ask_yield(Study& study, double yield) {
+  study.analysis.draws = Draws::per_machine;
+  MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  asked.judge = Judge::yield;
+  asked.yield = yield;
+}
+
 }  // namespace
 
 const StudyKind kMonteCarloStudy{.name = "monte-carlo",
@@ -160,6 +167,7 @@ const StudyKind kMonteCarloStudy{.name = "monte-carlo",
                                  .varies = Varies::together,
                                  .rows = monte_carlo_rows,
                                  .complete = complete,
-                                 .at_pose = monte_carlo_at_pose};
+                                 .at_pose = monte_carlo_at_pose,
+                                 .ask_yield = ask_yield};
 
 }  // namespace poesy

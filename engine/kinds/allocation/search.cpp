@@ -1,0 +1,438 @@
+#include "engine/kinds/allocation/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "engine/base/error.h"
+#include "engine/base/nan.h"
+#include "engine/base/units.h"
+#include "engine/random/stream.h"
+#include "engine/stats/proportion.h"
+
+namespace poesy {
+namespace {
+
+/// Errors are so much smaller than usual where effects are taken as linear.
+constexpr double kLinear = 0.01;
+/// Tolerances grow at most so much between two measurements of what errors do.
+constexpr double kGrowth = 4.0;
+constexpr std::size_t kMostRounds = 6;
+/// The cost settles when it moves by less than this share.
+constexpr double kSettled = 1e-3;
+/// Loads of the machines that decide are as near to 1 as this.
+constexpr double kFine = 2e-3;
+constexpr std::size_t kMostTrials = 12;
+/// Machines below this share of the load that decides do not come to decide while tolerances change a little.
+constexpr double kNear = 0.6;
+/// The same while one tolerance gets coarser by kCoarser.
+constexpr double kVeryNear = 0.9;
+constexpr double kCoarser = 1.05;
+constexpr std::size_t kMostPasses = 12;
+/// From here on effects are measured again, and all machines tried.
+constexpr double kFar = 0.1;
+/// So many machines of largest load, at the most, tell the direction of the gradient.
+constexpr std::size_t kMostOfGradient = 3000;
+/// A part counts at least so much in it, by its score: less is noise.
+constexpr double kLeastWeight = 0.02;
+constexpr std::size_t kMostFits = 6;
+constexpr std::size_t kMostGradients = 3;
+/// How far one step by the gradient may go, and what it must save.
+constexpr double kGradientGrowth = 1.3;
+constexpr double kWorthIt = 1e-4;
+
+/// The standard normal's two-sided quantile: |z| is below it in a share `yield` of all draws.
+double normal_bound(double yield) { return normal_quantile(1.0, 0.5 + 0.5 * yield); }
+
+/// What a response's limit would have to be for so many rejects: the largest load but `most`.
+double deciding_load(std::vector<double> load, std::uint64_t most) {
+  const auto at = load.begin() + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(most, load.size() - 1));
+  std::ranges::nth_element(load, at, std::ranges::greater());
+  return *at;
+}
+
+double largest_ratio(std::span<const double> a, std::span<const double> b) {
+  double largest = 1.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] != b[i]) largest = std::max({largest, a[i] / b[i], b[i] / a[i]});
+  }
+  return largest;
+}
+
+}  // namespace
+
+AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines) {
+  const auto holds = [&](std::uint64_t rejects) {
+    return proportion_at_least(machines - rejects, machines, confidence) >= yield;
+  };
+  std::uint64_t low = 0;  // holds
+  std::uint64_t high = machines;
+  while (high - low > 1) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    (holds(middle) ? low : high) = middle;
+  }
+  // The largest d with d + z sqrt(2 d) <= low, for the scatter of both numbers.
+  const double half = 0.5 * normal_quantile(1.0, 0.99) * std::sqrt(2.0);
+  const double root = std::sqrt(half * half + static_cast<double>(low)) - half;
+  return {low, static_cast<std::uint64_t>(root * root)};
+}
+
+ToleranceSearch::ToleranceSearch(const StudyRun& run)
+    : run_(run),
+      asked_(asked_of<AllocationOptions>(run.study.analysis)),
+      programme_(run.study, run.model),
+      allowed_(allowed_rejects(asked_.yield, asked_.confidence, run.study.analysis.samples)),
+      share_(1.0 / normal_bound(asked_.yield)),
+      coarser_yield_(programme_.size(), kNaN) {}
+
+bool ToleranceSearch::measure(std::span<const double> tolerance, std::size_t draws) {
+  const Study study = programme_.at(tolerance);
+  auto squares = mean_squares(Plan(study, run_.poses), run_.model, study.analysis.limits, draws, run_.options);
+  if (!squares) return false;
+  squares_ = *std::move(squares);
+  measured_.assign(tolerance.begin(), tolerance.end());
+  return true;
+}
+
+/// Whether the limits of this share can be kept on root mean squares; then chosen_ and found_ keep them.
+bool ToleranceSearch::choose(const Reach& reach) {
+  ToleranceLimits limits = programme_.limits(squares_, measured_, share_);
+  const ChoiceOfTolerances choice = programme_.choose(limits, reach);
+  if (const auto* endless = std::get_if<WithoutEnd>(&choice)) refuse_endless(*endless);
+  if (std::holds_alternative<CannotBeMet>(choice)) return false;
+  limits_ = std::move(limits);
+  chosen_ = std::get<ChosenTolerances>(choice);
+  found_ = chosen_;
+  return true;
+}
+
+void ToleranceSearch::add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects) {
+  stages_.push_back({std::move(name), found_.cost, chosen_.lower_bound, share_, machines, rejects});
+}
+
+/// Tolerances as if every effect were linear. Where root mean squares cannot be as small as a normal response needs
+/// for the yield, they are as small as can be.
+bool ToleranceSearch::linearise() {
+  const std::vector<double> usual = programme_.usual();
+  std::vector<double> small = usual;
+  for (double& tolerance : small) tolerance *= kLinear;
+  if (!measure(small, 0)) return false;
+  if (!choose({})) {
+    const ChoiceOfTolerances whole = programme_.choose(programme_.limits(squares_, measured_, 1.0), {});
+    if (const auto* broken = std::get_if<CannotBeMet>(&whole)) refuse(*broken);
+    for (double low = share_, high = 1.0; high > 1.001 * low || !choose({});) {
+      share_ = high > 1.001 * low ? std::sqrt(low * high) : high;
+      (choose({}) ? high : low) = share_;
+    }
+  }
+  add_stage("linear", 0, 0);
+  // An error that does nothing alone may act among others, and is as large as usual until this is known.
+  for (std::size_t i = 0; i < programme_.size(); ++i) {
+    bool acts = false;
+    for (std::size_t l = 0; l < limits_.count(); ++l) acts = acts || limits_.row(l)[i] > 0.0;
+    if (!acts) found_.tolerance[i] = std::min(found_.tolerance[i], usual[i]);
+  }
+  return true;
+}
+
+/// Measures effects at the tolerances and chooses tolerances by them, until these stay.
+bool ToleranceSearch::settle_effects() {
+  for (std::size_t round = 0; round < kMostRounds; ++round) {
+    const TolerancePoint before = found_;
+    if (!measure(before.tolerance, kDrawsAmongOthers)) return false;
+    if (!choose({before.tolerance, kGrowth})) {
+      found_ = programme_.lowest();  // machines will tell whether these keep the limits
+      return true;
+    }
+    const bool cost_stays = !(std::abs(found_.cost - before.cost) > kSettled * std::abs(found_.cost));
+    if (cost_stays && largest_ratio(found_.tolerance, before.tolerance) < 1.0 + 10.0 * kSettled) break;
+  }
+  add_stage("effects among the others", 0, 0);
+  return true;
+}
+
+std::optional<Trial> ToleranceSearch::try_all() const {
+  const Study study = programme_.at(found_.tolerance);
+  return try_machines(Plan(study, run_.poses), run_.model, study.analysis.limits, run_.options);
+}
+
+std::optional<ToleranceSearch::Tried> ToleranceSearch::try_some(const TolerancePoint& point,
+                                                                std::vector<std::uint32_t> machines) const {
+  const Study study = programme_.at(point.tolerance);
+  auto trial = try_machines(Plan(study, run_.poses), run_.model, study.analysis.limits, machines, run_.options);
+  if (!trial) return std::nullopt;
+  return Tried{std::move(machines), *std::move(trial)};
+}
+
+/// Those machines that may decide: of all, when they were tried last, those with a load of kNear or more of the one
+/// that decided.
+std::optional<ToleranceSearch::Tried> ToleranceSearch::try_near(const TolerancePoint& point) const {
+  const double least = kNear * deciding_load(trial_.load, allowed_.design);
+  std::vector<std::uint32_t> machines;
+  for (std::size_t s = 0; s < trial_.load.size(); ++s) {
+    if (trial_.load[s] >= least) machines.push_back(static_cast<std::uint32_t>(s));
+  }
+  return try_some(point, std::move(machines));
+}
+
+/// Tries the lowest tolerances, after which nothing is left to try. False when stopped.
+bool ToleranceSearch::lower_to_least() {
+  found_ = programme_.lowest();
+  auto trial = try_all();
+  if (!trial) return false;
+  trial_ = *std::move(trial);
+  if (trial_.rejects() > allowed_.design) refuse_lowest();
+  return true;
+}
+
+/// Scales the limits on root mean squares until the design has as many rejects as it may, and no more.
+bool ToleranceSearch::meet_yield() {
+  auto all = try_all();
+  if (!all) return false;
+  trial_ = *std::move(all);
+  add_stage("tried on machines", trial_.load.size(), trial_.rejects());
+  double load = deciding_load(trial_.load, allowed_.design);
+  std::optional<TolerancePoint> best;
+  std::optional<ChosenTolerances> best_choice;
+  double best_share = 0.0;
+  for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
+    if (load <= 1.0 && share_ > best_share) {
+      best = found_;
+      best_choice = chosen_;
+      best_share = share_;
+    }
+    if (load <= 1.0 && load >= 1.0 - kFine) break;
+    const TolerancePoint before = found_;
+    share_ /= std::clamp(load * (1.0 + 0.25 * kFine), 0.25, 4.0);
+    if (!choose({before.tolerance, kGrowth})) {
+      if (best) break;
+      return lower_to_least();
+    }
+    if (load <= 1.0 && found_.tolerance == before.tolerance) break;  // all are as coarse as they may be
+    const bool far = std::abs(std::log(load)) > kFar || !std::isfinite(load);
+    if (far && largest_ratio(found_.tolerance, measured_) > 1.0 + kFar) {
+      if (!measure(found_.tolerance, kDrawsAmongOthers)) return false;
+      if (!choose({before.tolerance, kGrowth})) return lower_to_least();
+    }
+    if (far) {
+      all = try_all();
+      if (!all) return false;
+      trial_ = *std::move(all);
+      load = deciding_load(trial_.load, allowed_.design);
+    } else {
+      const auto near = try_near(found_);
+      if (!near) return false;
+      load = deciding_load(near->trial.load, allowed_.design);
+    }
+  }
+  if (!best) return lower_to_least();
+  found_ = *best;
+  chosen_ = *best_choice;
+  share_ = best_share;
+  limits_ = programme_.limits(squares_, measured_, share_);
+  auto near = try_near(found_);
+  if (!near) return false;
+  near_ = *std::move(near);
+  add_stage("scaled to the yield", trial_.load.size(), near_.trial.rejects());
+  return true;
+}
+
+/// One limit in place of all: what each part adds to the machines of largest load, by its score x^2 - 1 among them.
+ToleranceLimits ToleranceSearch::gradient_limits() const {
+  const std::size_t wanted =
+      std::min(near_.machines.size(),
+               std::max<std::size_t>(allowed_.design, std::min<std::size_t>(kMostOfGradient, trial_.load.size() / 30)));
+  const double least = deciding_load(near_.trial.load, wanted);
+  const Plan plan(programme_.at(found_.tolerance), run_.poses);
+  std::vector<double> score(plan.factors().size(), 0.0);
+  std::vector<double> draws(plan.factors().size());
+  double count = 0.0;
+  for (std::size_t k = 0; k < near_.machines.size(); ++k) {
+    if (near_.trial.load[k] <= least) continue;
+    for (std::size_t p = 0; p < draws.size(); ++p) {
+      fill_uniforms(plan.address(p, PoseIndex(0)), SampleIndex(near_.machines[k]), std::span(&draws[p], 1));
+    }
+    plan.transform(draws, 1);
+    for (std::size_t p = 0; p < draws.size(); ++p) {
+      const double x = draws[p] / plan.distributions()[p].standard_deviation();
+      score[p] += x * x - 1.0;
+    }
+    count += 1.0;
+  }
+  ToleranceLimits direction{
+      .stacking = Stacking::root_sum_square, .parts = programme_.size(), .effects = {}, .room = {}};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < programme_.size(); ++i) {
+    double of_part = 0.0;
+    for (const std::size_t p : programme_.errors(i)) of_part += score[p];
+    direction.effects.push_back(std::max(of_part, kLeastWeight * count));
+    sum += direction.effects.back();
+  }
+  for (std::size_t i = 0; i < programme_.size(); ++i) {
+    direction.effects[i] /= sum * found_.tolerance[i] * found_.tolerance[i];
+  }
+  direction.room = {1.0};
+  return direction;
+}
+
+/// Takes the tolerances that this limit gives, scaled to the yield, where they cost less; none when stopped.
+std::optional<bool> ToleranceSearch::fit_gradient(ToleranceLimits direction) {
+  for (std::size_t trial = 0; trial < kMostFits; ++trial) {
+    const ChoiceOfTolerances choice = programme_.choose(direction, {found_.tolerance, kGradientGrowth});
+    const auto* chosen = std::get_if<ChosenTolerances>(&choice);
+    if (chosen == nullptr) return false;
+    auto near = try_near(*chosen);
+    if (!near) return std::nullopt;
+    const double load = deciding_load(near->trial.load, allowed_.design);
+    if (load <= 1.0 && chosen->cost < (1.0 - kWorthIt) * found_.cost) {
+      found_ = *chosen;
+      near_ = *std::move(near);
+      return true;
+    }
+    if (load <= 1.0 && load >= 1.0 - kFine) return false;
+    if (!std::isfinite(load)) return false;
+    direction.room.front() /= load * load * (1.0 + 0.25 * kFine);
+  }
+  return false;
+}
+
+bool ToleranceSearch::improve_by_gradient() {
+  if (asked_.aim != Aim::least_cost || programme_.size() < 2) return true;
+  bool better = false;
+  for (std::size_t round = 0; round < kMostGradients; ++round) {
+    const std::optional<bool> fitted = fit_gradient(gradient_limits());
+    if (!fitted) return false;
+    if (!*fitted) break;
+    better = true;
+  }
+  if (better) add_stage("by the gradient of the yield", trial_.load.size(), near_.trial.rejects());
+  return true;
+}
+
+/// Parts that would cost less if they were coarser, the largest saving first, then the others.
+std::vector<std::size_t> ToleranceSearch::by_saving() const {
+  std::vector<std::size_t> order(programme_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<double> saving;
+  for (const std::size_t i : order) {
+    const auto next = programme_.coarser(found_, i, kCoarser);
+    saving.push_back(next && !std::isnan(found_.cost) ? found_.cost - next->cost : 0.0);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return saving[i]; });
+  return order;
+}
+
+/// Makes one part after the other coarser where the design keeps its yield, until this is so for none. Of an aim
+/// without costs it only finds what each would do.
+bool ToleranceSearch::coarsen() {
+  bool any = true;
+  bool ever = false;
+  for (std::size_t pass = 0; pass < kMostPasses && any; ++pass) {
+    any = false;
+    std::vector<std::uint32_t> machines;
+    for (std::size_t k = 0; k < near_.machines.size(); ++k) {
+      if (near_.trial.load[k] >= kVeryNear) machines.push_back(near_.machines[k]);
+    }
+    for (const std::size_t i : by_saving()) {
+      const auto next = programme_.coarser(found_, i, kCoarser);
+      coarser_yield_[i] = kNaN;
+      if (!next) continue;
+      const auto tried = try_some(*next, machines);
+      if (!tried) return false;
+      const std::uint64_t rejects = tried->trial.rejects();
+      coarser_yield_[i] = 1.0 - static_cast<double>(rejects) / static_cast<double>(trial_.load.size());
+      if (asked_.aim != Aim::least_cost || rejects > allowed_.design || !(next->cost < found_.cost)) continue;
+      found_ = *next;
+      any = true;
+    }
+    if (!any) break;
+    ever = true;
+    auto near = try_near(found_);
+    if (!near) return false;
+    near_ = *std::move(near);
+  }
+  if (ever) add_stage("parts one by one", trial_.load.size(), near_.trial.rejects());
+  return true;
+}
+
+/// Tries all machines at what was found; tightens all tolerances where machines decide that were left out.
+bool ToleranceSearch::confirm() {
+  for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
+    auto all = try_all();
+    if (!all) return false;
+    trial_ = *std::move(all);
+    const double load = deciding_load(trial_.load, allowed_.design);
+    if (load <= 1.0) break;
+    std::vector<double> tighter = found_.tolerance;
+    for (double& tolerance : tighter) tolerance /= std::min(load * (1.0 + 0.25 * kFine), 2.0);
+    const TolerancePoint before = found_;
+    found_ = programme_.at_most(tighter);
+    if (found_.tolerance == before.tolerance) refuse_lowest();
+  }
+  add_stage("all machines", trial_.load.size(), trial_.rejects());
+  return true;
+}
+
+bool ToleranceSearch::find() {
+  if (!linearise() || !settle_effects() || !meet_yield()) return false;
+  if (near_.machines.empty()) return true;  // the lowest tolerances: nothing is left to choose
+  return improve_by_gradient() && coarsen() && confirm();
+}
+
+double ToleranceSearch::cost_at(double share, double wider) const {
+  const ChoiceOfTolerances choice =
+      programme_.choose(programme_.limits(squares_, measured_, share, wider), {found_.tolerance, kGrowth});
+  const auto* chosen = std::get_if<ChosenTolerances>(&choice);
+  return chosen == nullptr ? kNaN : chosen->cost;
+}
+
+/// "gap at pose 12".
+std::string ToleranceSearch::row_text(std::size_t row) const {
+  const std::size_t poses = run_.poses.size();
+  const ResponseLimit& limit = run_.study.analysis.limits[row / poses];
+  return fmt::format("{} at pose {}", run_.study.model().responses[limit.response].name, row % poses);
+}
+
+void ToleranceSearch::refuse(const CannotBeMet& broken) const {
+  const std::size_t poses = run_.poses.size();
+  const ResponseLimit& limit = run_.study.analysis.limits[broken.limit / poses];
+  const Response& response = run_.study.model().responses[limit.response];
+  const double fixed = limit.most * limit.most - broken.room;  // what belongs to no part
+  const auto text = [&](double square) {
+    return readable_text({std::sqrt(std::max(0.0, square)), response.dimension}, 4);
+  };
+  const std::string limit_text = readable_text({limit.most, response.dimension}, 6);
+  if (broken.room <= 0.0) {
+    throw InputError({},
+                     fmt::format("the limit of {} on {} cannot be kept: the background and the errors of no part alone "
+                                 "give a root mean square of {}",
+                                 limit_text, row_text(broken.limit), text(fixed)),
+                     "widen the limit, make these errors smaller, or list them as parts");
+  }
+  throw InputError({},
+                   fmt::format("the limit of {} on {} cannot be kept: with every tolerance at its lowest the root mean "
+                               "square is {}",
+                               limit_text, row_text(broken.limit), text(fixed + broken.need)),
+                   "widen the limit, or lower the bounds of parts");
+}
+
+void ToleranceSearch::refuse_lowest() const {
+  throw InputError(
+      {},
+      fmt::format("{} % of the machines within the limits cannot be had: with every tolerance at its lowest, {} of {} "
+                  "machines are not within them, and {} may be",
+                  100.0 * asked_.yield, trial_.rejects(), trial_.load.size(), allowed_.design),
+      "widen a limit, ask for a smaller yield, or lower the bounds of parts");
+}
+
+void ToleranceSearch::refuse_endless(const WithoutEnd& endless) const {
+  throw InputError({},
+                   fmt::format("part '{}' has no effect on any limit, and no upper bound",
+                               programme_.parts()[endless.parts.front()].name),
+                   "give it bounds, or leave it out of the parts");
+}
+
+}  // namespace poesy

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/kinds/allocation/mean_squares.h"
+#include "engine/kinds/allocation/programme.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/trial.h"
+#include "engine/kinds/kind.h"
+
+namespace poesy {
+
+/// How many rejects a certificate allows, and how many the design may have so that its certificate will hold.
+struct AllowedRejects {
+  std::uint64_t certificate;  ///< of so many fresh machines
+  std::uint64_t design;       ///< of as many others
+};
+
+/// For a share `yield` of good machines, shown with this confidence (Clopper and Pearson) by so many machines. The
+/// design may have so many rejects that, with 99 % probability, as many fresh machines have no more than the
+/// certificate allows; both numbers of rejects are taken as normal. Precondition: machines >= trials_without_failure().
+AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines);
+
+/// Looks for the tolerances of a study, in stages; each stage is a run of its own, from its checkpoint on. What a stage
+/// decides follows from the study alone.
+class ToleranceSearch {
+ public:
+  /// Refers to the run.
+  explicit ToleranceSearch(const StudyRun& run);
+
+  /// Whether it came to its end; false when stopped. Throws InputError where no tolerances keep the limits, with the
+  /// limit, and by how much.
+  bool find();
+
+  const ToleranceProgramme& programme() const { return programme_; }           ///< The parts.
+  const TolerancePoint& found() const { return found_; }                       ///< The tolerances.
+  const std::vector<AllocationStage>& stages() const { return stages_; }       ///< The way to them.
+  const AllowedRejects& allowed() const { return allowed_; }                   ///< With so many machines.
+  const Trial& trial() const { return trial_; }                                ///< The design's machines at found().
+  const std::vector<double>& coarser_yield() const { return coarser_yield_; }  ///< [N] as AllocationResult has it.
+  /// The last programme under limits on root mean squares, for what its prices say.
+  const ToleranceLimits& limits() const { return limits_; }
+  const ChosenTolerances& chosen() const { return chosen_; }  ///< Of that programme.
+  double share() const { return share_; }                     ///< Of each limit that its root mean square may take.
+  /// The cost of another share, or of wider limits, by the last programme; NaN where it has none.
+  double cost_at(double share, double wider) const;
+
+ private:
+  bool measure(std::span<const double> tolerance, std::size_t draws);
+  bool choose(const Reach& reach);
+  bool linearise();
+  bool settle_effects();
+  bool meet_yield();
+  bool improve_by_gradient();
+  bool coarsen();
+  bool confirm();
+
+  /// Machines of the design that were tried at some tolerances.
+  struct Tried {
+    std::vector<std::uint32_t> machines;  ///< their numbers
+    Trial trial;                          ///< of these
+  };
+
+  std::optional<Trial> try_all() const;
+  std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
+  std::optional<Tried> try_near(const TolerancePoint& point) const;
+  bool lower_to_least();
+  ToleranceLimits gradient_limits() const;
+  std::optional<bool> fit_gradient(ToleranceLimits direction);
+  std::vector<std::size_t> by_saving() const;
+  void add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects);
+  std::string row_text(std::size_t row) const;
+  [[noreturn]] void refuse(const CannotBeMet& broken) const;
+  [[noreturn]] void refuse_lowest() const;
+  [[noreturn]] void refuse_endless(const WithoutEnd& endless) const;
+
+  const StudyRun& run_;
+  const AllocationOptions& asked_;
+  ToleranceProgramme programme_;
+  AllowedRejects allowed_;
+  double share_;                       ///< of a limit, for root mean squares
+  MeanSquares squares_;                ///< at measured_
+  std::vector<double> measured_;       ///< [N] tolerances at which squares_ hold
+  ToleranceLimits limits_;             ///< of the last programme
+  ChosenTolerances chosen_;            ///< by it
+  TolerancePoint found_;               ///< the best so far
+  Trial trial_;                        ///< of all machines of the design, the last one
+  Tried near_;                         ///< machines that may decide, at found_
+  std::vector<double> coarser_yield_;  ///< [N]
+  std::vector<AllocationStage> stages_;
+};
+
+}  // namespace poesy

@@ -1,0 +1,237 @@
+#include "engine/kinds/allocation/trial.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/bytes.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/fold.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::uint64_t kKind = 72;            ///< no other state begins with this number
+constexpr std::size_t kMachinesOfPiece = 200;  ///< solved at once at each pose
+
+/// Which machines are tried.
+struct Machines {
+  std::size_t count;                      ///< n
+  std::span<const std::uint32_t> listed;  ///< their numbers; empty: 0 .. n - 1
+
+  std::size_t pieces() const { return (count + kMachinesOfPiece - 1) / kMachinesOfPiece; }
+  std::size_t first(std::size_t piece) const { return piece * kMachinesOfPiece; }
+  std::size_t count_of(std::size_t piece) const { return std::min(kMachinesOfPiece, count - first(piece)); }
+  std::size_t number(std::size_t n) const { return listed.empty() ? n : listed[n]; }
+};
+
+/// Some machines at all poses.
+struct TriedPiece {
+  std::vector<double> load;           ///< [B]
+  std::vector<SolveCounts> solves;    ///< [M]
+  std::vector<FailedSamples> failed;  ///< [M]
+  std::vector<std::uint64_t> beyond;  ///< [K]
+  std::uint64_t unsolved = 0;         ///< machines
+};
+
+/// Owns the scratch of one thread.
+class TrialEvaluator : private UnitSolver {
+ public:
+  TrialEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, const Machines& machines)
+      : UnitSolver(plan, model, plan.factors().size()), limits_(limits), machines_(machines) {}
+
+  TriedPiece operator()(std::size_t piece) {
+    const std::size_t count = machines_.count_of(piece);
+    const std::size_t poses = plan_->poses().size();
+    draw(piece, count);
+    TriedPiece found{std::vector<double>(count, 0.0), std::vector<SolveCounts>(poses),
+                     std::vector<FailedSamples>(poses), std::vector<std::uint64_t>(limits_.size()), 0};
+    missing_.assign(count, 0);
+    beyond_.assign(limits_.size() * count, 0);
+    for (std::size_t m = 0; m < poses; ++m) add_pose(piece, PoseIndex(m), found);
+    for (std::size_t b = 0; b < count; ++b) {
+      if (missing_[b] == 0) continue;
+      if (found.load[b] <= 1.0) ++found.unsolved;
+      found.load[b] = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < limits_.size(); ++k) beyond_[k * count + b] = 1;
+    }
+    for (std::size_t k = 0; k < limits_.size(); ++k) {
+      const auto of_limit = std::span(beyond_).subspan(k * count, count);
+      found.beyond[k] = static_cast<std::uint64_t>(std::ranges::count(of_limit, std::uint8_t{1}));
+    }
+    return found;
+  }
+
+ private:
+  /// Fills values_ with the errors of the piece's machines: runs of consecutive ones are drawn together.
+  void draw(std::size_t piece, std::size_t count) {
+    const std::size_t first = machines_.first(piece);
+    const std::size_t errors = plan_->factors().size();
+    for (std::size_t from = 0; from < count;) {
+      std::size_t to = from + 1;
+      while (to < count && machines_.number(first + to) == machines_.number(first + to - 1) + 1) ++to;
+      const WorkUnit run{0, PoseIndex(0), SampleIndex(machines_.number(first + from)), to - from};
+      for (std::size_t p = 0; p < errors; ++p) {
+        draw_uniforms(run, p, std::span(values_).subspan(p * count + from, to - from));
+      }
+      from = to;
+    }
+    plan_->transform(std::span(values_).first(errors * count), count);
+  }
+
+  void add_pose(std::size_t piece, PoseIndex pose, TriedPiece& found) {
+    const std::size_t count = found.load.size();
+    const UnitOutcomes outcomes = UnitSolver::solve(pose, plan_->factors(), count, 0.0);
+    for (std::size_t b = 0; b < count; ++b) {
+      found.solves[pose.value].add(outcomes.status[b], outcomes.iterations[b]);
+      found.failed[pose.value].add(SampleIndex(machines_.number(machines_.first(piece) + b)), outcomes.status[b]);
+      if (!counts(outcomes.status[b], plan_->not_converged())) missing_[b] = 1;
+    }
+    for (std::size_t k = 0; k < limits_.size(); ++k) {
+      const double* const y = &outcomes.responses[limits_[k].response * count];
+      for (std::size_t b = 0; b < count; ++b) {
+        if (!counts(outcomes.status[b], plan_->not_converged())) continue;
+        const double load = over_limit(std::abs(y[b]), limits_[k].most);
+        found.load[b] = std::max(found.load[b], load);
+        if (load > 1.0) beyond_[k * count + b] = 1;
+      }
+    }
+  }
+
+  /// At most 1 for a value up to the limit, whatever a division rounds to.
+  static double over_limit(double value, double limit) {
+    const double load = value / limit;
+    return value <= limit ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
+  }
+
+  std::span<const ResponseLimit> limits_;
+  const Machines& machines_;
+  std::vector<std::uint8_t> missing_;  ///< [B] whether a pose is not solved
+  std::vector<std::uint8_t> beyond_;   ///< [K x B] whether the limit is broken at a pose
+};
+
+/// All pieces in their order: the work of fold().
+class TrialWork {
+ public:
+  TrialWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, Machines machines)
+      : plan_(plan), model_(model), limits_(limits), machines_(machines) {
+    trial_.solves.resize(plan.poses().size());
+    trial_.failed.resize(plan.poses().size());
+    trial_.beyond.resize(limits.size());
+  }
+  TrialWork(const TrialWork&) = delete;
+  TrialWork& operator=(const TrialWork&) = delete;
+
+  std::size_t begin_round() {
+    begun_ = next_;
+    return machines_.pieces() - next_;
+  }
+  TrialEvaluator worker() const { return {plan_, model_, limits_, machines_}; }
+  TriedPiece solve(TrialEvaluator& evaluate, std::size_t n) const { return evaluate(begun_ + n); }
+  SolveCounts merge(std::size_t, const TriedPiece& found) {
+    trial_.load.insert(trial_.load.end(), found.load.begin(), found.load.end());
+    for (std::size_t m = 0; m < found.solves.size(); ++m) {
+      trial_.solves[m].merge(found.solves[m]);
+      trial_.failed[m].merge(found.failed[m]);
+    }
+    for (std::size_t k = 0; k < limits_.size(); ++k) trial_.beyond[k] += found.beyond[k];
+    trial_.unsolved += found.unsolved;
+    ++next_;
+    return total_of(found.solves);
+  }
+  static void write(std::size_t, const TriedPiece& found, ByteWriter& to) {
+    to.reals(found.load);
+    for (const SolveCounts& solves : found.solves) solves.write(to);
+    for (const FailedSamples& failed : found.failed) failed.write(to);
+    for (const std::uint64_t beyond : found.beyond) to.number(beyond);
+    to.number(found.unsolved);
+  }
+  TriedPiece read(std::size_t n, ByteReader& from) const {
+    TriedPiece found;
+    const std::size_t piece = begun_ + n;
+    const std::size_t count = machines_.count_of(piece);
+    found.load = from.reals(count);
+    read_poses(from, machines_.number(machines_.first(piece)), end_of(machines_.first(piece) + count), found.solves,
+               found.failed);
+    for (std::size_t k = 0; k < limits_.size(); ++k) found.beyond.push_back(from.number_up_to(count));
+    found.unsolved = from.number_up_to(count);
+    return found;
+  }
+  SolveCounts solved() const { return total_of(trial_.solves); }
+  std::uint64_t left() const { return std::uint64_t{machines_.count - trial_.load.size()} * plan_.poses().size(); }
+  Bytes state() const {
+    ByteWriter to;
+    for (const std::uint64_t size : sizes()) to.number(size);
+    to.number(next_);
+    to.reals(trial_.load);
+    for (const SolveCounts& solves : trial_.solves) solves.write(to);
+    for (const FailedSamples& failed : trial_.failed) failed.write(to);
+    for (const std::uint64_t beyond : trial_.beyond) to.number(beyond);
+    to.number(trial_.unsolved);
+    return to.take();
+  }
+  void restore(std::span<const std::byte> state) {
+    ByteReader from(state);
+    for (const std::uint64_t size : sizes()) {
+      if (from.number() != size) throw BytesError("is the state of another kind or size of study");
+    }
+    next_ = static_cast<std::size_t>(from.number_up_to(machines_.pieces()));
+    const std::size_t count = std::min(machines_.count, machines_.first(next_));
+    trial_.load = from.reals(count);
+    trial_.solves.clear();
+    trial_.failed.clear();
+    read_poses(from, count == 0 ? 0 : machines_.number(0), end_of(count), trial_.solves, trial_.failed);
+    for (std::uint64_t& beyond : trial_.beyond) beyond = from.number_up_to(count);
+    trial_.unsolved = from.number_up_to(count);
+    from.expect_end();
+  }
+  static bool next_round() { return false; }
+
+  Trial result() && { return std::move(trial_); }
+
+ private:
+  std::array<std::uint64_t, 4> sizes() const { return {kKind, machines_.count, plan_.poses().size(), limits_.size()}; }
+  /// The number after that of the last of so many machines.
+  std::uint64_t end_of(std::size_t count) const { return count == 0 ? 0 : machines_.number(count - 1) + 1; }
+  void read_poses(ByteReader& from, std::uint64_t first, std::uint64_t end, std::vector<SolveCounts>& solves,
+                  std::vector<FailedSamples>& failed) const {
+    for (std::size_t m = 0; m < plan_.poses().size(); ++m) solves.push_back(SolveCounts::read(from));
+    for (const SolveCounts& one : solves) {
+      failed.push_back(FailedSamples::read(from, one.not_converged(), first, end));
+    }
+  }
+
+  const Plan& plan_;
+  const Model& model_;
+  std::span<const ResponseLimit> limits_;
+  Machines machines_;
+  Trial trial_;
+  std::size_t next_ = 0;
+  std::size_t begun_ = 0;
+};
+
+std::optional<Trial> run(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                         const Machines& machines, const RunOptions& options) {
+  TrialWork work(plan, model, limits, machines);
+  if (!fold(work, options)) return std::nullopt;
+  return std::move(work).result();
+}
+
+}  // namespace
+
+std::uint64_t Trial::rejects() const {
+  return static_cast<std::uint64_t>(std::ranges::count_if(load, [](double one) { return one > 1.0; }));
+}
+
+std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                                  const RunOptions& options) {
+  return run(plan, model, limits, {plan.samples(), {}}, options);
+}
+
+std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                                  std::span<const std::uint32_t> machines, const RunOptions& options) {
+  return run(plan, model, limits, {machines.size(), machines}, options);
+}
+
+}  // namespace poesy
