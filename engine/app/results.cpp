@@ -7,12 +7,14 @@
 #include <array>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/units.h"
 #include "engine/files/shard_file.h"
+#include "engine/kinds/confirming_study.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
@@ -151,6 +153,20 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const
   return result;
 }
 
+namespace {
+
+/// Writes it beside the result: RESULT_certificate.toml. Gives its path.
+std::string write_beside(const Job& job, Study confirming) {
+  const std::filesystem::path result(job.path);
+  const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
+  const std::string stem = result.stem().string() + "_certificate";
+  name_files_beside(confirming, stem);
+  write_files_beside(folder, confirming, job.poses.poses);
+  return write_confirming_study(folder, stem, confirming, "repeats the certificate of " + result.filename().string());
+}
+
+}  // namespace
+
 std::optional<RunOutcome> run_to_file(const Job& job) {
   const std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
   if (!job.checkpoints().complete()) return std::nullopt;
@@ -160,6 +176,7 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
   if (result) {
     outcome.verdicts = result->verdicts;
     outcome.row_names = result->row_names;
+    if (writes && result->confirming) outcome.confirming = write_beside(job, *result->confirming);
   }
   if (const auto& shard = job.options.shard; shard && writes) {
     write_shard(job.path, job.study, job.poses, *shard, job.checkpoints().stages(), outcome.facts);
@@ -172,6 +189,9 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
   print(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, outcome.facts.solves,
                     outcome.facts.wall_seconds, outcome.facts.threads,
                     outcome.facts.threads == 1 ? "thread" : "threads", ranks, outcome.solves.not_converged()));
+  if (!outcome.confirming.empty()) {
+    print(fmt::format("{}: the study that repeats the certificate\n", outcome.confirming));
+  }
   if (job.options.shard) return kDone;  // the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);
   return judge(job.study, outcome.solves, with_verdicts(job.study, job.poses, outcome.verdicts, outcome.row_names),

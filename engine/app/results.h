@@ -37,6 +37,7 @@ struct RunOutcome {
   RunFacts facts;
   std::optional<LimitVerdicts> verdicts = std::nullopt;
   std::vector<std::string> row_names = {};  ///< of which a verdict may speak
+  std::string confirming = {};              ///< path of the study that confirms the result; empty: there is none
 };
 
 /// Runs a study of any kind, or a shard of it, and writes its result, on rank 0 if there are several. Empty when it was

@@ -26,6 +26,7 @@ struct StudyResult {
   std::any found;                         ///< of the kind's own type: SensitivityResult, for instance
   std::optional<LimitVerdicts> verdicts;  ///< what became of the limits that the study states; empty without any
   std::vector<std::string> row_names;     ///< of the rows of errors that a verdict may speak of
+  std::optional<Study> confirming = std::nullopt;  ///< that anyone may run to confirm what was found; or nothing
 
   /// What was found. Precondition: it is of this type.
   template <class Found>

@@ -10,7 +10,7 @@
 #include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/search.h"
-#include "engine/kinds/registry.h"
+#include "engine/kinds/confirming_study.h"
 #include "engine/random/stream.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/stats/proportion.h"
@@ -27,10 +27,8 @@ constexpr std::array kFactors{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5,
 Study certificate_study(const ToleranceProgramme& programme, const TolerancePoint& found, const Study& study) {
   const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
   const StreamAddress address{study.seed, Purpose::certificate_seed, FactorIndex(0), PoseIndex(0)};
-  Study fresh = programme.at(found.tolerance);
+  Study fresh = as_confirming_study(programme.at(found.tolerance), "certificate");
   fresh.seed = random_bits(address, SampleIndex(0)) >> 1U;  // a study file holds signed numbers
-  fresh.analysis.kind = &find_kind("monte-carlo")->study;
-  fresh.analysis.asked.reset();
   fresh.analysis.kind->ask_yield(fresh, asked.yield);
   fresh.analysis.conf_level = asked.confidence;
   return fresh;
@@ -185,7 +183,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   if (!trial || !run.makes_result()) return std::nullopt;
   AllocationResult found = result_of(run, search, *trial, certificate);
   LimitVerdicts verdicts = verdicts_of(run.study, *trial, found.certificate);
-  return StudyResult{std::move(found), std::move(verdicts), {}};
+  return StudyResult{std::move(found), std::move(verdicts), {}, certificate};
 }
 
 /// Machines are tried about so many times, those of the certificate among them.

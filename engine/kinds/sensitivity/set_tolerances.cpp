@@ -14,7 +14,7 @@
 #include "engine/base/units.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/file_writer.h"
-#include "engine/kinds/registry.h"
+#include "engine/kinds/confirming_study.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/linearity.h"
 #include "engine/kinds/sensitivity/ranking.h"
@@ -25,24 +25,11 @@
 namespace poesy {
 namespace {
 
-constexpr const char* kPoses = "confirm_poses";
-constexpr const char* kMechanism = "confirm_mechanism.toml";
+constexpr const char* kStem = "confirm";
 constexpr const char* kEqualEffect = "confirm_equal_effect";
 constexpr const char* kEqualTolerance = "confirm_equal_tolerance";
 /// Four standard deviations of a normal error reach as far as its part is large.
 constexpr double kShareOfPart = 0.25;
-
-void write_poses(const std::string& folder, const StoredResult& result) {
-  const auto coordinate = [&](std::size_t m, std::size_t c) { return result.poses[PoseIndex(m)][c]; };
-  CsvTable table{kPoses,
-                 {result.pose_coordinates.front().name, [&](std::size_t m) { return shortest(coordinate(m, 0)); }},
-                 result.poses.size()};
-  for (std::size_t c = 1; c < result.pose_coordinates.size(); ++c) {
-    table.columns.push_back(
-        {result.pose_coordinates[c].name, [&coordinate, c](std::size_t m) { return coordinate(m, c); }});
-  }
-  write_csv(folder, table);
-}
 
 /// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
 Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
@@ -52,14 +39,7 @@ Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   if (study.analysis.factors.size() != result.factors.size()) {
     throw FileError("the study in the result", "does not fit the result's factors", "run the study again");
   }
-  study.analysis.kind = &find_kind("monte-carlo")->study;
-  study.analysis.asked.reset();
-  if (study.mechanism.file) study.mechanism.file->name = kMechanism;
-  const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
-  if (along_file) study.poses.select = PoseSelection::Select::file;
-  study.mechanism.compared.reset();
-  if (study.poses.select == PoseSelection::Select::file) study.poses.file = std::string(kPoses) + ".csv";
-  return study;
+  return as_confirming_study(std::move(study), kStem);
 }
 
 /// A quarter of the part that each of the study's errors is an error of, [P].
@@ -83,19 +63,6 @@ void set_tolerances(Study& study, std::span<const double> largest, std::span<con
     const std::string text = named.name + " is " + readable_text({largest[p], named.dimension});
     if (std::ranges::find(at_largest, text) == at_largest.end()) at_largest.push_back(text);
   }
-}
-
-std::string write_study(const std::string& folder, const std::string& name, const Study& study,
-                        const std::string& caveat) {
-  const std::string path = (std::filesystem::path(folder) / (name + ".toml")).string();
-  FileWriter writer(path);
-  if (const std::string held = held_errors_text(study); !held.empty()) writer.write("# " + held + "\n");
-  if (!caveat.empty()) writer.write("# " + caveat + "\n");
-  writer.write(resolved_text(study));
-  writer.commit();
-  if (study.mechanism.file)
-    write_text((std::filesystem::path(folder) / kMechanism).string(), study.mechanism.file->text);
-  return path;
 }
 
 /// Position of the thing that an option names.
@@ -307,7 +274,7 @@ void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, con
   if (!tolerances.limit) return;
   for (const char* study : {kEqualEffect, kEqualTolerance}) folder.claim(std::string(study) + ".toml");
   const bool with_poses = monte_carlo_study(result, catalog).poses.select == PoseSelection::Select::file;
-  if (with_poses) folder.claim(std::string(kPoses) + ".csv");
+  if (with_poses) folder.claim(std::string(kStem) + "_poses.csv");
 }
 
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
@@ -315,7 +282,7 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
   POESY_EXPECTS(tolerances.limit.has_value());
   Study study = monte_carlo_study(result, catalog);
   make_folder(folder);
-  if (study.poses.select == PoseSelection::Select::file) write_poses(folder, result);
+  write_files_beside(folder, study, result.poses);
   study.analysis.limits = {{tolerances.response, tolerances.limit->limit}};
   const ErrorModel as_studied = study.errors;
   const NamedUnit& response = result.responses[tolerances.response];
@@ -328,7 +295,7 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
     study.title = "Tests " + words + " against a limit of " + limit + " on the root mean square of " + response.name;
     study.errors = as_studied;
     set_tolerances(study, largest, values, written.at_largest);
-    written.paths.push_back(write_study(folder, name, study, tolerances.caveat));
+    written.paths.push_back(write_confirming_study(folder, name, study, tolerances.caveat));
   };
   add(kEqualEffect, "tolerances of equal effect", tolerances.limit->equal_effect);
   add(kEqualTolerance, "equal tolerances", tolerances.limit->equal_tolerance);
