@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "tests/engine/kinds/sobol/shapley_coverage.h"
 #include "tests/engine/stats/effect_coverage.h"
 
 // The coverage of intervals in engine/THEORY.md, by the code of the tests and with more repetitions:
@@ -46,6 +47,20 @@ void print_gradients(int repetitions) {
   }
 }
 
+void print_shapley(int repetitions) {
+  for (const ShapleyFunction& function : shapley_functions()) {
+    for (const std::size_t samples : {256U, 1024U}) {
+      const auto coverage = shapley_coverage(function, samples, repetitions, 1000 * samples);
+      const auto effects = function.effects();
+      for (std::size_t p = 0; p < coverage.size(); ++p) {
+        fmt::print("{:10} n = {:5}  Shapley effect {:.4f}: {:.1f} % (above {:.1f}, below {:.1f})\n", function.name,
+                   samples, effects[p], 100.0 * coverage[p].share(), 100.0 * coverage[p].too_high(),
+                   100.0 * coverage[p].too_low());
+      }
+    }
+  }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -57,6 +72,7 @@ int main(int count, char** arguments) {
                                               folded(),
                                               exponential(0.5, {.7, .25, .05}),
                                               exponential(1.0, {.7, .25, .05})};
+  print_shapley(repetitions);
   for (const EffectFunction& function : functions) print_indices(function, repetitions);
   print_poses(repetitions);
   print_gradients(repetitions);

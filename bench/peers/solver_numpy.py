@@ -51,10 +51,14 @@ def angle_between(a, b, normal):
     return turn + 2 * np.pi if turn < -np.pi / 2 else turn
 
 
+def platform(z, beta, gamma):
+    """R and p of the platform's frame."""
+    return (rot("x", beta) @ rot("y", gamma))[:3, :3], np.array([0.0, -z * np.tan(beta), z])
+
+
 def joint_variables(z, beta, gamma):
     """Eqs. 1-12, as angles and lengths; [limb][joint]."""
-    R = (rot("x", beta) @ rot("y", gamma))[:3, :3]
-    p = np.array([0.0, -z * np.tan(beta), z])
+    R, p = platform(z, beta, gamma)
     x, y, u, v = np.eye(3)[0], np.eye(3)[1], R[:, 0], R[:, 1]
     leg1, leg2, leg3 = p + L_A * u - L_B * x, p - L_A * u + L_B * x, p + L_A * v - L_B * y
     norm = np.linalg.norm
@@ -190,6 +194,58 @@ def evaluate(limbs, q):
     return log(np.stack([poses[k] @ inverses[i] for k, i in PAIRS], axis=1)), columns
 
 
+class PublishedMetric:
+    """Residuals count as they are, 1 rad as 1 m; their largest component says when a solve ends."""
+
+    tolerance, flat_iterations = TOLERANCE, FLAT_ITERATIONS
+
+    def weighted(self, columns, mu):
+        return columns, mu
+
+    def change(self, mu, previous):
+        return np.abs(mu - previous).max(axis=(1, 2))
+
+    def responses(self, mu):
+        """Eqs. 49 and 50."""
+        return {"angular_deformation": np.linalg.norm(mu[..., :3], axis=-1).mean(axis=-1),
+                "linear_deformation": np.linalg.norm(mu[..., 3:], axis=-1).mean(axis=-1)}
+
+
+class PlatformMetric:
+    """Residuals count as the displacement of the points where the limbs hold the platform (engine/THEORY.md)."""
+
+    tolerance, flat_iterations = 1e-14, 0  # of the reach
+
+    def __init__(self, pose):
+        R, self.origin = platform(*pose)
+        joints = L_A * np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        displaced = [np.hstack((-hat(self.origin + R @ joint), np.eye(3))) for joint in joints]
+        W = sum(P.T @ P for P in displaced) / len(displaced)
+        self.root = np.linalg.cholesky(W).T  # |xi|_W = |root xi|
+        self.reach = max(sum(np.linalg.norm(frame[:3, 3]) for frame in frames) for frames in FRAMES)
+
+    def weighted(self, columns, mu):
+        return self.root @ columns, mu @ self.root.T
+
+    def gap(self, mu):
+        return self.root_mean_square(mu @ self.root.T)
+
+    def change(self, mu, previous):
+        return self.gap(mu - previous) / self.reach
+
+    def responses(self, mu):
+        omega = mu[..., :3]
+        return {"gap": self.gap(mu), "angular_deformation": self.root_mean_square(omega),
+                "linear_deformation": self.root_mean_square(mu[..., 3:] + cross(omega, self.origin))}
+
+    @staticmethod
+    def root_mean_square(vectors):
+        return np.sqrt((vectors * vectors).sum(-1).mean(-1))
+
+
+PUBLISHED = PublishedMetric()
+
+
 def step(columns, mu):
     """Eq. 44."""
     transposed = np.swapaxes(columns, 1, 2)
@@ -200,7 +256,7 @@ def step(columns, mu):
     return np.linalg.solve(SIGNS * (transposed @ columns), f)[..., 0]
 
 
-def solve(pose, errors):
+def solve(pose, errors, metric=PUBLISHED):
     """Residuals [B, 3, 6], whether they are solved, and iterations."""
     joints = joint_variables(*pose) - HOME
     limbs = segments(joints, errors)
@@ -213,13 +269,13 @@ def solve(pose, errors):
     smallest, flat = np.full(count, np.inf), np.zeros(count, int)
     mu, columns = evaluate(limbs, q)
     for iteration in range(1, MAX_ITERATIONS + 1):
-        q += step(columns, mu)
+        q += step(*metric.weighted(columns, mu))
         previous = mu
         mu, columns = evaluate(limbs, q)
-        change = np.abs(mu - previous).max(axis=(1, 2))
+        change = metric.change(mu, previous)
         flat = np.where(change < smallest, 0, flat + 1)
         smallest = np.minimum(smallest, change)
-        done = (change < TOLERANCE) | ((change <= ROUNDING) & (flat >= FLAT_ITERATIONS))
+        done = (change < metric.tolerance) | ((change <= ROUNDING) & (flat >= metric.flat_iterations))
         if not done.any():
             continue
         solved[index[done]], iterations[index[done]], answer[index[done]] = True, iteration, mu[done]
@@ -249,9 +305,7 @@ def solve_cell(solver, job):
     errors[frame] = np.tile(errors[frame], (len(values), 1))
     errors[frame][:, component] = values
     mu, solved, iterations = solver(pose, errors)
-    angular = np.linalg.norm(mu[..., :3], axis=-1).mean(axis=-1)  # Eq. 49
-    linear = np.linalg.norm(mu[..., 3:], axis=-1).mean(axis=-1)  # Eq. 50
-    return time.process_time() - start, solved, iterations, angular, linear
+    return time.process_time() - start, solved, iterations, *PUBLISHED.responses(mu).values()
 
 
 def read(path):

@@ -186,24 +186,54 @@ std::vector<double> of_responses(const StoredResult& result, const std::vector<d
   return list;
 }
 
-/// Bars of S1 and ST for each response.
-Bars index_bars(const StoredResult& result, ArrayPool& pool) {
-  const SobolIndices& indices = sobol_of(result).aggregated;
-  const std::vector<std::size_t> responses = response_order(result);
-  const auto both = [&](const std::string& name, const std::vector<double>& first, const std::vector<double>& total) {
-    std::vector<double> list = of_responses(result, total);
-    const std::vector<double> other = of_responses(result, first);
-    list.insert(list.end(), other.begin(), other.end());
-    return pool.add(name, list);
+/// One of the bars of each error: values with the ends of their intervals, [R x P] each.
+struct BarSeries {
+  std::string label;                 ///< not shown where it is the only one
+  const std::vector<double>* value;  ///< what is shown
+  const std::vector<double>* low;    ///< lower ends
+  const std::vector<double>* high;   ///< upper ends
+};
+
+/// Bars of shares of the variance for each response. name: of their arrays.
+Bars share_bars(const StoredResult& result, ArrayPool& pool, const std::string& name,
+                const std::vector<BarSeries>& series) {
+  const auto all = [&](const std::string& array, const std::vector<double>* BarSeries::*part) {
+    std::vector<double> list;
+    for (const BarSeries& one : series) {
+      const std::vector<double> values = of_responses(result, *(one.*part));
+      list.insert(list.end(), values.begin(), values.end());
+    }
+    return pool.add(array, list);
   };
-  const BarQuantity share{"share of the variance", std::vector<std::vector<std::string>>(responses.size(), {""}),
-                          both("sobol", indices.S1, indices.ST),
-                          both("sobol_low", indices.S1_ci_low, indices.ST_ci_low),
-                          both("sobol_high", indices.S1_ci_high, indices.ST_ci_high)};
-  return {{{"response", names_of(result.responses, responses)}},
-          {share},
-          sobol_of(result).group_names,
-          {"ST, with interactions", "S1, alone"}};
+  const std::vector<std::size_t> responses = response_order(result);
+  Bars bars{
+      {{"response", names_of(result.responses, responses)}},
+      {{"share of the variance", std::vector<std::vector<std::string>>(responses.size(), {""}),
+        all(name, &BarSeries::value), all(name + "_low", &BarSeries::low), all(name + "_high", &BarSeries::high)}},
+      sobol_of(result).group_names};
+  if (series.size() == 1) return bars;
+  for (const BarSeries& one : series) bars.series.push_back(one.label);
+  return bars;
+}
+
+void add_index_bars(const StoredResult& result, Page& page, Section& section) {
+  const SobolResult& found = sobol_of(result);
+  const SobolIndices& indices = found.aggregated;
+  add_figure(page, section, "sobol",
+             share_bars(result, page.figures.pool, "sobol",
+                        {{"ST, with interactions", &indices.ST, &indices.ST_ci_low, &indices.ST_ci_high},
+                         {"S1, alone", &indices.S1, &indices.S1_ci_low, &indices.S1_ci_high}}),
+             fmt::format("First-order and total index of each {}.", word(found)));
+}
+
+void add_shapley_bars(const StoredResult& result, Page& page, Section& section) {
+  const SobolResult& found = sobol_of(result);
+  if (found.Sh.empty()) return;
+  add_figure(page, section, "shapley",
+             share_bars(result, page.figures.pool, "shapley", {{"Sh", &found.Sh, &found.Sh_ci_low, &found.Sh_ci_high}}),
+             fmt::format("Shapley effect of each {}: what several make together is divided evenly among them, so the "
+                         "effects add up to 1, also where errors are correlated.",
+                         word(found)));
 }
 
 void add_shares(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -215,8 +245,8 @@ void add_shares(const StoredResult& result, std::span<const Table> tables, Page&
       "variance is summed over the poses before it is divided.",
       counted(result.factors.size(), "error", "errors"), counted(found.poses, "pose", "poses"),
       percent_text(found.aggregated.conf_level)));
-  add_figure(page, section, "sobol", index_bars(result, page.figures.pool),
-             fmt::format("First-order and total index of each {}.", word(found)));
+  add_index_bars(result, page, section);
+  add_shapley_bars(result, page, section);
   for (const Table& table : tables) {
     if (table.name.starts_with("sobol_")) section.table(table);
   }

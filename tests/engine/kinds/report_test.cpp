@@ -93,9 +93,13 @@ void check_bars(const Json& report, const Json& figure) {
 }
 
 void check_heat_map(const Json& report, const Json& figure) {
-  const std::size_t columns = array(report, figure["columns"]["coordinates"][0]["value"]).size();
-  for (const Json& coordinate : figure["columns"]["coordinates"]) expect_size(report, coordinate["value"], columns);
-  for (const Json& layer : figure["layers"]) expect_size(report, layer["value"], figure["rows"].size() * columns);
+  const std::size_t rows = figure["rows"].size();
+  const std::size_t cells = array(report, figure["layers"][0]["value"]).size();
+  for (const Json& coordinate : figure["columns"]["coordinates"]) {
+    expect_size(report, coordinate["value"], cells / rows);
+  }
+  EXPECT_EQ(cells % rows, 0u);
+  for (const Json& layer : figure["layers"]) expect_size(report, layer["value"], cells);
 }
 
 void check_workspace(const Json& report, const Json& figure) {
@@ -158,6 +162,23 @@ void expect_shown(float shown, double value) {
   EXPECT_EQ(std::isnan(shown), std::isnan(value));
   if (!std::isnan(value)) {
     EXPECT_FLOAT_EQ(shown, static_cast<float>(value));
+  }
+}
+
+/// That the bars of a figure show these series, [R x P] each, in the order of its responses. member: of its quantity.
+void expect_bars(const Json& page, const Json& figure, const char* member, const StoredResult& result,
+                 const std::vector<std::vector<double>>& series) {
+  const std::vector<float> shown = array(page, figure["quantities"][0][member]);
+  const std::vector<std::string> order = figure["choices"][0]["options"];
+  const std::size_t items = figure["items"].size();
+  ASSERT_EQ(shown.size(), series.size() * order.size() * items);
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::size_t r = order[k] == result.responses[0].name ? 0 : 1;
+      for (std::size_t p = 0; p < items; ++p) {
+        expect_shown(shown[(s * order.size() + k) * items + p], series[s][r * items + p]);
+      }
+    }
   }
 }
 
@@ -281,6 +302,40 @@ TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
   EXPECT_NE(html.find("99.5 % quantile"), std::string::npos);
   EXPECT_NE(html.find("Are the limits kept"), std::string::npos);
   EXPECT_LT(html.find("Are the limits kept"), html.find("How large are the deviations"));
+}
+
+TEST_F(HtmlReport, DrawsSobolIndicesWithTheirIntervals) {
+  example.write_sobol(path);
+  const ReportedResult result = stored();
+  const std::string html = report(result);
+  check_page(html);
+  const Json page = data(html);
+  const Json& figure = page["figures"]["sobol"];
+  EXPECT_EQ(figure["series"], Json({"ST, with interactions", "S1, alone"}));
+  const SobolIndices& found = sobol_of(result.stored).aggregated;
+  expect_bars(page, figure, "value", result.stored, {found.ST, found.S1});
+  expect_bars(page, figure, "low", result.stored, {found.ST_ci_low, found.S1_ci_low});
+  expect_bars(page, figure, "high", result.stored, {found.ST_ci_high, found.S1_ci_high});
+  EXPECT_FALSE(page["figures"].contains("shapley"));
+}
+
+TEST_F(HtmlReport, DrawsShapleyEffectsWithTheirIntervals) {
+  example.write_sobol(path);
+  ReportedResult result = stored();
+  SobolResult found = sobol_of(result.stored);
+  found.Sh = {0.25, 0.75, 0.625, 0.375};
+  found.Sh_ci_low = {0.125, 0.5, 0.5, std::nan("")};
+  found.Sh_ci_high = {0.375, 1.0, 0.75, std::nan("")};
+  result.stored.found = found;
+  const std::string html = report(result);
+  check_page(html);
+  const Json page = data(html);
+  const Json& figure = page["figures"]["shapley"];
+  EXPECT_EQ(figure["items"], Json(found.group_names));
+  expect_bars(page, figure, "value", result.stored, {found.Sh});
+  expect_bars(page, figure, "low", result.stored, {found.Sh_ci_low});
+  expect_bars(page, figure, "high", result.stored, {found.Sh_ci_high});
+  EXPECT_NE(html.find("Shapley effect of each error"), std::string::npos);
 }
 
 TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {

@@ -9,6 +9,7 @@
 
 #include "engine/kinds/sobol/kind.h"
 #include "engine/kinds/study_run.h"
+#include "tests/engine/kinds/sobol/shapley_coverage.h"
 #include "tests/support/function_model.h"
 
 namespace poesy::test {
@@ -303,17 +304,6 @@ TEST(SobolPanel, EndsWhenEveryIntervalIsNarrowEnough) {
   EXPECT_EQ(run(fixed, model).aggregated.ST, found.aggregated.ST);
 }
 
-/// y = x1 + x2 + x3 with standard deviations 1, 1 and 2, of which the last two are correlated by 0.9.
-void sum_of_three(std::span<const double> x, double, std::span<double> y) { y[0] = x[0] + x[1] + x[2]; }
-
-Study correlated_study(const CatalogEntry& entry, std::size_t samples) {
-  Study study = function_study(entry, kSobolStudy, Distribution::normal(1.0), samples);
-  study.errors.by_factor[2] = Distribution::normal(2.0);
-  study.errors.correlated = {{{FactorIndex(1), FactorIndex(2)}, {1.0, 0.9, 0.9, 1.0}}};
-  study.analysis.conf_level = 1.0 - 1e-5;
-  return study;
-}
-
 void expect_shapley(const SobolResult& found, const std::vector<double>& expected) {
   double sum = 0.0;
   for (std::size_t p = 0; p < expected.size(); ++p) {
@@ -333,6 +323,7 @@ TEST_P(KnownShapley, IsWithinItsInterval) {
   const FunctionModel model(3, {"y"}, sum_of_three);
   const CatalogEntry entry{model.description(), nullptr};
   Study study = correlated_study(entry, 65536);
+  study.analysis.conf_level = 1.0 - 1e-5;
   asked_of<SobolOptions>(study.analysis).design = GetParam();
   asked_of<SobolOptions>(study.analysis).shapley = true;
   const SobolResult found = run(study, model);
@@ -374,6 +365,7 @@ TEST(SobolPanel, GroupsThatHoldCorrelatedErrorsHaveIndices) {
   const FunctionModel model(3, {"y"}, sum_of_three);
   const CatalogEntry entry{model.description(), nullptr};
   Study study = correlated_study(entry, 20000);
+  study.analysis.conf_level = 1.0 - 1e-5;
   SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   asked.groups_by = GroupsBy::name;
   asked.named_groups = {{"two", {"x2", "x3"}}};
