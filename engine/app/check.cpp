@@ -103,7 +103,9 @@ int check(const std::string& path) {
   print(resolved_text(study));
   const Outlook expected = outlook(study, *model, poses.poses);
   print(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)));
-  if (const std::string held = held_errors_text(study); !held.empty()) print("# " + held + "\n");
+  for (const std::string& note : {calibration_text(study), held_errors_text(study)}) {
+    if (!note.empty()) print("# " + note + "\n");
+  }
   for (const std::string& line : model->mobility()) print("# mobility: " + line + "\n");
   for (const std::string& unusual : model->unusual_geometry()) {
     print("# hint: " + unusual + "; is that meant?\n");

@@ -161,7 +161,9 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   resumable.start(identity, options.quiet);
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
-  if (const std::string held = held_errors_text(study); !held.empty() && !options.quiet) say(Message::note, held);
+  for (const std::string& note : {calibration_text(study), held_errors_text(study)}) {
+    if (!note.empty() && !options.quiet) say(Message::note, note);
+  }
   Job job{.study = study,
           .model = *model,
           .poses = std::move(poses),

@@ -74,13 +74,17 @@ void show_alone(const std::string& response, StoredResult& result) {
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-/// What the study held constant; empty where it held nothing, where a table of errors was solved instead of the study,
-/// and where this program cannot read the study.
-std::string held_errors_line(const StoredResult& result, std::size_t width) {
+/// Whether the study was calibrated, and what it held constant; empty where neither holds, where a table of errors was
+/// solved instead of the study, and where this program cannot read the study.
+std::string study_lines(const StoredResult& result, std::size_t width) {
   if (kind_of(result).report.words(result).from_tables) return {};
   const std::optional<Study> study = study_in(result, registry());
-  const std::string held = study ? held_errors_text(*study) : std::string();
-  return held.empty() ? held : prose_of(held, width);
+  if (!study) return {};
+  std::string text;
+  for (const std::string& line : {calibration_text(*study), held_errors_text(*study)}) {
+    if (!line.empty()) text += prose_of(line, width);
+  }
+  return text;
 }
 
 std::size_t width_of(const ShowOptions& options) { return options.width.value_or(output_width()); }
@@ -98,7 +102,7 @@ int show_one(const ShowOptions& options) {
   if (options.top) keep_first(*options.top, tables);
   const std::size_t width = width_of(options);
   print(options.json ? json_of(result, tally.total(), tables)
-                     : summary_text(result, tally, width) + held_errors_line(result, width) +
+                     : summary_text(result, tally, width) + study_lines(result, width) +
                            failures_text(result, tally, path, width) + "\n" + text_of(tables, width, kRemedy));
   return kDone;
 }

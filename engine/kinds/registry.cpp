@@ -20,10 +20,11 @@ constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKin
                           &kMonteCarloKind,  &kSobolKind,          &kCouplingKind};
 
 /// The keys of [analysis] as the reference lists them; a key that is not among them comes last.
-constexpr std::array<std::string_view, 24> kKeys{
-    "kind",      "factors", "samples",      "draws",  "conf_level", "background", "reference",  "linearity",
-    "quantiles", "groups",  "second_order", "design", "replicates", "pose_share", "cases",      "limits",
-    "judge",     "share",   "yield",        "linear", "angular",    "limbs",      "components", "sources"};
+constexpr std::array<std::string_view, 25> kKeys{"kind",       "factors",      "samples",   "draws",      "calibrated",
+                                                 "conf_level", "background",   "reference", "linearity",  "quantiles",
+                                                 "groups",     "second_order", "design",    "replicates", "pose_share",
+                                                 "cases",      "limits",       "judge",     "share",      "yield",
+                                                 "linear",     "angular",      "limbs",     "components", "sources"};
 
 }  // namespace
 

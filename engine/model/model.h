@@ -252,6 +252,11 @@ class Model {
   /// One for each thread. The model must outlive it.
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
 
+  /// As evaluator(), but outcomes are those of the displacement that the best correction of the actuators leaves: the
+  /// platform's displacement under a sample's errors less that motion by the actuators, to first order at the pose,
+  /// with which the least is left of it by the measure of separation(). Null: the model cannot.
+  virtual std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& /*options*/) const { return nullptr; }
+
   /// The solve of these errors [F] at a reachable pose, SI; none: the model does not show it.
   virtual std::optional<SolveTrace> trace(std::span<const double> /*pose*/, std::span<const double> /*errors*/,
                                           const SolverOptions& /*options*/) const {

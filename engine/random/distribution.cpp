@@ -221,6 +221,14 @@ BetweenValues moments_between(std::span<const double> values, double c) {
   return {sums.mean / count, sums.square / count};
 }
 
+/// Where in its half a share of a shifted distribution is, strictly inside (0, 1). 2u and 2u - 1 are exact.
+[[gnu::always_inline]] inline double share_in_half(double u) {
+  return u < 0.5 ? 2.0 * u : std::max(2.0 * u - 1.0, kSmallestDraw);
+}
+
+/// What the half of a share adds to the error.
+[[gnu::always_inline]] inline double shift_of_half(double shift, double u) { return std::copysign(shift, u - 0.5); }
+
 void expect_positive(const char* parameter, double value) {
   if (!(value > 0.0) || !std::isfinite(value)) {
     throw std::invalid_argument(std::string(parameter) + " must be a finite number above zero");
@@ -324,7 +332,27 @@ Distribution Distribution::measured(std::vector<double> values) {
   return made;
 }
 
+Distribution Distribution::shifted(double shift) const {
+  POESY_EXPECTS(shift_ == 0.0);
+  const double deviation = std::hypot(standard_deviation_, shift);
+  if (!(shift >= 0.0) || !std::isfinite(deviation)) {
+    throw std::invalid_argument("shift must be a finite number, not below zero");
+  }
+  if (shape_ == Shape::measured && shift > 0.0) throw std::invalid_argument("shift is not for measured values");
+  Distribution made = *this;
+  if (shift == 0.0) return made;
+  made.shift_ = shift;
+  made.standard_deviation_ = deviation;
+  return made;
+}
+
 double Distribution::quantile(double u) const {
+  POESY_EXPECTS(u > 0.0 && u < 1.0);
+  if (shift_ == 0.0) return centred_quantile(u);
+  return centred_quantile(share_in_half(u)) + shift_of_half(shift_, u);
+}
+
+double Distribution::centred_quantile(double u) const {
   switch (shape_) {
     case Shape::normal:
       return normal_quantile(sigma_, u);
@@ -335,13 +363,26 @@ double Distribution::quantile(double u) const {
     case Shape::triangular:
       return quantile_of(TriangularTail{half_width_}, u);
     case Shape::measured:
-      POESY_EXPECTS(u > 0.0 && u < 1.0);
       return between_values(values_.data(), static_cast<double>(values_.size() - 1), u);
   }
   throw std::logic_error("unknown shape of distribution");
 }
 
 void Distribution::transform(std::span<double> uniforms) const {
+  if (shift_ == 0.0) return centred_transform(uniforms);
+  std::array<double, 512> shifts;
+  for (; !uniforms.empty(); uniforms = uniforms.subspan(std::min(shifts.size(), uniforms.size()))) {
+    const std::span block = uniforms.first(std::min(shifts.size(), uniforms.size()));
+    for (std::size_t k = 0; k < block.size(); ++k) {
+      shifts[k] = shift_of_half(shift_, block[k]);
+      block[k] = share_in_half(block[k]);
+    }
+    centred_transform(block);
+    for (std::size_t k = 0; k < block.size(); ++k) block[k] += shifts[k];
+  }
+}
+
+void Distribution::centred_transform(std::span<double> uniforms) const {
   switch (shape_) {
     case Shape::normal:
       return normal_quantiles(sigma_, uniforms);
@@ -358,7 +399,7 @@ void Distribution::transform(std::span<double> uniforms) const {
 }
 
 void Distribution::transform_scores(std::span<double> scores) const {
-  if (shape_ == Shape::normal) {
+  if (shape_ == Shape::normal && shift_ == 0.0) {
     for (double& score : scores) score *= sigma_;
     return;
   }

@@ -30,32 +30,48 @@ class Distribution {
   /// largest of them. The mean need not be zero. At least kLeastMeasured values, finite, not all equal.
   static Distribution measured(std::vector<double> values);
 
+  /// The same about a mean that is off by shift >= 0 (as the errors: m or rad), as often up as down: half of all errors
+  /// scatter about -shift and half about +shift. Zero gives the same in every bit. Throws std::invalid_argument as the
+  /// others do, and for measured values, whose mean was measured with them. Precondition: it has no shift yet.
+  Distribution shifted(double shift) const;
+
   Shape shape() const { return shape_; }   ///< Which it is.
   double sigma() const { return sigma_; }  ///< Parameter of the (parent) normal; 0 for other shapes.
-  /// The largest possible magnitude of an error; infinity for the normal.
+  /// Parameter: without a shift, the largest possible magnitude of an error; infinity for the normal.
   double half_width() const { return half_width_; }
-  double mean() const { return mean_; }  ///< Of the distribution; 0 unless it is measured.
-  /// The distribution's own standard deviation about its mean (after truncation, and with straight lines between
-  /// measured values, hence not the sample's).
+  double shift() const { return shift_; }  ///< Of the mean, as often up as down; 0 unless it is shifted.
+  double largest() const { return half_width_ + shift_; }  ///< Largest possible magnitude; infinity for the normal.
+  double mean() const { return mean_; }                    ///< Of the distribution; 0 unless it is measured.
+  /// The distribution's own standard deviation about its mean: after truncation; with straight lines between measured
+  /// values, hence not the sample's; with the shift, sqrt(s^2 + shift^2) where s is that without it.
   double standard_deviation() const { return standard_deviation_; }
   std::span<const double> values() const { return values_; }  ///< Measured, ascending; empty for other shapes.
 
-  /// The value below which a share u of all draws lies. Precondition: 0 < u < 1.
+  /// The value below which a share u of all draws lies. With a shift something else that is distributed in the same way
+  /// for uniform u: -shift + q(2u) for u < 1/2, else shift + q(2u - 1), with q the quantile without the shift. It goes
+  /// up with u on either side of 1/2, and down at 1/2. Precondition: 0 < u < 1.
   double quantile(double u) const;
   void transform(std::span<double> uniforms) const;  ///< Replaces each uniform by its quantile.
   /// Replaces each normal score z, a standard normal, by the value at the same share: sigma z for the normal, else the
   /// quantile of Phi(z).
   void transform_scores(std::span<double> scores) const;
 
-  /// Whether shape, parameters and measured values are the same.
+  /// Whether shape, parameters, shift and measured values are the same.
   friend bool operator==(const Distribution&, const Distribution&) = default;
 
  private:
   Distribution(Shape shape, double sigma, double half_width, double standard_deviation);
 
+  /// As without a shift.
+  /// @{
+  double centred_quantile(double u) const;
+  void centred_transform(std::span<double> uniforms) const;
+  /// @}
+
   Shape shape_;
   double sigma_;
   double half_width_;
+  double shift_ = 0.0;
   double mean_ = 0.0;
   double standard_deviation_;
   std::vector<double> values_;

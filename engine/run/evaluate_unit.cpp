@@ -12,7 +12,7 @@ namespace {
 
 /// Largest magnitude to expect: one draw in 16 000 of a normal lies beyond four standard deviations.
 double expected_range(const Distribution& distribution) {
-  return std::min(distribution.half_width(), std::abs(distribution.mean()) + 4.0 * distribution.standard_deviation());
+  return std::min(distribution.largest(), std::abs(distribution.mean()) + 4.0 * distribution.standard_deviation());
 }
 
 /// Counts how the unit's samples ended.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -17,6 +18,7 @@ constexpr double kSamplesForBin = 16.0;  ///< on average; with fewer of them bin
 constexpr double kFewestInBin = 4.0;     ///< in each
 
 constexpr int kMostBins = static_cast<int>(kEffectBins);
+static_assert(kMostBins <= 32, "Strata::ends has a bit for each");
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostBins, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostBins, kMostBins>;
 
@@ -35,10 +37,14 @@ struct Strata {
   Vector steps;      ///< 1 / difference of the error between the neighbouring bins; 0 where there is none
   Vector spread;     ///< variance of the error
   Vector asymmetry;  ///< its third central moment
+  /// Bits of the bins from which the error goes down to the next one, where the halves of a shifted distribution meet:
+  /// these two are no neighbours.
+  std::uint32_t ends = 0;
 
   Eigen::Index bins() const { return count.size(); }
-  Eigen::Index below(Eigen::Index b) const { return std::max<Eigen::Index>(b - 1, 0); }
-  Eigen::Index above(Eigen::Index b) const { return std::min(b + 1, bins() - 1); }
+  Eigen::Index below(Eigen::Index b) const { return b == 0 || is_end(b - 1) ? b : b - 1; }
+  Eigen::Index above(Eigen::Index b) const { return b == bins() - 1 || is_end(b) ? b : b + 1; }
+  bool is_end(Eigen::Index b) const { return (ends >> b & 1) != 0; }
   /// How steeply the response follows the error in a bin.
   double slope(Eigen::Index b) const { return (mean[above(b)] - mean[below(b)]) * steps[b]; }
 };
@@ -70,6 +76,9 @@ Strata strata_of(std::span<const BinSums> sums, const BinSpread& spread) {
   for (Vector* values : {&strata.count, &strata.mean, &strata.variance, &strata.of_mean, &strata.steps, &strata.spread,
                          &strata.asymmetry}) {
     values->resize(bins);
+  }
+  for (std::size_t b = 0; b + 1 < sums.size(); ++b) {
+    if (spread.mean[b + 1] < spread.mean[b]) strata.ends |= std::uint32_t{1} << b;
   }
   for (Eigen::Index b = 0; b < bins; ++b) {
     const auto at = static_cast<std::size_t>(b);

@@ -184,6 +184,19 @@ std::string shown_background(const TemplateLines& lines, const Study& study) {
                                                   : "# background = { factors = \"all\" }\n");
 }
 
+/// Whether the model can be calibrated is known once it is built (build_model).
+void read_calibrated(const StudyValue& value, Study& study, const Reading&) {
+  study.mechanism.calibrated = value.yes_or_no();
+  study.mechanism.calibrated_place = value.place();
+}
+
+std::string calibrated_line(const Study& study) { return study.mechanism.calibrated ? "calibrated = true\n" : ""; }
+
+/// For models that can be.
+std::string shown_calibrated(const TemplateLines& lines, const Study& study) {
+  return study.model().separation ? lines.usual("analysis", "calibrated") : "";
+}
+
 /// In the order of the model's responses.
 void read_response_limits(const StudyValue& value, Study& study, const Reading&) {
   const std::vector<Response>& responses = study.model().responses;
@@ -247,6 +260,15 @@ std::vector<StudyRow> shared_rows() {
                      "once for all poses: each sample is a machine with its errors, which has them wherever it goes"}},
                    &Study::analysis, &Analysis::draws),
                .meaning = "Where errors are drawn."},
+      StudyRow{.name = "calibrated",
+               .value = {.type = "true or false"},
+               .usual = "`false`",
+               .meaning = "Whether responses are what the best correction of the actuators leaves of the platform's "
+                          "displacement, each pose by itself; for mechanisms of which sensitivity studies say what "
+                          "calibration can remove.",
+               .reader = read_calibrated,
+               .lines = calibrated_line,
+               .shown = shown_calibrated},
       StudyRow{.name = "conf_level",
                .value = number_at(between_0_and_1("0.95"), &Study::analysis, &Analysis::conf_level),
                .may_stay = true,

@@ -150,6 +150,11 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
                    "write one block for all errors that depend on each other");
     }
   }
+  for (const FactorIndex factor : block.factors) {
+    if (study.errors.by_factor[factor.value].shift() == 0.0) continue;
+    factors.fail("has '" + study.model().factors[factor.value].name + "', whose distribution has a shift",
+                 "leave it out here, or remove its shift: errors with one cannot be correlated");
+  }
   const StudyValue correlation = section.require("correlation");
   if (correlation.is_text()) {
     static_cast<void>(correlation.word(std::array{kAsMeasured}));

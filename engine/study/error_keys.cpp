@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -24,13 +25,15 @@ struct Parameters {
   Shape shape = Shape::normal;
   double sigma = 0.0;       ///< SI; 0 where the shape has none
   double half_width = 0.0;  ///< likewise
+  double shift = 0.0;       ///< SI
   Dimension dimension = Dimension::length;
   std::string file = {};            ///< of measured values
   std::string column = {};          ///< of the file
   std::vector<double> values = {};  ///< that were measured, SI
 };
 
-Distribution distribution_of(const Parameters& parameters) {
+/// Without its shift.
+Distribution centred_distribution_of(const Parameters& parameters) {
   switch (parameters.shape) {
     case Shape::normal:
       return Distribution::normal(parameters.sigma);
@@ -62,6 +65,16 @@ KeyValue<Parameters> size_at(double Parameters::*member) {
                "it must be at least 1e-30 m or 1e-30 rad");
   };
   return {.type = "quantity", .bounds = "at least 1e-30 m or rad", .read = read};
+}
+
+KeyValue<Parameters> shift_value() {
+  const auto read = [](const StudyValue& value, Parameters& parameters) {
+    parameters.shift = value.quantity(parameters.dimension);
+    if (parameters.shift >= 0.0) return;
+    value.fail("is '" + printable(value.text()) + "', below zero",
+               "write it without the sign, for the mean is off to either side as often");
+  };
+  return {.type = "quantity", .bounds = "at least 0", .read = read};
 }
 
 KeyValue<Parameters> values_value() {
@@ -104,7 +117,13 @@ const InnerRows<Parameters>& distribution_keys() {
                    .value = size_at(&Parameters::half_width),
                    .required = true,
                    .only_for = {name(Shape::truncated_normal), name(Shape::uniform), name(Shape::triangular)},
-                   .meaning = "Largest possible size of the error."},
+                   .meaning = "Largest possible size of the error, but for its shift."},
+               InnerRow<Parameters>{.name = "shift",
+                                    .value = shift_value(),
+                                    .usual = "none",
+                                    .only_for = {name(Shape::normal), name(Shape::truncated_normal),
+                                                 name(Shape::uniform), name(Shape::triangular)},
+                                    .meaning = "The mean of the errors is off by this, as often up as down."},
                InnerRow<Parameters>{.name = "file",
                                     .value = text_at(&Parameters::file),
                                     .usual = "",
@@ -159,7 +178,7 @@ Distribution read_distribution(const StudyValue& value, Dimension dimension, Stu
     return default_distribution(dimension);
   }
   try {
-    return distribution_of(parameters);
+    return centred_distribution_of(parameters).shifted(parameters.shift);
   } catch (const std::invalid_argument& reason) {
     value.fail(std::string("is impossible: ") + reason.what(), "correct its parameters");
   }
@@ -199,6 +218,7 @@ std::string distribution_text(const Distribution& distribution, Dimension dimens
     text += ", sigma = " + value(distribution.sigma(), dimension);
   }
   if (shape != Shape::normal) text += ", half_width = " + value(distribution.half_width(), dimension);
+  if (distribution.shift() > 0.0) text += ", shift = " + value(distribution.shift(), dimension);
   return text + " }";
 }
 
@@ -251,14 +271,15 @@ StudyRow usual_row(std::string_view meaning) {
           .lines = usual_line<kDimension>};
 }
 
-/// At what gives the factor its distribution.
-[[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, const std::string& problem) {
+/// At what gives the factor its distribution: the first of these keys that it has, else sigma.
+[[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, const std::string& problem,
+                                      std::span<const std::string_view> keys) {
   const StudySection errors = root.section("errors");
   const auto own = errors.section("override").find(factor.name);
   const auto value = own ? own : errors.find(error_kind(factor.dimension));
   if (!value) refuse_error(errors, error_kind(factor.dimension), problem);
   const StudySection distribution = value->section();
-  for (const std::string_view key : {"half_width", "values", "column"}) {
+  for (const std::string_view key : keys) {
     if (distribution.find(key)) refuse_error(distribution, key, problem);
   }
   refuse_error(distribution, "sigma", problem);
@@ -269,10 +290,15 @@ void check_distributions(const StudySection& root, const Study& study, const Mod
   for (const FactorIndex factor : study.analysis.factors) {
     const Distribution& distribution = study.errors.by_factor[factor.value];
     const bool bounded = std::isfinite(distribution.half_width());
-    const auto problem =
-        beyond_bound(model, factor, bounded ? distribution.half_width() : distribution.standard_deviation(),
-                     bounded ? "a largest error" : "a standard deviation");
-    if (problem) refuse_distribution(root, model.description().factors[factor.value], *problem);
+    const std::string_view what = bounded ? "a largest error" : "a standard deviation";
+    const double size = bounded ? distribution.largest() : distribution.standard_deviation();
+    const auto problem = beyond_bound(model, factor, size, what);
+    if (!problem) continue;
+    constexpr std::array<std::string_view, 4> kKeys{"shift", "half_width", "values", "column"};
+    const double without_shift = bounded ? distribution.half_width() : distribution.sigma();
+    const bool too_large_without = beyond_bound(model, factor, without_shift, what).has_value();
+    refuse_distribution(root, model.description().factors[factor.value], *problem,
+                        std::span(kKeys).subspan(too_large_without ? 1 : 0));
   }
 }
 

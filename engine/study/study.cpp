@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
+#include "engine/model/calibrated.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -99,7 +101,10 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
   return mechanism;
 }
 
-std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
+namespace {
+
+/// The mechanism as it is without a correction of its actuators.
+std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
   if (mechanism.points.empty()) {
     try {
@@ -114,10 +119,23 @@ std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
   } catch (const std::invalid_argument& reason) {
     MechanismChoice without_points = mechanism;
     without_points.points.clear();
-    static_cast<void>(build_model(without_points));  // throws where the geometry is impossible by itself
+    static_cast<void>(build_uncorrected(without_points));  // throws where the geometry is impossible by itself
     throw InputError(
         mechanism.points_place, reason.what(),
         "name points around the platform, such as its joints' centres, or leave the key out to take these");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Model> build_model(const MechanismChoice& mechanism) {
+  std::unique_ptr<Model> model = build_uncorrected(mechanism);
+  if (!mechanism.calibrated) return model;
+  try {
+    return calibrated(std::move(model));
+  } catch (const std::invalid_argument& reason) {
+    throw InputError(mechanism.calibrated_place, std::string("analysis.calibrated is true, but ") + reason.what(),
+                     "leave it out; it is for mechanisms of which sensitivity studies say what calibration can remove");
   }
 }
 
@@ -147,6 +165,12 @@ std::string held_errors_text(const Study& study) {
   const std::string_view overrides = study.analysis.kind->overrides;
   const std::string unless = overrides.empty() ? "" : fmt::format(", unless {} another value", overrides);
   return fmt::format("held constant{}: {} at {}", unless, owners_text(held, study), sizes_text(held, study));
+}
+
+std::string calibration_text(const Study& study) {
+  return study.mechanism.calibrated
+             ? "calibrated: responses are what the best correction of the actuators leaves, each pose by itself"
+             : "";
 }
 
 }  // namespace poesy

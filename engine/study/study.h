@@ -40,6 +40,9 @@ struct MechanismChoice {
   Place points_place = {};  ///< for messages about the points
   /// Where somebody described the mechanism; nothing for those of the catalog.
   std::optional<MechanismText> file = std::nullopt;
+  /// Whether its responses are what the best correction of the actuators leaves (Model::calibrated_evaluator).
+  bool calibrated = false;
+  Place calibrated_place = {};  ///< for messages about that
 };
 
 /// Errors that depend on each other: a Gaussian copula over their own distributions.
@@ -154,7 +157,8 @@ std::vector<double> standard_deviations(const Study& study);  ///< Those of the 
 /// The mechanism at its second fidelity alone. Precondition: it compares two.
 MechanismChoice at_compared_fidelity(MechanismChoice mechanism);
 
-/// Builds the study's mechanism. Throws InputError at the mechanism's place when the geometry is impossible.
+/// Builds the study's mechanism. Throws InputError at the mechanism's place when the geometry is impossible, and at
+/// calibrated_place when it is to be calibrated and cannot be.
 std::unique_ptr<Model> build_model(const MechanismChoice& mechanism);
 
 /// The name of the factor set that these are, or "all"; empty when they are no set.
@@ -167,5 +171,8 @@ std::optional<std::string> beyond_bound(const Model& model, FactorIndex factor, 
 /// Which errors the study's background holds, at which size, on one line: "held constant: 30 errors of set 'benign' at
 /// 1 mm and 1 deg". Empty where it holds none. Errors that vary are not held, nor are those whose size is zero.
 std::string held_errors_text(const Study& study);
+
+/// That the study's responses are what calibration leaves, on one line; empty where they are not.
+std::string calibration_text(const Study& study);
 
 }  // namespace poesy

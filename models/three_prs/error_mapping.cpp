@@ -126,6 +126,19 @@ Separation separation(const Geometry& geometry, const Configuration& nominal) {
   return {column_norms(drive), column_norms(constraint), column_norms(effect), column_norms(turned.bottomRows<6>())};
 }
 
+Corrections corrections(const Geometry& geometry, const Configuration& nominal) {
+  const Effects effects = first_order_effects(geometry, nominal);
+  Corrections found;
+  // A carriage that is corrected moves as one whose initial position is in error.
+  for (std::size_t i = 0; i < kLimbs; ++i) {
+    found.motions.col(static_cast<Eigen::Index>(i)) = effects.col(static_cast<Eigen::Index>(factor_of(i, Source::q)));
+  }
+  const Displacements<6> displacements = joint_displacements(nominal);
+  const Displacements<3> by_carriages = displacements * found.motions.topRows<6>();
+  found.best = by_carriages.householderQr().solve(displacements);
+  return found;
+}
+
 SeparationDescription separation_description() {
   return {"root mean square displacement of the platform's three spherical joints", published_classes()};
 }

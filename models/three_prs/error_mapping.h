@@ -38,6 +38,17 @@ Effects first_order_effects(const Geometry& geometry, const Configuration& nomin
 /// Not finite at a singular pose.
 Separation separation(const Geometry& geometry, const Configuration& nominal);
 
+/// Motions of the platform by its carriages to first order, and which of them corrects best.
+struct Corrections {
+  Eigen::Matrix<double, kMotions, static_cast<int>(kLimbs)> motions;  ///< by a unit of each carriage, rows of Effects
+  /// From a displacement x = [theta; dr] to the dq with which x - motions.topRows<6>() dq is the smallest, by the
+  /// measure of separation().
+  Eigen::Matrix<double, static_cast<int>(kLimbs), 6> best;
+};
+
+/// At a nominal configuration. Not finite at a singular pose.
+Corrections corrections(const Geometry& geometry, const Configuration& nominal);
+
 /// What the paper calls each error, [60]: "compensable" for 24 that enter its drive rows, "non-compensable" for 21 that
 /// enter its constraint rows, empty for the 9 without effect. The paper has a scalar c where c_x, c_y and c_z stand
 /// here, so 30 are compensable.

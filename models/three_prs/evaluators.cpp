@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "models/three_prs/closure.h"
@@ -85,6 +87,56 @@ class ExactEvaluator final : public Evaluator {
   ClosureSolver solver_;
 };
 
+class CalibratedEvaluator final : public Evaluator {
+ public:
+  CalibratedEvaluator(const Geometry& geometry, Fidelity fidelity, std::unique_ptr<Evaluator> uncorrected)
+      : geometry_(geometry), fidelity_(fidelity), uncorrected_(std::move(uncorrected)) {}
+
+  void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+    uncorrected_->evaluate(samples, outcomes);
+    const Configuration nominal = configuration_at(geometry_, samples.pose);
+    const Corrections by = corrections(geometry_, nominal);
+    const Vector3 arm = tool(geometry_, nominal.platform.R);
+    for (std::size_t b = 0; b < samples.count; ++b) correct(by, arm, b, outcomes);
+    fill_norms(outcomes);
+    if (!by.motions.allFinite() || !by.best.allFinite()) std::ranges::fill(outcomes.status, SolveStatus::singular);
+  }
+
+ private:
+  using Rows = Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<>>;
+
+  /// One sample's rows of a block.
+  static Rows rows_of(std::span<double> block, std::size_t sample, std::size_t count) {
+    return {block.data() + sample, static_cast<Eigen::Index>(block.size() / count),
+            Eigen::InnerStride<>(static_cast<Eigen::Index>(count))};
+  }
+
+  void correct(const Corrections& by, const Vector3& arm, std::size_t sample, const OutcomeBlock& outcomes) const {
+    const std::size_t count = outcomes.status.size();
+    Rows responses = rows_of(outcomes.responses, sample, count);
+    const lie::Screw<double> displacement = responses.head<6>();
+    const Vector3 dq = by.best * displacement;
+    const lie::Screw<double> left = displacement - by.motions.topRows<6>() * dq;
+    const Vector3 theta = left.head<3>();
+    responses.head<6>() = left;
+    responses.segment<3>(kTip) = left.tail<3>() + moved(arm, theta);
+    if (outcomes.details.empty()) return;
+    rows_of(outcomes.details, sample, count) -= by.motions.bottomRows<3>() * dq;
+  }
+
+  /// By how much the end of an arm moves where this rotation turns it; to first order also at that fidelity.
+  Vector3 moved(const Vector3& arm, const Vector3& theta) const {
+    const Vector3 across = theta.cross(arm);
+    if (fidelity_ == Fidelity::first_order) return across;
+    const auto by = lie::exp_coefficients<double>(theta.squaredNorm());
+    return by.a * across + by.b * theta.cross(across);
+  }
+
+  Geometry geometry_;
+  Fidelity fidelity_;
+  std::unique_ptr<Evaluator> uncorrected_;
+};
+
 class GivenOutcome final : public Evaluator {
  public:
   /// Refers to the trace.
@@ -137,6 +189,28 @@ std::vector<Detail> details() {
 std::unique_ptr<Evaluator> head_evaluator(const Geometry& geometry, Fidelity fidelity, const SolverOptions& options) {
   if (fidelity == Fidelity::first_order) return std::make_unique<FirstOrderEvaluator>(geometry);
   return std::make_unique<ExactEvaluator>(geometry, options);
+}
+
+std::unique_ptr<Evaluator> calibrated_head_evaluator(const Geometry& geometry, Fidelity fidelity,
+                                                     const SolverOptions& options) {
+  return std::make_unique<CalibratedEvaluator>(geometry, fidelity, head_evaluator(geometry, fidelity, options));
+}
+
+void fill_norms(const OutcomeBlock& outcomes) {
+  const std::size_t count = outcomes.status.size();
+  double* const rows = outcomes.responses.data();
+  for (std::size_t n = 0; n < kResponses - kComponents; ++n) {
+    const double* const x = rows + 3 * n * count;
+    double* const out = rows + (kComponents + n) * count;
+    for (std::size_t b = 0; b < count; ++b) {
+      out[b] = std::sqrt(x[b] * x[b] + x[b + count] * x[b + count] + x[b + 2 * count] * x[b + 2 * count]);
+    }
+  }
+  for (std::size_t b = 0; b < count; ++b) {
+    bool finite = true;
+    for (std::size_t n = kComponents; n < kResponses; ++n) finite = finite && std::isfinite(rows[n * count + b]);
+    if (usable(outcomes.status[b]) && !finite) outcomes.status[b] = SolveStatus::non_finite;
+  }
 }
 
 SolveTrace head_trace(const Geometry& geometry, Fidelity fidelity, std::span<const double> pose,

@@ -32,6 +32,17 @@ enum class Fidelity : std::size_t {
 /// For poses (alpha, beta, z) and the head's 60 errors.
 std::unique_ptr<Evaluator> head_evaluator(const Geometry& geometry, Fidelity fidelity, const SolverOptions& options);
 
+/// The same with what the best correction of the carriages leaves (Model::calibrated_evaluator, Corrections). Of
+/// [theta; dr] as the evaluator gives it the correction's motion is subtracted; tool tip and norms are those of the
+/// rest, rotations of finite size where the fidelity is exact; swings are less what the correction adds to them. At a
+/// singular pose every sample is singular.
+std::unique_ptr<Evaluator> calibrated_head_evaluator(const Geometry& geometry, Fidelity fidelity,
+                                                     const SolverOptions& options);
+
+/// Fills the last three responses, the norms, from the nine components above them. A sample that was solved and whose
+/// responses overflow becomes non_finite.
+void fill_norms(const OutcomeBlock& outcomes);
+
 /// One sample at a reachable pose (alpha, beta, z); errors: the head's 60, SI. Exactly by close_limbs; to first order
 /// by the evaluator, which iterates nothing.
 SolveTrace head_trace(const Geometry& geometry, Fidelity fidelity, std::span<const double> pose,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -20,29 +19,6 @@ struct VariedSlide {
   std::size_t factor;
   std::size_t row;
 };
-
-/// The norm of the vector whose three rows begin at `first`, [B].
-void norms(std::span<double> responses, std::size_t first, std::size_t norm, std::size_t count) {
-  const double* x = responses.data() + first * count;
-  double* out = responses.data() + norm * count;
-  for (std::size_t b = 0; b < count; ++b) {
-    out[b] = std::sqrt(x[b] * x[b] + x[b + count] * x[b + count] + x[b + 2 * count] * x[b + 2 * count]);
-  }
-}
-
-/// Fills the last three rows of responses [12 x B] from the nine above them.
-void all_norms(std::span<double> responses, std::size_t count) {
-  norms(responses, kTheta, kComponents, count);
-  norms(responses, kDr, kComponents + 1, count);
-  norms(responses, kTip, kComponents + 2, count);
-}
-
-/// Whether the three norms of a sample, and with them its components, are finite.
-bool is_finite(std::span<const double> responses, std::size_t sample, std::size_t count) {
-  return std::isfinite(responses[kComponents * count + sample]) &&
-         std::isfinite(responses[(kComponents + 1) * count + sample]) &&
-         std::isfinite(responses[(kComponents + 2) * count + sample]);
-}
 
 class MachineEvaluator final : public Evaluator {
  public:
@@ -63,12 +39,7 @@ class MachineEvaluator final : public Evaluator {
     } else {
       add_slides(samples, outcomes.responses);
     }
-    all_norms(outcomes.responses, samples.count);
-    for (std::size_t b = 0; b < samples.count; ++b) {
-      if (usable(outcomes.status[b]) && !is_finite(outcomes.responses, b, samples.count)) {
-        outcomes.status[b] = SolveStatus::non_finite;
-      }
-    }
+    fill_norms(outcomes);
   }
 
  private:

@@ -137,6 +137,10 @@ class ThreePrs final : public Model {
     return head_evaluator(geometry_, fidelity_, options);
   }
 
+  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
+    return calibrated_head_evaluator(geometry_, fidelity_, options);
+  }
+
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
     return head_trace(geometry_, fidelity_, pose, errors, options);

@@ -4,7 +4,8 @@ poesy_test(random_test LABELS unit
                    engine/random/latin_hypercube_test.cpp engine/random/normal_copula_test.cpp
            LINKS poesy_random Boost::headers)
 poesy_test(random_property_test LABELS property
-           SOURCES engine/random/distribution_property_test.cpp engine/random/stream_property_test.cpp
+           SOURCES engine/random/distribution_property_test.cpp engine/random/shifted_distribution_test.cpp
+                   engine/random/stream_property_test.cpp
            LINKS poesy_random Boost::headers)
 poesy_test(random_statistical_test LABELS statistical
            SOURCES engine/random/designs_statistical_test.cpp engine/random/distribution_statistical_test.cpp

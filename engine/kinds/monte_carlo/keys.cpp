@@ -7,8 +7,9 @@
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 10> kMonteCarloKeys{"factors", "samples", "draws", "conf_level", "quantiles",
-                                                           "limits",  "judge",   "share", "yield",      "background"};
+constexpr std::array<std::string_view, 11> kMonteCarloKeys{"factors",    "samples",   "draws",     "calibrated",
+                                                           "conf_level", "quantiles", "limits",    "judge",
+                                                           "share",      "yield",     "background"};
 
 /// Shares between 0 and 1, ascending.
 KeyValue<MonteCarloOptions> quantiles() {

@@ -16,9 +16,11 @@ MachineTable::MachineTable(const Plan& plan, std::size_t responses, const Analys
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
   for (const ResponseLimit& limit : analysis.limits) limits_[limit.response] = limit.most;
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
-    // The score of an error by itself is not that of one whose others go with it: then there is none.
+    // The score of an error by itself is not that of one whose others go with it, or whose mean is shifted: then there
+    // is none.
     const Distribution& distribution = plan.distributions()[p];
-    scales_.push_back({plan.is_correlated(p) ? 0.0 : distribution.sigma(), distribution.half_width()});
+    const bool has_score = !plan.is_correlated(p) && distribution.shift() == 0.0;
+    scales_.push_back({has_score ? distribution.sigma() : 0.0, distribution.half_width()});
   }
   effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, scales_.size());
 }

@@ -147,6 +147,7 @@ std::vector<RunFact> run_facts(const ReportKind& kind, const ReportedResult& rep
       {"kind of study", result.kind},
       {"mechanism", result.model},
       {"fidelity of the model", setting(result, "mechanism", "fidelity")},
+      {"calibrated", setting(result, "analysis", "calibrated")},
       {"poses", poses_text(result, words)},
       {"errors", result.factors.empty() ? "" : count_text(result.factors.size())},
       {"linear errors", words.draws ? setting(result, "errors", "linear") : ""},

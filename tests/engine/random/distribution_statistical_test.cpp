@@ -40,6 +40,10 @@ TEST(SampleMoments, OfTheWideTruncatedNormal) { expect_stated_moments(Distributi
 
 TEST(SampleMoments, OfTheUniform) { expect_stated_moments(Distribution::uniform(2.0)); }
 
+TEST(SampleMoments, OfAShiftedNormal) { expect_stated_moments(Distribution::normal(1.0).shifted(0.4)); }
+
+TEST(SampleMoments, OfAShiftedUniform) { expect_stated_moments(Distribution::uniform(2.0).shifted(0.1)); }
+
 TEST(SampleMoments, OfTheTriangular) { expect_stated_moments(Distribution::triangular(2.0)); }
 
 }  // namespace

@@ -123,6 +123,43 @@ TEST(Machines, FindTheYieldOfALinearModel) {
   }
 }
 
+/// y = a . e of errors of which each half is off: 1 - Y is what a normal sum leaves beyond the limit on either side,
+/// averaged over the eight signs. A shifted error has no score.
+TEST(Machines, FindTheYieldOfShiftedErrors) {
+  constexpr std::size_t kMachines = 40'500;
+  constexpr std::array kSigma{0.1, 0.05, 0.2};
+  constexpr std::array kShift{0.164, 0.04, 0.0};
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 1, kMachines, kSigma);
+  for (std::size_t p = 0; p < 3; ++p) {
+    study.errors.by_factor[p] = Distribution::normal(kSigma[p]).shifted(kShift[p]);
+  }
+  study.analysis.limits = {{0, 0.3}};
+  const MonteCarloResult found = run(study, LinearModel());
+  const YieldResult& yield = *found.machines->yield;
+  const double deviation = 0.1 * std::sqrt(3.0);
+  double expected = 0.0;
+  for (const double mean : {0.244, 0.084, -0.084, -0.244}) {  // +-0.164 +- 2 x 0.04
+    const auto below = [&](double y) { return 0.5 * std::erfc((mean - y) / deviation / std::sqrt(2.0)); };
+    expected += 0.25 * (below(0.3) - below(-0.3));
+  }
+  constexpr double kErrors = 3.9;
+  EXPECT_NEAR(yield.value, expected, kErrors * std::sqrt(expected * (1.0 - expected) / kMachines));
+  EXPECT_TRUE(std::isnan(yield.gradient[0]) && std::isnan(yield.gradient_ci_low[0]));
+  EXPECT_TRUE(std::isnan(yield.gradient[1]) && std::isnan(yield.gradient_ci_high[1]));
+  EXPECT_LT(yield.gradient[2], 0.0);
+  // The shares of the variance are those of sigma^2 + shift^2. Of the first error, two bins beside the middle are
+  // equally large, though one is of either half.
+  double all = 0.0;
+  for (std::size_t p = 0; p < 3; ++p) {
+    all += std::pow(LinearModel::kSlopes[p] * study.errors.by_factor[p].standard_deviation(), 2);
+  }
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double share = std::pow(LinearModel::kSlopes[p] * study.errors.by_factor[p].standard_deviation(), 2) / all;
+    EXPECT_NEAR(found.effects->effects.s1[p], share, 0.02) << p;
+  }
+}
+
 /// Indices and curves of draws that are made anew at each pose.
 TEST(MonteCarloEffects, AreThoseOfALinearModel) {
   const Catalog catalog = test::fake_catalog();
