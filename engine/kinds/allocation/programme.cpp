@@ -56,6 +56,28 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
   return {{law, part.lo, hi}};
 }
 
+/// Errors of this shape about a mean that is off, SI. Precondition: the shape is not measured.
+Distribution error_of(const Distribution& shape, double sigma, double shift) {
+  const double without_shift =
+      std::sqrt(shape.standard_deviation() * shape.standard_deviation() - shape.shift() * shape.shift());
+  const auto scaled = [&] {
+    switch (shape.shape()) {
+      case Distribution::Shape::truncated_normal:
+        return Distribution::truncated_normal(shape.sigma() * sigma / without_shift,
+                                              shape.half_width() * sigma / without_shift);
+      case Distribution::Shape::uniform:
+        return Distribution::uniform(std::sqrt(3.0) * sigma);
+      case Distribution::Shape::triangular:
+        return Distribution::triangular(std::sqrt(6.0) * sigma);
+      case Distribution::Shape::normal:
+      case Distribution::Shape::measured:
+        break;
+    }
+    return Distribution::normal(sigma);
+  };
+  return scaled().shifted(shift);
+}
+
 bool has_cost(const AllocatedPart& part) {
   const auto costs = [](const StatedCost& cost) { return cost.law != StatedCost::Law::none; };
   return costs(part.cost) || std::ranges::any_of(part.processes, costs, &StatedProcess::cost);
@@ -300,7 +322,7 @@ Study ToleranceProgramme::at(std::span<const double> tolerance) const {
     const double shift = drawn_[i].spread.shift * tolerance[i];
     for (const FactorIndex factor : parts()[i].factors) {
       Distribution& error = study.errors.by_factor[factor.value];
-      error = error.scaled_to(std::max(sigma, kPerfect), shift);
+      error = error_of(error, std::max(sigma, kPerfect), shift);
     }
   }
   return study;
