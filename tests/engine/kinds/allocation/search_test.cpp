@@ -1,0 +1,361 @@
+// Tolerances of functions whose best tolerances are known: a study of them goes the way of every study.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/mean_squares.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/search.h"
+#include "engine/kinds/study_run.h"
+#include "engine/stats/proportion.h"
+#include "tests/engine/stats/allocation/overrunning_clutch.h"
+#include "tests/support/function_model.h"
+
+namespace poesy::test {
+namespace {
+
+/// The share of a normal within three standard deviations: with it a limit on values is three times that on root mean
+/// squares, as the literature takes it.
+const double kThreeSigma = std::erf(3.0 / std::sqrt(2.0));
+
+AllocatedPart part_of(std::size_t factor, const StatedCost& cost) {
+  AllocatedPart part;
+  part.name = "part " + std::to_string(factor + 1);
+  part.factors = {FactorIndex(factor)};
+  part.cost = cost;
+  return part;
+}
+
+StatedCost reciprocal(double a, double b) {
+  StatedCost cost;
+  cost.law = StatedCost::Law::reciprocal;
+  cost.a = a;
+  cost.b = b;
+  return cost;
+}
+
+/// A study of a function's tolerances: response 0 within `limit`.
+struct FunctionStudy {
+  FunctionStudy(std::size_t errors, ErrorFunction function, double limit, std::size_t machines)
+      : model(errors, {"y"}, std::move(function)), entry{model.description(), nullptr} {
+    study = function_study(entry, kAllocationStudy, Distribution::normal(0.05), machines);
+    study.analysis.draws = Draws::per_machine;
+    study.analysis.limits = {{0, limit}};
+    asked().yield = kThreeSigma;
+  }
+  AllocationOptions& asked() { return asked_of<AllocationOptions>(study.analysis); }
+  StudyResult run(std::size_t threads = 2, std::vector<double> places = {0.5}) const {
+    return *run_study(study, model, PoseSet(1, std::move(places)), {.threads = threads});
+  }
+  AllocationResult find(std::size_t threads = 2) const { return run(threads).as<AllocationResult>(); }
+
+  FunctionModel model;
+  CatalogEntry entry;
+  Study study;
+};
+
+/// The clutch's angle less its nominal value; a metre here is a millimetre there.
+void clutch(std::span<const double> x, double, std::span<double> y) {
+  const double rollers = 0.5 * (22.86 + x[1] + 22.86 + x[2]);
+  const double nominal = std::acos((55.29 + 22.86) / (101.60 - 22.86));
+  y[0] = std::acos((55.29 + x[0] + rollers) / (101.60 + x[3] - rollers)) - nominal;
+}
+
+/// Parts with the processes of the literature, or one process of each without bounds.
+FunctionStudy clutch_study(std::size_t machines, std::vector<std::size_t> fixed = {}) {
+  FunctionStudy study(4, clutch, 0.035, machines);
+  struct Range {
+    double a, b, lo, hi;
+  };
+  const std::vector<std::vector<Range>> processes{{{10, .015, .015, .08}, {5, .5, .06, .15}, {3.5, .75, .12, .25}},
+                                                  {{8, .25, .02, .15}, {3, .65, .08, .30}},
+                                                  {{2.5, .3, .04, .20}, {5, .045, .12, .25}},
+                                                  {{4, .56, .08, .12}, {6, .16, .15, .25}, {.5, .88, .2, .4}}};
+  for (std::size_t i = 0; i < processes.size(); ++i) {
+    AllocatedPart part = part_of(i, {});
+    if (fixed.empty()) {
+      part.choice = AllocatedPart::Choice::processes;
+      for (const Range& one : processes[i]) {
+        part.processes.push_back({std::to_string(part.processes.size() + 1), reciprocal(one.a, one.b), one.lo, one.hi});
+      }
+    } else {
+      const Range& one = processes[i][fixed[i] - 1];
+      part.cost = reciprocal(one.a, one.b);
+    }
+    study.asked().parts.push_back(part);
+  }
+  return study;
+}
+
+TEST(OverrunningClutch, HasTheLeastCostOfTheLiterature) {
+  const AllocationResult found = clutch_study(148'000).find();
+  const AllocationStage& linear = found.stages.front();
+  EXPECT_NEAR(linear.cost, 24.462426, 3e-6);
+  EXPECT_LE(linear.lower_bound, linear.cost);
+  EXPECT_GT(linear.lower_bound, linear.cost * (1.0 - 1e-6));
+  EXPECT_EQ(found.chosen, (std::vector<std::string>{"3", "2", "1", "3"}));
+}
+
+TEST(OverrunningClutch, HasTheLeastCostOfOneProcessEachWithoutBounds) {
+  const AllocationResult found = clutch_study(2000, {3, 2, 1, 3}).find();
+  EXPECT_NEAR(found.stages.front().cost, 24.42989011, 3e-6);
+}
+
+// Its yield at the tolerances of least cost is .99486: n = 148 000, 4.4 standard errors, alpha = 1e-5.
+TEST(OverrunningClutch, IsRepairedByItsMachines) {
+  const AllocationResult found = clutch_study(148'000).find();
+  const auto tried = std::ranges::find(found.stages, "tried on machines", &AllocationStage::name);
+  ASSERT_NE(tried, found.stages.end());
+  const double n = static_cast<double>(tried->machines);
+  EXPECT_NEAR(static_cast<double>(tried->rejects) / n, 1.0 - 0.99486, 4.4 * std::sqrt(0.00514 / n) + 5e-6);
+  EXPECT_TRUE(found.certified());
+  EXPECT_GT(found.total_cost, 24.462426);
+  EXPECT_LT(found.total_cost, 1.1 * 24.462426);
+  EXPECT_LE(found.design_rejects, found.design_most);
+}
+
+TEST(OverrunningClutch, AnyPartMadeCoarserAloneBreaksTheYield) {
+  const AllocationResult found = clutch_study(148'000).find();
+  const double most = 1.0 - static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
+  std::size_t judged = 0;
+  for (std::size_t i = 0; i < found.parts(); ++i) {
+    if (std::isnan(found.coarser_yield[i])) continue;
+    EXPECT_LT(found.coarser_yield[i], most) << found.part_names[i];
+    ++judged;
+  }
+  EXPECT_GE(judged, 2u);
+}
+
+const std::vector<double> kCoefficients{3.0, 1.0, 0.5};
+const std::vector<double> kPrices{1.0, 2.0, 0.2};
+
+void weighted_sum(std::span<const double> x, double, std::span<double> y) {
+  y[0] = 0.0;
+  for (std::size_t i = 0; i < kCoefficients.size(); ++i) y[0] += kCoefficients[i] * x[i];
+}
+
+FunctionStudy weighted_sum_study(std::size_t machines = 200'000) {
+  FunctionStudy study(3, weighted_sum, 1.0, machines);
+  study.asked().yield = 0.99;
+  for (std::size_t i = 0; i < 3; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, kPrices[i])));
+  return study;
+}
+
+// min of sum b_i / t_i with sum g_i^2 t_i^2 = L^2 has t_i proportional to (b_i / g_i^2)^(1/3). One response that is
+// normal: the yield is a function of the sum alone, so the programme's tolerances are those of the yield.
+TEST(ToleranceSearch, SharesALinearLimitAsTheClosedForm) {
+  const FunctionStudy study = weighted_sum_study();
+  const AllocationResult found = study.find();
+  EXPECT_TRUE(found.certified());
+  std::vector<double> best;
+  double square = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    best.push_back(std::cbrt(kPrices[i] / (kCoefficients[i] * kCoefficients[i])));
+    square += std::pow(kCoefficients[i] * best[i] / 3.0, 2);
+  }
+  // The design's share of rejects, whose scatter is 1 / sqrt(rejects) of it, and so a quarter of that of the sizes.
+  const double share = static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
+  const double z = -normal_quantile(1.0, 0.5 * share);
+  double cost = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) cost += kPrices[i] / (best[i] / (z * std::sqrt(square)));
+  EXPECT_NEAR(found.total_cost, cost, 0.01 * cost);
+  double found_square = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) found_square += std::pow(kCoefficients[i] * found.sigma[i], 2);
+  EXPECT_NEAR(std::sqrt(found_square), 1.0 / z, 0.01 / z);
+}
+
+TEST(ToleranceSearch, FindsTheSameOnAnyNumberOfThreads) {
+  const FunctionStudy study = weighted_sum_study(20'000);
+  const AllocationResult one = study.find(1);
+  const AllocationResult three = study.find(3);
+  EXPECT_EQ(one.tolerance, three.tolerance);
+  EXPECT_EQ(one.certificate.rejects, three.certificate.rejects);
+  EXPECT_EQ(one.coarser_yield, three.coarser_yield);
+  EXPECT_EQ(one.multiplier, three.multiplier);
+}
+
+TEST(ToleranceSearch, GivesAStudyThatRepeatsItsCertificate) {
+  const FunctionStudy study = weighted_sum_study(20'000);
+  const StudyResult result = study.run();
+  const AllocationResult& found = result.as<AllocationResult>();
+  ASSERT_TRUE(result.confirming);
+  EXPECT_NE(result.confirming->seed, study.study.seed);
+  const auto repeated = run_study(*result.confirming, study.model, PoseSet(1, {0.5}), {.threads = 2});
+  ASSERT_TRUE(repeated && repeated->verdicts && repeated->verdicts->yield);
+  EXPECT_EQ(repeated->verdicts->yield->rejects, found.certificate.rejects);
+  EXPECT_EQ(repeated->verdicts->yield->machines, found.certificate.machines);
+  EXPECT_EQ(repeated->verdicts->yield->decision, YieldVerdict::Decision::kept);
+}
+
+TEST(ToleranceSearch, GivesPartsOfEqualEffectEqualSharesOfTheMeanSquare) {
+  FunctionStudy study = weighted_sum_study(20'000);
+  study.asked().aim = Aim::equal_effect;
+  const AllocationResult found = study.find();
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(found.mean_square_share[i], 1.0 / 3.0, 1e-9);
+    EXPECT_NEAR(found.tolerance[i] * kCoefficients[i], found.tolerance[0] * kCoefficients[0], 1e-9);
+  }
+  EXPECT_TRUE(found.certified());
+}
+
+TEST(ToleranceSearch, TakesTheLargestCommonFactorOfGivenErrors) {
+  FunctionStudy study = weighted_sum_study(20'000);
+  study.asked().aim = Aim::common_factor;
+  study.study.errors.by_factor[1] = Distribution::normal(0.15);
+  const AllocationResult found = study.find();
+  EXPECT_NEAR(found.tolerance[1], 3.0 * found.tolerance[0], 1e-9 * found.tolerance[1]);
+  EXPECT_NEAR(found.tolerance[2], found.tolerance[0], 1e-9 * found.tolerance[0]);
+}
+
+TEST(ToleranceSearch, KeepsTheShapeOfErrorsAndTheirShift) {
+  FunctionStudy study = weighted_sum_study(20'000);
+  study.study.errors.by_factor[0] = Distribution::uniform(0.1);
+  for (AllocatedPart& part : study.asked().parts) {
+    part.sigmas = std::sqrt(3.0);
+    part.shift = 0.1;
+  }
+  const StudyResult result = study.run();
+  const AllocationResult& found = result.as<AllocationResult>();
+  const Distribution& first = result.confirming->errors.by_factor[0];
+  EXPECT_EQ(first.shape(), Distribution::Shape::uniform);
+  EXPECT_NEAR(first.half_width() + first.shift(), found.tolerance[0], 1e-12);
+  EXPECT_NEAR(first.shift(), 0.1 * found.tolerance[0], 1e-15);
+  EXPECT_TRUE(found.certified());
+}
+
+TEST(ToleranceSearch, ChoosesAmongValuesThatCanBeHad) {
+  FunctionStudy study = weighted_sum_study(20'000);
+  for (AllocatedPart& part : study.asked().parts) {
+    part.choice = AllocatedPart::Choice::values;
+    part.values = {0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0};
+  }
+  const AllocationResult found = study.find();
+  EXPECT_TRUE(found.certified());
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& values = study.asked().parts[i].values;
+    EXPECT_NE(std::ranges::find(values, found.tolerance[i]), values.end());
+  }
+}
+
+// An error that acts through another one alone: unlimited, it would be as coarse as its bound allows.
+TEST(ToleranceSearch, SeesErrorsThatActThroughOthers) {
+  const auto function = [](std::span<const double> x, double, std::span<double> y) {
+    y[0] = x[0] + 30.0 * x[0] * x[1];
+  };
+  FunctionStudy study(2, function, 0.3, 20'000);
+  study.asked().yield = 0.99;
+  for (std::size_t i = 0; i < 2; ++i) {
+    study.asked().parts.push_back(part_of(i, reciprocal(0.0, i == 0 ? 1.0 : 0.1)));
+    study.asked().parts.back().hi = 5.0;
+  }
+  const AllocationResult found = study.find();
+  EXPECT_TRUE(found.certified());
+  EXPECT_LT(found.tolerance[1], 0.5);
+}
+
+std::string refusal_of(const FunctionStudy& study) {
+  try {
+    static_cast<void>(study.find());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ToleranceSearch, RefusesALimitBelowWhatOtherErrorsGive) {
+  FunctionStudy study = weighted_sum_study(20'000);
+  study.asked().parts.erase(study.asked().parts.begin());  // x1 keeps 0.05: 0.15 rms
+  study.study.analysis.limits = {{0, 0.1}};
+  EXPECT_NE(refusal_of(study).find("the errors of no part alone give a root mean square of 0.15"), std::string::npos)
+      << refusal_of(study);
+}
+
+TEST(ToleranceSearch, RefusesLowestTolerancesThatAreTooCoarse) {
+  FunctionStudy study = weighted_sum_study(20'000);
+  for (AllocatedPart& part : study.asked().parts) part.lo = 1.0;
+  EXPECT_NE(refusal_of(study).find("with every tolerance at its lowest the root mean square is 1.067"),
+            std::string::npos)
+      << refusal_of(study);
+  for (AllocatedPart& part : study.asked().parts) part.lo = 0.5;  // 0.534 is no three sigma
+  EXPECT_NE(refusal_of(study).find("99 % of the machines within the limits cannot be had"), std::string::npos)
+      << refusal_of(study);
+}
+
+TEST(ToleranceSearch, RefusesAPartWithoutEffectAndBound) {
+  FunctionStudy study(
+      2, [](std::span<const double> x, double, std::span<double> y) { y[0] = x[0]; }, 1.0, 5000);
+  study.asked().yield = 0.99;
+  for (std::size_t i = 0; i < 2; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
+  EXPECT_NE(refusal_of(study).find("part 'part 2' has no effect on any limit, and no upper bound"), std::string::npos)
+      << refusal_of(study);
+}
+
+MeanSquares squares_of(std::size_t errors, ErrorFunction function, std::size_t draws, std::vector<double> places) {
+  FunctionStudy study(errors, std::move(function), 1.0, 1000);
+  const Plan plan(study.study, PoseSet(1, std::move(places)));
+  return *mean_squares(plan, study.model, study.study.analysis.limits, draws, {.threads = 2});
+}
+
+TEST(MeanSquaresOf, LinearFunctionsAreExactForAnyNumberOfErrors) {
+  constexpr std::size_t kErrors = 400;
+  const auto function = [](std::span<const double> x, double place, std::span<double> y) {
+    y[0] = 0.01;
+    for (std::size_t p = 0; p < x.size(); ++p) y[0] += (1.0 + place) * (1.0 + static_cast<double>(p)) * x[p];
+  };
+  const MeanSquares found = squares_of(kErrors, function, 20, {0.0, 1.0});
+  for (std::size_t m = 0; m < 2; ++m) {
+    double value = 1e-4;
+    for (std::size_t p = 0; p < kErrors; ++p) {
+      const double slope = std::pow((1.0 + static_cast<double>(m)) * (1.0 + static_cast<double>(p)), 2);
+      EXPECT_NEAR(found.slope[m * kErrors + p], slope, 1e-6 * slope) << p;
+      value += 0.05 * 0.05 * slope;
+    }
+    EXPECT_NEAR(found.value[m], value, 1e-6 * value);
+  }
+}
+
+// y = x1 + 10 x2 x3 has E y^2 = s^2 + 100 s^4. The part of x2 is known from 4000 draws of x3, whose mean square has a
+// relative standard error of sqrt(2 / 4000); alpha = 1e-5 for each of the three.
+TEST(MeanSquaresOf, ErrorsThatActTogetherCountForEach) {
+  const auto function = [](std::span<const double> x, double, std::span<double> y) {
+    y[0] = x[0] + 10.0 * x[1] * x[2];
+  };
+  const MeanSquares found = squares_of(3, function, 4000, {0.5});
+  const double square = 0.05 * 0.05;
+  const double tolerance = 4.5 * std::sqrt(2.0 / 4000.0);
+  EXPECT_NEAR(found.slope[0], 1.0, 1e-9);
+  EXPECT_NEAR(found.slope[1], 100.0 * square, 100.0 * square * tolerance);
+  EXPECT_NEAR(found.slope[2], 100.0 * square, 100.0 * square * tolerance);
+  EXPECT_NEAR(found.value[0], square + 100.0 * square * square, 100.0 * square * square * tolerance);
+}
+
+struct Promise {
+  double yield;
+  double confidence;
+  std::uint64_t machines;
+};
+
+class Allowed : public ::testing::TestWithParam<Promise> {};
+
+TEST_P(Allowed, RejectsAreWhatClopperAndPearsonAllow) {
+  const auto [yield, confidence, machines] = GetParam();
+  const AllowedRejects allowed = allowed_rejects(yield, confidence, machines);
+  EXPECT_GE(proportion_at_least(machines - allowed.certificate, machines, confidence), yield);
+  EXPECT_LT(proportion_at_least(machines - allowed.certificate - 1, machines, confidence), yield);
+  EXPECT_LE(allowed.design, allowed.certificate);
+  // Two numbers of rejects, each about Poisson: their difference is about normal.
+  const double d = static_cast<double>(allowed.design);
+  EXPECT_LE(d + 2.3 * std::sqrt(2.0 * d), static_cast<double>(allowed.certificate) + 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Allowed,
+                         ::testing::Values(Promise{0.9973, 0.95, 148'000}, Promise{0.9973, 0.95, 1109},
+                                           Promise{0.9, 0.99, 4000}, Promise{0.999, 0.5, 100'000}));
+
+}  // namespace
+}  // namespace poesy::test
