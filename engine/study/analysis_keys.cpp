@@ -216,16 +216,8 @@ std::string response_limits_lines(const Study& study) {
   return text;
 }
 
-/// The responses, and a limit of the first one that is a length, or of the first.
 std::string shown_limits(const TemplateLines& lines, const Study& study) {
-  const std::vector<Response>& responses = study.model().responses;
-  if (responses.empty()) return {};
-  const std::string list = fmt::format("Responses: {}", fmt::join(names(responses), " "));
-  const auto length = std::ranges::find(responses, Dimension::length, &Response::dimension);
-  const Response& response = length == responses.end() ? responses.front() : *length;
-  return comment(list) + lines.explained("analysis", "limits",
-                                         fmt::format("# limits = {{ {} = {} }}", response.name,
-                                                     example_size(response.dimension, 0.05)));
+  return template_limits(lines, study.model(), "# ");
 }
 
 /// The keys of [analysis] that several kinds have, in the order of the reference.
@@ -302,6 +294,11 @@ std::vector<StudyRow> own_rows(const StudyKind& kind) {
   return kind.rows == nullptr ? std::vector<StudyRow>() : kind.rows();
 }
 
+/// Whether a row of the kind's own takes the place of a shared one.
+bool has_own_row(const StudyKind& kind, std::string_view name) {
+  return std::ranges::count(own_rows(kind), name, &StudyRow::name) > 0;
+}
+
 /// For which kinds each shared row holds, and what is said of `kind`. Kinds whose factors a study names come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
@@ -309,7 +306,7 @@ void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   for (StudyRow& row : table.rows) {
     if (!row.only_for.empty()) continue;
     for (const StudyKind* kind : listed) {
-      if (kind->has_key(row.name)) row.only_for.push_back(kind->name);
+      if (kind->has_key(row.name) && !has_own_row(*kind, row.name)) row.only_for.push_back(kind->name);
     }
   }
   StudyRow& row = table.rows.front();
@@ -345,10 +342,28 @@ std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescri
 }
 
 std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model) {
-  if (const std::string set = set_name(factors, model); !set.empty()) return in_quotes(set);
+  const std::string set = set_name(factors, model);
+  return set.empty() ? factor_list_text(factors, model) : in_quotes(set);
+}
+
+std::string factor_list_text(std::span<const FactorIndex> factors, const ModelDescription& model) {
   std::string text = "[";
   for (const FactorIndex factor : factors) text += "\n  " + in_quotes(model.factors[factor.value].name) + ",";
   return text + "\n]";
+}
+
+std::string example_limits(const ModelDescription& model) {
+  const std::vector<Response>& responses = model.responses;
+  if (responses.empty()) return {};
+  const auto length = std::ranges::find(responses, Dimension::length, &Response::dimension);
+  const Response& response = length == responses.end() ? responses.front() : *length;
+  return fmt::format("{{ {} = {} }}", response.name, example_size(response.dimension, 0.05));
+}
+
+std::string template_limits(const TemplateLines& lines, const ModelDescription& model, std::string_view sign) {
+  if (model.responses.empty()) return {};
+  return comment(fmt::format("Responses: {}", fmt::join(names(model.responses), " "))) +
+         lines.explained("analysis", "limits", fmt::format("{}limits = {}", sign, example_limits(model)));
 }
 
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual) {
@@ -365,9 +380,18 @@ std::string read_name(const StudySection& section, std::span<const std::string_v
 
 StudyRows analysis_keys(const StudyKind& kind) {
   StudyRows table = shared_table();
-  for (StudyRow& row : own_rows(kind)) table.rows.push_back(std::move(row));
+  for (StudyRow& row : own_rows(kind)) {
+    const auto shared = std::ranges::find(table.rows, row.name, &StudyRow::name);
+    if (shared == table.rows.end()) {
+      table.rows.push_back(std::move(row));
+    } else {
+      *shared = std::move(row);
+    }
+  }
   return table;
 }
+
+StudyRow shared_analysis_row(std::string_view name) { return row_of(shared_table(), name); }
 
 StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order) {
   StudyRows table = shared_table();

@@ -71,16 +71,17 @@ struct Refusal {
 
 /// A kind of study, as study files know it.
 struct StudyKind {
-  std::string_view name;                      ///< as a study file has it
-  std::string_view asks;                      ///< a clause: "what each error does on its own"
-  std::span<const std::string_view> keys;     ///< of [analysis], in the order of its templates
-  Varies varies = Varies::none;               ///< which factors vary at once
-  bool compares_fidelities = false;           ///< whether it may solve at two fidelities
-  std::string_view usual_factors = {};        ///< the set taken where a study names none; "all" for a model without it
-  std::string_view usual_background = {};     ///< the set that templates hold, for models that have it
-  std::string_view overrides = {};            ///< "a case sets": where a held error may have another value
-  std::vector<StudyRow> (*rows)() = nullptr;  ///< of [analysis], those that it alone has
-  StudyTables (*tables)() = nullptr;          ///< inside these
+  std::string_view name;                   ///< as a study file has it
+  std::string_view asks;                   ///< a clause: "what each error does on its own"
+  std::span<const std::string_view> keys;  ///< of [analysis], in the order of its templates
+  Varies varies = Varies::none;            ///< which factors vary at once
+  bool compares_fidelities = false;        ///< whether it may solve at two fidelities
+  std::string_view usual_factors = {};     ///< the set taken where a study names none; "all" for a model without it
+  std::string_view usual_background = {};  ///< the set that templates hold, for models that have it
+  std::string_view overrides = {};         ///< "a case sets": where a held error may have another value
+  /// Of [analysis], those that it alone has; one with the name of a shared key takes that key's place.
+  std::vector<StudyRow> (*rows)() = nullptr;
+  StudyTables (*tables)() = nullptr;  ///< inside these
   /// Why such a study of this model cannot run.
   std::optional<Refusal> (*refusal)(const ModelDescription& model) = nullptr;
   /// Why there is no template for this model.
@@ -146,6 +147,10 @@ StudyTables errors_tables();
 StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order);
 /// @}
 
+/// The row of [analysis] of this name that several kinds share, for one that takes its place. Precondition: there is
+/// such a row.
+StudyRow shared_analysis_row(std::string_view name);
+
 /// Each reads a part of a study file and throws InputError for the first thing that is wrong with it.
 /// @{
 void read_mechanism(Study& study, const Reading& reading);
@@ -172,8 +177,16 @@ std::vector<FactorIndex> read_factors(const StudyValue& value, const ModelDescri
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual);
 /// The name of their set in quotes, or the factors as a TOML list of names.
 std::string factors_text(std::span<const FactorIndex> factors, const ModelDescription& model);
+/// The factors as a TOML list of names, whether they are a set or not.
+std::string factor_list_text(std::span<const FactorIndex> factors, const ModelDescription& model);
 /// The factor sets of a model in comment lines of a template.
 std::string sets_comment(const ModelDescription& model);
+/// A limit of the model's first response that is a length, else of its first one, as a TOML table; empty for a model
+/// without responses.
+std::string example_limits(const ModelDescription& model);
+/// The model's responses in a comment line of a template, and its line of limits behind `sign`; empty without
+/// responses.
+std::string template_limits(const TemplateLines& lines, const ModelDescription& model, std::string_view sign);
 /// A length or an angle of so many millimetres or degrees, as templates show it: "1 mm" in quotes.
 std::string example_size(Dimension dimension, double units);
 

@@ -2,30 +2,11 @@
 
 #include <algorithm>
 
+#include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
 
 namespace poesy::file {
 namespace {
-
-/// Whether a name fits a pattern in which * stands for any characters and ? for one.
-bool fits(std::string_view pattern, std::string_view name) {
-  std::size_t p = 0, n = 0, star = std::string_view::npos, resumed = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      resumed = n;
-    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p;
-      ++n;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      n = ++resumed;
-    } else {
-      return false;
-    }
-  }
-  return pattern.find_first_not_of('*', p) == std::string_view::npos;
-}
 
 char axis_of(std::size_t component) { return "xyz"[component % 3]; }
 
@@ -89,7 +70,7 @@ FrameErrors frame_errors(const Mechanism& mechanism) {
 std::vector<std::size_t> fitting(const Reference& pattern, const std::vector<Factor>& factors) {
   std::vector<std::size_t> found;
   for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (fits(pattern.name, factors[f].name)) found.push_back(f);
+    if (matches(pattern.name, factors[f].name)) found.push_back(f);
   }
   if (!found.empty()) return found;
   const std::vector<std::string_view> known = names(factors);

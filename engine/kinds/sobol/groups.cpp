@@ -8,6 +8,7 @@
 #include <span>
 
 #include "engine/base/contract.h"
+#include "engine/base/name_pattern.h"
 
 namespace poesy {
 namespace {
@@ -97,28 +98,6 @@ void append_parts(const Detail& detail, std::size_t first, std::vector<SignedVec
 }
 
 }  // namespace
-
-bool matches(std::string_view pattern, std::string_view text) {
-  std::size_t p = 0;
-  std::size_t t = 0;
-  std::size_t star = std::string_view::npos;  // the last '*', and the text from which it was tried
-  std::size_t tried = 0;
-  while (t < text.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      tried = t;
-    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
-      ++p;
-      ++t;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      t = ++tried;
-    } else {
-      return false;
-    }
-  }
-  return pattern.find_first_not_of('*', p) == std::string_view::npos;
-}
 
 std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model) {
   const auto limb = [&](std::size_t p) { return "limb " + std::to_string(factor_at(analysis, model, p).limb); };

@@ -22,9 +22,6 @@ struct ErrorGroup {
 /// What errors that no named group has are called together.
 inline constexpr std::string_view kOtherErrors = "others";
 
-/// Whether a text is as the pattern says, in which '*' stands for any letters and '?' for one.
-bool matches(std::string_view pattern, std::string_view text);
-
 /// The groups of a study: each error is in one. With named groups, errors that none of them has come last, as "others".
 std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
 #include "engine/kinds/sobol/groups.h"
 #include "engine/kinds/sobol/result.h"

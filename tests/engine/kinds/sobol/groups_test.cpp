@@ -11,26 +11,6 @@
 namespace poesy::test {
 namespace {
 
-TEST(ErrorPattern, StarStandsForAnyLettersAndQuestionMarkForOne) {
-  EXPECT_TRUE(matches("delta_1_*", "delta_1_4_x"));
-  EXPECT_TRUE(matches("*_x", "delta_1_4_x"));
-  EXPECT_TRUE(matches("d*1*x", "delta_1_4_x"));
-  EXPECT_TRUE(matches("delta_?_4_?", "delta_1_4_x"));
-  EXPECT_TRUE(matches("*", ""));
-  EXPECT_TRUE(matches("", ""));
-  EXPECT_FALSE(matches("", "x"));
-  EXPECT_FALSE(matches("?", ""));
-  EXPECT_FALSE(matches("delta_2_*", "delta_1_4_x"));
-  EXPECT_FALSE(matches("delta_1_4", "delta_1_4_x"));
-  EXPECT_FALSE(matches("*_y", "delta_1_4_x"));
-}
-
-TEST(ErrorPattern, OfManyStarsIsFast) {
-  std::string pattern;
-  for (int k = 0; k < 2000; ++k) pattern += "*a";
-  EXPECT_FALSE(matches(pattern + "b", std::string(20'000, 'a')));
-}
-
 /// Errors x1 to x4: limbs 1, 1, 2, 2, frames 0, 1, 0, 1.
 std::vector<std::string> groups_of(GroupsBy by, std::vector<NamedGroup> named = {}) {
   const FunctionModel model(4, {"y"}, [](std::span<const double>, double, std::span<double>) {});

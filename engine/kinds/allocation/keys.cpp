@@ -1,0 +1,252 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "engine/base/text.h"
+#include "engine/kinds/allocation/parts.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/stats/proportion.h"
+#include "engine/study/study_kind.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::array<std::string_view, 10> kAllocationKeys{"factors", "limits",     "yield",  "confidence", "samples",
+                                                           "aim",     "background", "sigmas", "cpk",        "parts"};
+
+/// In the order of the enumeration.
+constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};
+
+/// With so many expected rejects a yield is known to 5 % of what it lacks.
+constexpr double kUsualRejects = 400.0;
+constexpr double kFewestUsual = 2000.0;
+constexpr double kMostUsual = 20e6;
+
+/// Machines for a study that does not say how many.
+std::size_t usual_samples(double yield) {
+  constexpr double kThousand = 1000.0;
+  constexpr double kRounding = 1e-11;  // of 1 - yield, so that 0.9 takes 4000 and not 5000
+  const double machines = std::ceil(kUsualRejects / (1.0 - yield) * (1.0 - kRounding));
+  return static_cast<std::size_t>(std::clamp(std::ceil(machines / kThousand) * kThousand, kFewestUsual, kMostUsual));
+}
+
+KeyValue<Study> samples_value() { return whole_at(2, kMostSolves, &Study::analysis, &Analysis::samples); }
+
+void read_samples(const StudyValue& value, Study& study, const Reading&) {
+  if (value.is_section()) {
+    value.fail("is a table, but a certificate needs a number of machines that is fixed before",
+               fmt::format("write a number, e.g. samples = {}", usual_samples(AllocationOptions().yield)));
+  }
+  samples_value().read(value, study);
+}
+
+/// Looks at them alone: parts take what they say (read_sigmas).
+void read_usual_sigmas(const StudyValue&, Study&, const Reading& reading) {
+  static_cast<void>(read_sigmas(reading.root.section("analysis")));
+}
+
+/// Throws for an error of the new parts that an earlier one has.
+void check_own_errors(const StudySection& block, std::span<const AllocatedPart> earlier,
+                      std::span<const AllocatedPart> parts, const ModelDescription& model) {
+  std::vector<const AllocatedPart*> owner(model.factors.size());
+  for (const AllocatedPart& part : earlier) {
+    for (const FactorIndex factor : part.factors) owner[factor.value] = &part;
+  }
+  for (const AllocatedPart& part : parts) {
+    for (const FactorIndex factor : part.factors) {
+      if (owner[factor.value] == nullptr) continue;
+      block.require("factors").fail(fmt::format("puts '{}' into part '{}', but part '{}' has it as well",
+                                                model.factors[factor.value].name, part.name, owner[factor.value]->name),
+                                    "an error has one tolerance; leave it out of one of them");
+    }
+  }
+}
+
+void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
+  const auto usual = read_sigmas(reading.root.section("analysis"));
+  std::vector<AllocatedPart>& parts = asked_of<AllocationOptions>(study.analysis).parts;
+  for (const StudyValue& one : value.list()) {
+    const StudySection block = one.section();
+    std::vector<AllocatedPart> more = read_part_block(block, study, usual, names(parts));
+    check_own_errors(block, parts, more, study.model());
+    parts.insert(parts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
+  if (parts.empty()) value.fail("is empty", "write [[analysis.parts]] with factors, e.g. factors = \"linear\"");
+}
+
+std::string parts_lines(const Study& study) {
+  std::string text;
+  for (const AllocatedPart& part : asked_of<AllocationOptions>(study.analysis).parts) {
+    text += part_text(part, study.model());
+  }
+  return text;
+}
+
+/// The first two limbs, for which errors may be the same.
+std::string shown_limbs(const ModelDescription& model) {
+  std::set<std::size_t> limbs;
+  for (const Factor& factor : model.factors) limbs.insert(factor.limb);
+  if (limbs.size() < 2) return {};
+  return fmt::format("# identical_limbs = [{}, {}]\n", *limbs.begin(), *std::next(limbs.begin()));
+}
+
+/// Every error of this dimension a part of its own.
+std::string shown_block(Dimension dimension, const ModelDescription& model) {
+  if (std::ranges::count(model.factors, dimension, &Factor::dimension) == 0) return {};
+  return fmt::format(
+      "\n[[analysis.parts]]\nfactors = \"{}\"\neach = true\n{}cost = {{ law = \"reciprocal\", b = 1, unit = \"{}\" "
+      "}}\n# bounds = [{}, {}]\n",
+      error_kind(dimension), shown_limbs(model), display_unit(dimension).name, example_size(dimension, 0.01),
+      example_size(dimension, 1.0));
+}
+
+std::string shown_parts(const TemplateLines& lines, const Study& study) {
+  const std::string cost(lines.meaning("analysis.parts.cost"));
+  const std::string process(lines.meaning("analysis.parts.processes"));
+  return "\n" + lines.explanation_lines("analysis", "parts") + lines.keys_lines("analysis.parts") +
+         comment("    cost: " + cost) + lines.keys_lines("analysis.parts.cost", 3) +
+         comment("    processes: " + process) + lines.keys_lines("analysis.parts.processes", 3) +
+         shown_block(Dimension::length, study.model()).erase(0, 1) + shown_block(Dimension::angle, study.model());
+}
+
+StudyRow samples_row() {
+  return {.name = "samples",
+          .value = samples_value(),
+          .usual = "400 expected rejects, 400 / (1 - yield) in whole thousands, from 2000 to 20 million",
+          .example = std::to_string(usual_samples(AllocationOptions().yield)),
+          .meaning = "Machines with which tolerances are found, and as many fresh ones for the certificate.",
+          .reader = read_samples,
+          .commented = true};
+}
+
+StudyRow limits_row() {
+  StudyRow row = shared_analysis_row("limits");
+  row.required = true;
+  row.meaning = "Limits of responses: a machine is good where it is within all of them at every pose.";
+  row.shown = [](const TemplateLines& lines, const Study& study) { return template_limits(lines, study.model(), ""); };
+  return row;
+}
+
+StudyRow aim_row() {
+  return {.name = "aim",
+          .value = asked_value(word_at<Aim>(
+              {{Aim::least_cost, "the least sum of the parts' costs"},
+               {Aim::equal_effect, "each part uses the same share of the limit that it uses most"},
+               {Aim::equal_tolerance, "the same T for all lengths; an angle has that T at a radius of 1 m"},
+               {Aim::common_factor,
+                "the standard deviations of [errors], all times the largest factor that the limits allow"}},
+              &AllocationOptions::aim)),
+          .usual = "\"least-cost\" where a part has a cost, else \"equal-effect\"",
+          .example = "\"least-cost\"",
+          .meaning = "Which of the tolerances that keep the limits.",
+          .commented = true};
+}
+
+std::vector<StudyRow> allocation_rows() {
+  return {samples_row(),
+          limits_row(),
+          StudyRow{.name = "yield",
+                   .value = asked_value(number_at(between_0_and_1("0.9973"), &AllocationOptions::yield)),
+                   .meaning = "The share of the machines that must be within all limits at every pose."},
+          StudyRow{.name = "confidence",
+                   .value = asked_value(number_at(between_0_and_1("0.95"), &AllocationOptions::confidence)),
+                   .meaning = "Confidence of the certificate that the yield is reached."},
+          aim_row(),
+          StudyRow{.name = "sigmas",
+                   .value = {.type = "number", .bounds = "greater than 0"},
+                   .usual = "each part has its own",
+                   .example = "3",
+                   .meaning = "How many standard deviations a tolerance is, for parts that do not say it themselves.",
+                   .reader = read_usual_sigmas},
+          StudyRow{.name = "cpk",
+                   .value = {.type = "number", .bounds = "greater than 0"},
+                   .usual = "",
+                   .example = "1.33",
+                   .meaning = "Instead of sigmas, the capability of the processes: sigmas / 3.",
+                   .reader = read_usual_sigmas,
+                   .commented = true},
+          StudyRow{.name = "parts",
+                   .value = {.type = "list of tables"},
+                   .required = true,
+                   .meaning = "The parts whose tolerances are wanted. Errors in none of them vary as [errors] says.",
+                   .reader = read_parts,
+                   .lines = parts_lines,
+                   .late = 2,
+                   .shown = shown_parts}};
+}
+
+/// Refuses so few machines that they certify nothing even if all of them are good.
+void check_samples(const Study& study, const StudySection& section) {
+  const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
+  const std::uint64_t needed = trials_without_failure(asked.yield, asked.confidence);
+  if (study.analysis.samples >= needed) return;
+  const std::string problem =
+      fmt::format("{} machines cannot certify a yield of {} at a confidence of {} even if all of them are good",
+                  study.analysis.samples, shortest(asked.yield), shortest(asked.confidence));
+  const std::string remedy = fmt::format("take samples = {} or more, or ask for a smaller yield", needed);
+  if (const auto value = section.find("samples")) value->fail("is too small: " + problem, remedy);
+  const auto yield = section.find("yield");
+  throw InputError(yield ? yield->place() : section.place(), problem, remedy);
+}
+
+/// What a run needs.
+void require_all(const Study& study, const StudySection& section) {
+  static_cast<void>(
+      section.require("limits", "write what every machine must keep, e.g. limits = " + example_limits(study.model())));
+  static_cast<void>(section.require("parts", "write [[analysis.parts]] with factors, e.g. factors = \"linear\""));
+}
+
+void complete_allocation(Study& study, const Reading& reading) {
+  const StudySection section = reading.root.section("analysis");
+  AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
+  study.analysis.draws = Draws::per_machine;
+  if (!section.find("samples")) study.analysis.samples = usual_samples(asked.yield);
+  check_samples(study, section);
+  if (reading.use == StudyUse::run) require_all(study, section);
+  const bool costs = std::ranges::any_of(asked.parts, has_cost);
+  const auto aim = section.find("aim");
+  if (!aim) asked.aim = costs ? Aim::least_cost : Aim::equal_effect;
+  if (!aim || costs || asked.aim != Aim::least_cost || reading.use != StudyUse::run) return;
+  aim->fail("is \"least-cost\", but no part has a cost",
+            "write what the parts' tolerances cost, e.g. cost = { law = \"reciprocal\", b = 1, unit = \"mm\" }, or "
+            "choose another aim");
+}
+
+void check_sizes(const StudySection& analysis, const Study& study, const Model& model) {
+  const auto usual = read_sigmas(analysis);
+  for (const StudyValue& one : analysis.require("parts").list()) {
+    const StudySection block = one.section();
+    for (const AllocatedPart& part : read_part_block(block, study, usual, {})) check_part_sizes(block, part, model);
+  }
+}
+
+std::optional<Refusal> no_template(const ModelDescription& model) {
+  if (!model.factors.empty() && !model.responses.empty()) return std::nullopt;
+  return Refusal{"model '" + model.name + "' has no errors or no responses, so it has no tolerances",
+                 "choose another kind"};
+}
+
+AtPose allocation_at_pose(const Study& study) {
+  const auto parts = static_cast<double>(asked_of<AllocationOptions>(study.analysis).parts.size());
+  return {parts, "parts", static_cast<double>(study.analysis.samples), "samples"};
+}
+
+}  // namespace
+
+std::string_view name(Aim aim) { return kAimNames.at(static_cast<std::size_t>(aim)); }
+
+const StudyKind kAllocationStudy{.name = "allocation",
+                                 .asks = "which tolerances keep limits, and at what cost",
+                                 .keys = kAllocationKeys,
+                                 .varies = Varies::together,
+                                 .rows = allocation_rows,
+                                 .tables = part_tables,
+                                 .no_template = no_template,
+                                 .complete = complete_allocation,
+                                 .check_errors = check_sizes,
+                                 .at_pose = allocation_at_pose};
+
+}  // namespace poesy
