@@ -36,7 +36,8 @@ struct ReportKind {
   void (*compare)(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page&) = nullptr;
 };
 
-/// The tables of a result of this kind: its limits, the kind's own, how adaptive samples came to their end.
+/// The tables of a result of this kind: its limits, unless the kind has that table itself, the kind's own, how adaptive
+/// samples came to their end.
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options);
 
 /// The report of one result, or the comparison of two, as one HTML document that needs no other file: what was run,

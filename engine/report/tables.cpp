@@ -135,7 +135,11 @@ std::string default_ranking(const StoredResult& result) {
 
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {
   std::vector<Table> tables = kind.tables(result, options);
-  if (auto limits = limits_table(result)) tables.insert(tables.begin(), *std::move(limits));
+  auto limits = limits_table(result);
+  // A kind that says more of its yield has that table itself.
+  if (limits && std::ranges::find(tables, limits->name, &Table::name) == tables.end()) {
+    tables.insert(tables.begin(), *std::move(limits));
+  }
   if (kind.settling == nullptr) return tables;
   if (auto convergence = convergence_table(result, kind.settling(result))) tables.push_back(*std::move(convergence));
   return tables;

@@ -1,0 +1,410 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/nan.h"
+#include "engine/base/units.h"
+#include "engine/files/result_parts.h"
+#include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/summary.h"
+#include "engine/stats/proportion.h"
+
+namespace poesy {
+namespace {
+
+using Result = AllocationResult;
+using Decision = YieldVerdict::Decision;
+
+const Axes kByPart{"part"};
+const Axes kByStage{"stage"};
+constexpr const char* kPartUnit = "SI: part unit, see /allocation/unit";
+constexpr const char* kCostUnit = "cost, as the study states it";
+constexpr const char* kCostPerResponse = "cost / SI: response unit";
+
+const Group<Result> kAllocation{
+    "/allocation",
+    "Tolerances that keep the study's limits. cost: of all parts; lower_bound: no tolerances cost less under the final "
+    "limits on root mean squares; gap: cost - lower_bound; yield: share of the certificate's machines that are within "
+    "all limits at all poses, with its interval; certified: 1 if it is shown at this confidence that the yield is at "
+    "least wanted_yield, else 0; calibrated: 1 if responses are what the best correction of the actuators leaves. NaN "
+    "costs: the aim has none",
+    {{"cost", &Result::total_cost},
+     {"lower_bound", &Result::lower_bound},
+     {"wanted_yield", &Result::wanted_yield},
+     {"confidence", &Result::confidence}},
+    {{"response", &Result::responses}, {"pose", &Result::poses}},
+    {{"tolerance", &Result::tolerance, kByPart, kPartUnit, "T of each part: the drawing says +-T"},
+     {"sigma", &Result::sigma, kByPart, kPartUnit, "Standard deviation of the part's errors about their mean"},
+     {"sigmas", &Result::sigmas, kByPart, "1", "T = shift + sigmas x sigma"},
+     {"shift", &Result::shift, kByPart, kPartUnit, "By how much the mean is off, as often up as down"},
+     {"cost", &Result::cost, kByPart, kCostUnit, "Cost of the part; NaN for an aim without costs"},
+     {"share", &Result::share, kByPart, "1", "Share of the cost of all parts; NaN likewise"},
+     {"mean_square_share", &Result::mean_square_share, kByPart, "1",
+      "Share of what all parts add to the mean square under the tightest limit"},
+     {"bound", &Result::bound, kByPart, "1",
+      "0: T is between its bounds; 1: at the lower one; 2: at the upper one; 3: there is no choice"},
+     {"chosen", &Result::chosen, kByPart, "1", "Process or grade of the part; empty where there is none"},
+     {"unit", &Result::part_unit, kByPart, "1", "SI unit of T"},
+     {"members", &Result::part_members, kByPart, "1", "Errors of the part, with blanks between"},
+     {"coarser_yield", &Result::coarser_yield, kByPart, "1",
+      "Share of the design's machines that are within all limits if this part alone gets a T 5 % larger, or the next "
+      "larger one that can be had; NaN where nothing larger is allowed"},
+     {"multiplier", &Result::multiplier, kByResponsePose, kCostPerResponse,
+      "What one unit more of the limit at this pose alone would save; NaN for a response without a limit"},
+     {"limit_use", &Result::limit_use, kByResponsePose, "1",
+      "Predicted root mean square over what the tightest limit allows it; NaN likewise"},
+     {"limit", &Result::limit, kByResponse, kResponseUnit, "Limit of the response; NaN for none"},
+     {"saving", &Result::saving, kByResponse, kCostUnit,
+      "What a limit wider by one percent at all poses would save, to first order; NaN for a response without a "
+      "limit"}}};
+
+const Group<Result> kCurve{
+    "/allocation/curve",
+    "Predicted cost over the yield that is asked for, and over a factor of all limits",
+    {},
+    {},
+    {{"yield_cost", &Result::curve_yield_cost, {"curve_yield"}, kCostUnit, "Predicted cost at this yield"},
+     {"factor_cost",
+      &Result::curve_factor_cost,
+      {"curve_factor"},
+      kCostUnit,
+      "Predicted cost with all limits times this factor"}}};
+
+constexpr const char* kStages = "/allocation/stages";
+
+const Fields<AllocationStage> kStageFields{
+    {"cost", &AllocationStage::cost, kByStage, kCostUnit, "Cost of all parts; NaN for an aim without costs"},
+    {"lower_bound", &AllocationStage::lower_bound, kByStage, kCostUnit,
+     "No tolerances cost less in this stage's programme; NaN likewise"},
+    {"rms_share", &AllocationStage::rms_share, kByStage, "1", "Limit on a root mean square over limit on a value"},
+    {"machines", &AllocationStage::machines, kByStage, "1", "Machines tried at these tolerances; 0: none"},
+    {"rejects", &AllocationStage::rejects, kByStage, "1", "Of them, machines that are not within all limits"}};
+
+/// The certificate as it is stored, with the machines of the design beside it.
+struct StoredCertificate {
+  std::uint64_t seed = 0;
+  std::uint64_t machines = 0;
+  std::uint64_t rejects = 0;
+  std::uint64_t unsolved = 0;
+  std::uint64_t most_rejects = 0;
+  double yield = 0.0;
+  double ci_low = 0.0;
+  double ci_high = 0.0;
+  double lower_bound = 0.0;
+  std::string decision = {};
+  std::uint64_t design_machines = 0;
+  std::uint64_t design_rejects = 0;
+  std::uint64_t design_most = 0;
+  double asked = 0.0;
+  double conf_level = 0.0;
+};
+
+using Stored = StoredCertificate;
+
+const Group<Stored> kCertificate{
+    "/allocation/certificate",
+    "What fresh machines show of the tolerances: their number is set beforehand, their seed serves nothing else, and "
+    "they are looked at once. A machine that is not solved at a pose is rejected. asked: the yield; conf_level: of the "
+    "bound and of the interval",
+    {{"asked", &Stored::asked}, {"conf_level", &Stored::conf_level}},
+    {},
+    {{"seed", &Stored::seed, {}, "1", "Seed of the fresh machines"},
+     {"machines", &Stored::machines, {}, "1", "Fresh machines"},
+     {"rejects", &Stored::rejects, {}, "1", "Of them, machines that are not within all limits at all poses"},
+     {"unsolved", &Stored::unsolved, {}, "1", "Of the rejects, those that no solved pose rejects"},
+     {"most_rejects", &Stored::most_rejects, {}, "1", "The certificate holds with no more rejects than these"},
+     {"yield", &Stored::yield, {}, "1", "Share of the fresh machines that are no rejects"},
+     {"ci_low", &Stored::ci_low, {}, "1", "Lower end of its two-sided interval (Clopper and Pearson)"},
+     {"ci_high", &Stored::ci_high, {}, "1", "Upper end of its two-sided interval (Clopper and Pearson)"},
+     {"lower_bound", &Stored::lower_bound, {}, "1", "One-sided lower bound on the yield (Clopper and Pearson)"},
+     {"decision",
+      &Stored::decision,
+      {},
+      "1",
+      "kept: certified, the lower bound is at least the yield that is asked for; not_kept: the upper bound is below "
+      "it; undecided: neither"},
+     {"design_machines", &Stored::design_machines, {}, "1", "Machines with which the tolerances were found"},
+     {"design_rejects", &Stored::design_rejects, {}, "1", "Of them, rejects at these tolerances"},
+     {"design_most",
+      &Stored::design_most,
+      {},
+      "1",
+      "As many of them were allowed, so that the certificate will probably hold"}}};
+
+constexpr const char* kCertificateStudy = "/allocation/certificate_study";
+
+/// In the order of YieldVerdict::Decision.
+constexpr std::array<std::string_view, 4> kDecisions{"not_asked", "kept", "not_kept", "undecided"};
+constexpr std::array kAims{Aim::least_cost, Aim::equal_effect, Aim::equal_tolerance, Aim::common_factor};
+
+Stored stored(const Result& found) {
+  const YieldVerdict& shown = found.certificate;
+  return {.seed = found.certificate_seed,
+          .machines = shown.machines,
+          .rejects = shown.rejects,
+          .unsolved = shown.unsolved,
+          .most_rejects = found.certificate_most,
+          .yield = shown.value,
+          .ci_low = shown.ci_low,
+          .ci_high = shown.ci_high,
+          .lower_bound = proportion_at_least(shown.machines - shown.rejects, shown.machines, shown.conf_level),
+          .decision = std::string(kDecisions[static_cast<std::size_t>(shown.decision)]),
+          .design_machines = found.design_machines,
+          .design_rejects = found.design_rejects,
+          .design_most = found.design_most,
+          .asked = shown.asked,
+          .conf_level = shown.conf_level};
+}
+
+/// Throws h5::Error for counts that no machines give.
+YieldVerdict verdict_of(const Stored& certificate) {
+  const auto* const decision = std::ranges::find(kDecisions, certificate.decision);
+  if (decision == kDecisions.end()) {
+    throw h5::Error("/allocation/certificate has the unknown decision '" + certificate.decision + "'");
+  }
+  const bool level = certificate.conf_level > 0.0 && certificate.conf_level < 1.0;
+  if (!level || certificate.rejects > certificate.machines || certificate.unsolved > certificate.rejects) {
+    throw h5::Error("/allocation/certificate has counts or a level that no certificate has");
+  }
+  return {.decision = static_cast<Decision>(decision - kDecisions.begin()),
+          .asked = certificate.asked,
+          .conf_level = certificate.conf_level,
+          .value = certificate.yield,
+          .ci_low = certificate.ci_low,
+          .ci_high = certificate.ci_high,
+          .machines = certificate.machines,
+          .rejects = certificate.rejects,
+          .unsolved = certificate.unsolved};
+}
+
+void restore(const Stored& certificate, Result& found) {
+  found.certificate = verdict_of(certificate);
+  found.certificate_seed = certificate.seed;
+  found.certificate_most = certificate.most_rejects;
+  found.design_machines = certificate.design_machines;
+  found.design_rejects = certificate.design_rejects;
+  found.design_most = certificate.design_most;
+}
+
+/// What follows from the rest, for those who read the file without this program, and what is no number.
+void add_attributes(h5::File& file, const Result& found) {
+  const auto set = [&](const char* name, const auto& value) { file.set_attribute(kAllocation.path, name, value); };
+  set("gap", found.total_cost - found.lower_bound);
+  set("yield", found.certificate.value);
+  set("yield_ci_low", found.certificate.ci_low);
+  set("yield_ci_high", found.certificate.ci_high);
+  set("certified", static_cast<std::uint8_t>(found.certified()));
+  set("calibrated", static_cast<std::uint8_t>(found.calibrated));
+  set("aim", std::string(name(found.aim)));
+}
+
+Aim read_aim(const h5::File& file) {
+  const auto word = file.attribute<std::string>(kAllocation.path, "aim").at(0);
+  const auto* const aim = std::ranges::find(kAims, word, [](Aim one) { return name(one); });
+  if (aim == kAims.end()) throw h5::Error("/allocation has the unknown aim '" + word + "'");
+  return *aim;
+}
+
+void write(ResultBuilder& result, const Study& study, const std::any& any) {
+  const auto& found = std::any_cast<const Result&>(any);
+  add_names(result, study, study.analysis.factors);
+  add_sigma(result, study);
+  result.add_axis("part", found.part_names, {"1", "Parts of the drawing, each with one tolerance"});
+  result.add_axis("stage", texts(found.stages, &AllocationStage::name), {"1", "Steps on the way to the tolerances"});
+  result.add_axis("curve_yield", found.curve_yield, {"1", "Yields of a curve of costs"});
+  result.add_axis("curve_factor", found.curve_factor, {"1", "Factors of all limits of a curve of costs"});
+  write_group(result, kAllocation, found);
+  h5::File& file = result.file();
+  add_attributes(file, found);
+  file.make_group(kStages);
+  file.set_attribute(kStages, "description", std::string("The steps on the way to the tolerances, in their order"));
+  write_columns(result, kStages, kStageFields, found.stages);
+  result.show_axes(kStages, kByStage);
+  write_group(result, kCurve, found);
+  write_group(result, kCertificate, stored(found));
+  result.add_scalar(kCertificateStudy, found.certificate_study, {"1", "The study that repeats the certificate"});
+  add_solver(result, kByPose, found.solves);
+  add_failures(result, found.failures, {std::string(kAllFactors)}, found.total().not_converged());
+}
+
+/// What tables and CSV rely on. Throws h5::Error.
+void check(const Result& found) {
+  check_names(found.part_names, "/part");
+  check_names(found.part_unit, "/allocation/unit");
+  check_names(texts(found.stages, &AllocationStage::name), "/stage");
+  if (std::ranges::any_of(found.bound, [](std::uint8_t at) { return at > 3; })) {
+    throw h5::Error("/allocation/bound holds an unknown bound");
+  }
+}
+
+void read(const h5::File& file, StoredResult& result) {
+  Result found;
+  read_sigma(file, result);
+  found.part_names = file.read<std::string>("/part");
+  found.curve_yield = file.read<double>("/curve_yield");
+  found.curve_factor = file.read<double>("/curve_factor");
+  read_group(file, kAllocation, found);
+  found.aim = read_aim(file);
+  found.calibrated = file.attribute<std::uint8_t>(kAllocation.path, "calibrated").at(0) != 0;
+  found.stages = read_columns(file, kStages, kStageFields);
+  const auto names = file.read<std::string>("/stage");
+  for (std::size_t k = 0; k < names.size(); ++k) found.stages[k].name = names[k];
+  read_group(file, kCurve, found);
+  Stored certificate;
+  read_group(file, kCertificate, certificate);
+  restore(certificate, found);
+  found.certificate_study = read_shaped<std::string>(file, kCertificateStudy, {}).at(0);
+  check(found);
+  found.solves = read_solver(file, kByPose);
+  // The certificate's samples have other addresses than the study's: the study that repeats it can replay them.
+  result.varied = {std::string(kAllFactors)};
+  found.failures = read_failures(file, result);
+  result.varied.clear();
+  result.verdicts = {.judge = Judge::yield, .limits = {}, .yield = found.certificate};
+  result.found = std::move(found);
+}
+
+/// The row of /allocation of this name.
+const FieldRow<Result>& row(std::string_view name) {
+  return *std::ranges::find(kAllocation.fields, name, &FieldRow<Result>::name);
+}
+
+/// Units of the parts, as of things with names.
+std::vector<NamedUnit> named_parts(const Result& found) {
+  std::vector<NamedUnit> parts;
+  for (std::size_t n = 0; n < found.parts(); ++n) parts.push_back({found.part_names[n], found.part_unit[n]});
+  return parts;
+}
+
+/// What goes on the drawing.
+CsvTable part_table(const Result& found) {
+  CsvTable table{"allocation",
+                 {"part", [&found](std::size_t n) { return found.part_names[n]; }},
+                 found.parts(),
+                 {},
+                 {"unit", [&found](std::size_t n) { return found.part_unit[n]; }}};
+  const std::vector<NamedUnit> parts = named_parts(found);
+  for (const char* name : {"tolerance", "sigma", "shift"}) {
+    const FieldRow<Result>& field = row(name);
+    table.columns.push_back(field_column(with_unit(name, si_units(parts)), field, found));
+    table.columns.push_back({with_unit(name, display_units(parts)), [&found, &field](std::size_t n) {
+                               const Unit& unit = display_unit(dimension_of(found.part_unit[n]));
+                               return number_at(field, found, n) / unit.si;
+                             }});
+  }
+  for (const char* name : {"sigmas", "cost", "share", "mean_square_share", "bound", "coarser_yield"}) {
+    table.columns.push_back(field_column(name, row(name), found));
+  }
+  return table;
+}
+
+/// A line for each response that has a limit.
+CsvTable limit_table(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  CsvTable table{"allocation_limits",
+                 {"response", [&result](std::size_t r) { return result.responses[r].name; }},
+                 found.responses,
+                 {},
+                 {"unit", [&result](std::size_t r) { return result.responses[r].unit; }},
+                 [&found](std::size_t r) { return !std::isnan(found.limit[r]); }};
+  table.columns.push_back(field_column("limit", row("limit"), found));
+  table.columns.push_back(field_column("saving", row("saving"), found));
+  const auto add_largest = [&](const std::string& name, const std::vector<double>& values) {
+    table.columns.push_back({"largest_" + name, [&found, &values](std::size_t r) {
+                               const std::optional<std::size_t> pose = worst_pose(found, values, r);
+                               return pose ? values[r * found.poses + *pose] : kNaN;
+                             }});
+    table.columns.push_back({"largest_" + name + "_pose", [&found, &values](std::size_t r) {
+                               const std::optional<std::size_t> pose = worst_pose(found, values, r);
+                               return pose ? static_cast<double>(*pose) : -1.0;
+                             }});
+  };
+  add_largest("limit_use", found.limit_use);
+  add_largest("multiplier", found.multiplier);
+  return table;
+}
+
+/// How much of each limit is used at each pose, and what it costs there.
+CsvTable pose_use_table(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  CsvTable table = lines_of_poses(result, "allocation_poses");
+  for (const std::size_t r : limited_responses(found)) {
+    const NamedUnit& response = result.responses[r];
+    table.columns.push_back(field_column("limit_use_" + response.name, row("limit_use"), found, r * found.poses));
+    table.columns.push_back(field_column(with_unit("multiplier_" + response.name, "cost/" + response.unit),
+                                         row("multiplier"), found, r * found.poses));
+  }
+  return table;
+}
+
+CsvTable stage_table(const Result& found) {
+  CsvTable table{
+      "allocation_stages", {"stage", [&found](std::size_t k) { return found.stages[k].name; }}, found.stages.size()};
+  for (const FieldRow<AllocationStage>& field : kStageFields) {
+    table.columns.push_back(list_column(field.name, found.stages, 0, 1,
+                                        [&field](const AllocationStage& one) { return number_at(field, one, 0); }));
+  }
+  return table;
+}
+
+/// Both curves, one below the other.
+CsvTable curve_table(const Result& found) {
+  const std::size_t yields = found.curve_yield.size();
+  const auto of = [yields](const std::vector<double>& by_yield, const std::vector<double>& by_factor) {
+    return [yields, &by_yield, &by_factor](std::size_t line) {
+      return line < yields ? by_yield[line] : by_factor[line - yields];
+    };
+  };
+  return {"allocation_curves",
+          {"curve", [yields](std::size_t line) { return std::string(line < yields ? "yield" : "factor of limits"); }},
+          yields + found.curve_factor.size(),
+          {{"at", of(found.curve_yield, found.curve_factor)},
+           {"cost", of(found.curve_yield_cost, found.curve_factor_cost)}}};
+}
+
+/// What the fresh machines show, on one line.
+CsvTable certificate_table(const Result& found) {
+  const Stored certificate = stored(found);
+  CsvTable table{
+      "allocation_certificate", {"decision", [text = certificate.decision](std::size_t) { return text; }}, 1};
+  table.columns.push_back({"asked", [&found](std::size_t) { return found.certificate.asked; }});
+  table.columns.push_back({"conf_level", [&found](std::size_t) { return found.certificate.conf_level; }});
+  for (const FieldRow<Stored>& field : kCertificate.fields) {
+    if (field.name == "decision") continue;
+    table.columns.push_back({field.name, [value = number_at(field, certificate, 0)](std::size_t) { return value; }});
+  }
+  return table;
+}
+
+/// The addresses of the certificate's samples, which are those of the study that repeats it.
+CsvTable certificate_failures(const Result& found) {
+  const std::vector<Failure>& list = found.failures;
+  return {"failures",
+          {"factor", [](std::size_t) { return std::string(kAllFactors); }},
+          list.size(),
+          {list_column("pose", list, 0, 1, [](const Failure& failure) { return failure.pose.value; }),
+           list_column("sample", list, 0, 1, [](const Failure& failure) { return failure.failed.sample.value; }),
+           list_column("status", list, 0, 1, [](const Failure& failure) { return failure.failed.status; })}};
+}
+
+void append_tables(CsvTables& tables, const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  tables.push_back(sigma_table(result));
+  tables.push_back(part_table(found));
+  tables.push_back(limit_table(result));
+  tables.push_back(pose_use_table(result));
+  tables.push_back(stage_table(found));
+  tables.push_back(curve_table(found));
+  tables.push_back(certificate_table(found));
+  CsvTable solves = lines_of_poses(result, "not_converged");
+  append_solve_columns(solves, found.solves);
+  tables.push_back(std::move(solves));
+  tables.push_back(certificate_failures(found));
+}
+
+}  // namespace
+
+constinit const FileKind kAllocationFile{.write = write, .read = read, .append_tables = append_tables};
+
+}  // namespace poesy

@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/units.h"
+#include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/summary.h"
+#include "engine/report/display.h"
+
+namespace poesy {
+namespace {
+
+using Result = AllocationResult;
+
+SolveTally tally(const StoredResult& result) {
+  return {"", {"all errors"}, result.poses.size(), allocation_of(result).solves};
+}
+
+/// The use of each limit at each pose and its multiplier there.
+ShownCells cells(const StoredResult& result) {
+  return shown_cells(result, 2, limited_responses(allocation_of(result)));
+}
+
+void add_certificate(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const Result& found = allocation_of(result);
+  Section& section = page.add_section("certificate", "Is it certified");
+  section.paragraph(fmt::format(
+      "The tolerances were found with one set of {}. Then {} were drawn, to be looked at once: tolerances that are "
+      "tried on the machines they were fitted to look better than they are. A machine is good if it is within all "
+      "limits at all poses; one that is not solved at a pose is rejected.",
+      counted(found.design_machines, "machine", "machines"),
+      counted(found.certificate.machines, "fresh one", "fresh ones")));
+  section.table(tables, "yield");
+  if (!found.certificate_study.empty()) {
+    section.folded_text("The study that repeats the certificate", found.certificate_study);
+  }
+}
+
+/// The unit in which people read each part's T, and T in it.
+std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const Result& found) {
+  std::pair<std::vector<std::string>, std::vector<double>> shown;
+  for (std::size_t n = 0; n < found.parts(); ++n) {
+    const Unit& unit = display_unit(dimension_of(found.part_unit[n]));
+    shown.first.emplace_back(unit.name);
+    shown.second.push_back(found.tolerance[n] / unit.si);
+  }
+  return shown;
+}
+
+/// Cost, share of the mean square and tolerance of each part.
+Bars part_bars(const Result& found, ArrayPool& pool) {
+  const auto [units, tolerances] = shown_tolerances(found);
+  Bars bars{{}, {}, found.part_names};
+  if (has_costs(found)) bars.quantities.push_back({"cost", {{""}}, pool.add("part_cost", found.cost)});
+  bars.quantities.push_back(
+      {"share of the mean square", {{"%"}}, pool.add("part_mean_square", found.mean_square_share, 0.01)});
+  bars.quantities.push_back({"tolerance T", {units}, pool.add("part_tolerance", tolerances)});
+  return bars;
+}
+
+void add_drawing(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const Result& found = allocation_of(result);
+  Section& section = page.add_section("drawing", "What goes on the drawing");
+  section.table(tables, "drawing");
+  add_figure(page, section, "parts", part_bars(found, page.figures.pool),
+             has_costs(found) ? "What the tolerance of each part costs." : "Which parts use the tightest limit.");
+}
+
+/// A panel of costs over x.
+Lines cost_lines(const std::string& key, Coordinate x, const std::vector<double>& costs, Mark mark, ArrayPool& pool) {
+  return {.x = std::move(x),
+          .panels = {{"predicted cost", "", {{"cost", pool.add(key, costs)}}}},
+          .marks = {std::move(mark)}};
+}
+
+void add_costs(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const Result& found = allocation_of(result);
+  Section& section = page.add_section("limits", "What the limits ask for");
+  section.table(tables, "allocation_limits");
+  if (!has_costs(found)) return;
+  ArrayPool& pool = page.figures.pool;
+  if (!found.curve_yield.empty()) {
+    add_figure(page, section, "cost-of-yield",
+               cost_lines("yield_cost", {"yield", "%", pool.add("curve_yield", found.curve_yield, 0.01)},
+                          found.curve_yield_cost, {"asked for", 100.0 * found.wanted_yield}, pool),
+               "Predicted cost over the yield that is asked for.");
+    section.table(tables, "cost_of_yield");
+  }
+  if (!found.curve_factor.empty()) {
+    add_figure(page, section, "cost-of-limits",
+               cost_lines("factor_cost", {"all limits times", "", pool.add("curve_factor", found.curve_factor)},
+                          found.curve_factor_cost, {"the study", 1.0}, pool),
+               "Predicted cost if all limits were wider or narrower by one factor.");
+    section.table(tables, "cost_of_limits");
+  }
+}
+
+/// Numbers [R x M] of the responses shown, one row each.
+std::vector<double> rows_of(const Result& found, const std::vector<double>& values,
+                            const std::vector<std::size_t>& responses) {
+  std::vector<double> list;
+  for (const std::size_t r : responses) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(r * found.poses);
+    list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(found.poses));
+  }
+  return list;
+}
+
+/// How much of each limit is used at each pose, and where a limit costs.
+void add_where(const StoredResult& result, Page& page) {
+  const Result& found = allocation_of(result);
+  const PoseFigures figures(result, cells(result), page);
+  const std::vector<std::string> names = names_of(result.responses, figures.responses());
+  if (names.empty()) return;
+  Section& section = page.add_section("where", "Where in the workspace");
+  section.paragraph(
+      "The use of a limit: the predicted root mean square over what the tightest limit allows it. Where it is 100 %, "
+      "the pose sets the tolerances.");
+  figures.add_note(section);
+  const auto add = [&](const std::string& name, const std::vector<double>& values, double unit) {
+    return figures.add(name, rows_of(found, values, figures.responses()), unit);
+  };
+  std::vector<HeatLayer> layers{{"use of the limit", "%", add("limit_use", found.limit_use, 0.01)}};
+  std::vector<Field> fields{{"use of the limit", "%", layers.front().value, names}};
+  if (has_costs(found)) {
+    std::vector<double> price = found.multiplier;  // per unit that people read
+    for (std::size_t at = 0; at < price.size(); ++at) price[at] *= display(result.responses[at / found.poses]).si;
+    layers.push_back({"saved if the limit is one unit wider", "", add("price", price, 1.0)});
+    fields.push_back({layers.back().label, "", layers.back().value, names});
+  }
+  add_figure(page, section, "poses", figures.heat_map(std::move(layers), names, ""),
+             "The use of each limit at each pose.");
+  fields.push_back(figures.not_converged(tally(result).shares_by_pose()));
+  figures.add_condition(fields);
+  figures.add_workspace(section, std::move(fields));
+}
+
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  if (allocation_of(result).poses == 0 || allocation_of(result).parts() == 0) return;
+  add_certificate(result, tables, page);
+  add_drawing(result, tables, page);
+  add_costs(result, tables, page);
+  add_where(result, page);
+  page.add_section("stages", "How they were found").table(tables, "stages");
+}
+
+void warn(const StoredResult& result, std::vector<std::string>& list) {
+  const Result& found = allocation_of(result);
+  if (found.certified()) return;
+  std::string text = certificate_text(found);
+  text.front() = 'N';
+  list.push_back(text + ".");
+}
+
+StudyWords words(const StoredResult& result) {
+  return {.draws = true,
+          .samples = counted(allocation_of(result).certificate.machines, "fresh machine", "fresh machines")};
+}
+
+/// The parts; costs are compared where both results have them.
+Comparable comparable(const StoredResult& result, const StoredResult& other) {
+  const Result& found = allocation_of(result);
+  Comparable all{"tolerances", {"all limits"}, "part", found.part_names};
+  if (has_costs(found) && has_costs(allocation_of(other))) {
+    all.quantities.push_back({"cost", "cost", {{""}}, found.cost});
+    all.total_label = "Cost of all parts";
+    all.totals = {found.total_cost};
+  }
+  std::vector<double> shares;
+  for (const double share : found.mean_square_share) shares.push_back(100.0 * share);
+  all.quantities.push_back({"share of the mean square", "mean_square", {{"%"}}, std::move(shares)});
+  const auto [units, tolerances] = shown_tolerances(found);
+  all.quantities.push_back({"tolerance T", "tolerance", {units}, tolerances});
+  all.ranked = true;
+  return all;
+}
+
+}  // namespace
+
+constinit const ReportKind kAllocationReport{.tally = tally,
+                                             .tables = allocation_tables,
+                                             .sorts = true,
+                                             .words = words,
+                                             .warn = warn,
+                                             .shown_cells = cells,
+                                             .page = add_page,
+                                             .comparable = comparable};
+
+}  // namespace poesy

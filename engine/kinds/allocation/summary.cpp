@@ -1,0 +1,81 @@
+#include "engine/kinds/allocation/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "engine/base/units.h"
+#include "engine/report/display.h"
+
+namespace poesy {
+namespace {
+
+/// To this many significant digits, towards zero. What is off by rounding from a shorter number is that number.
+double rounded_down(double value, int digits) {
+  constexpr double kRounding = 1e-12;
+  if (!(value > 0.0) || std::isinf(value)) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - (digits - 1));
+  return std::floor(value / unit * (1.0 + kRounding)) * unit;
+}
+
+}  // namespace
+
+std::vector<std::size_t> limited_responses(const AllocationResult& found) {
+  std::vector<std::size_t> list;
+  for (std::size_t r = 0; r < found.responses; ++r) {
+    if (!std::isnan(found.limit[r])) list.push_back(r);
+  }
+  return list;
+}
+
+std::optional<std::size_t> worst_pose(const AllocationResult& found, const std::vector<double>& values,
+                                      std::size_t response) {
+  std::optional<std::size_t> worst;
+  double largest = 0.0;
+  for (std::size_t m = 0; m < found.poses; ++m) {
+    const double value = values[response * found.poses + m];
+    if (!(value > largest)) continue;
+    largest = value;
+    worst = m;
+  }
+  return worst;
+}
+
+std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order) {
+  std::vector<std::size_t> list = positions(found.parts());
+  if (order == RowOrder::study) return list;
+  if (order == RowOrder::name) {
+    std::ranges::stable_sort(list, {}, [&](std::size_t n) { return found.part_names[n]; });
+    return list;
+  }
+  const std::vector<double>& shares = has_costs(found) ? found.share : found.mean_square_share;
+  std::ranges::stable_sort(list, std::ranges::greater(),
+                           [&](std::size_t n) { return std::isnan(shares[n]) ? -HUGE_VAL : shares[n]; });
+  return list;
+}
+
+std::string certificate_text(const AllocationResult& found) {
+  using enum YieldVerdict::Decision;
+  const YieldVerdict& shown = found.certificate;
+  const std::string good = "of the machines are within all limits at all poses";
+  const std::string asked = percent_text(shown.asked);
+  const std::string sure = percent_text(shown.conf_level) + " confidence";
+  const std::string counts =
+      fmt::format("({} of {} rejected, {} {} allowed)", count_text(shown.rejects),
+                  counted(shown.machines, "fresh machine", "fresh machines"), count_text(found.certificate_most),
+                  found.certificate_most == 1 ? "was" : "were");
+  if (shown.decision == kept) return fmt::format("certified: at least {} {}, with {} {}", asked, good, sure, counts);
+  if (shown.decision == not_kept) {
+    return fmt::format("not certified: fewer than {} {}, with {} {}", asked, good, sure, counts);
+  }
+  return fmt::format("not certified: it is not shown with {} that at least {} {} {}", sure, asked, good, counts);
+}
+
+std::string drawing_text(double tolerance, const std::string& si_unit) {
+  constexpr int kDigits = 4;
+  const Unit& unit = display_unit(dimension_of(si_unit));
+  return fmt::format("+-{} {}", number_text(rounded_down(tolerance / unit.si, kDigits), kDigits), unit.name);
+}
+
+}  // namespace poesy

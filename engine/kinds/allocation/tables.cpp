@@ -1,0 +1,268 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "engine/base/units.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/kinds/allocation/summary.h"
+#include "engine/report/display.h"
+
+namespace poesy {
+namespace {
+
+using Result = AllocationResult;
+
+constexpr int kCostDigits = 6;
+
+std::string cost_text(double cost) { return number_text(cost, kCostDigits); }
+
+/// The table of every yield, in the words of a certificate.
+Table certificate_table(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  Table table = yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = found.certificate});
+  table.caption = certificate_text(found);
+  table.notes.push_back(fmt::format(
+      "fresh machines: drawn with the seed {}, which nothing before used; how many was set before; a machine that is "
+      "not solved at a pose is rejected",
+      found.certificate_seed));
+  if (found.calibrated) table.notes.emplace_back("limits are on what the best correction of the actuators leaves");
+  return table;
+}
+
+/// "3 sigma + 10 % of T": what T is made of.
+std::string made_of(const Result& found, std::size_t n) {
+  const std::string text = number_text(found.sigmas[n], kCostDigits) + " sigma";
+  const double share = found.shift[n] / found.tolerance[n];
+  return share > 0.0 ? text + " + " + percent_text(share) + " of T" : text;
+}
+
+std::string drawing_caption(const Result& found) {
+  const std::string parts = counted(found.parts(), "part", "parts");
+  const std::string cost = has_costs(found) ? ", which cost " + cost_text(found.total_cost) : "";
+  switch (found.aim) {
+    case Aim::least_cost:
+      return fmt::format("The drawing: tolerances of {} at least cost, {} in all", parts, cost_text(found.total_cost));
+    case Aim::equal_effect:
+      return fmt::format("The drawing: tolerances of {}, each with the same share of the limit that it uses most{}",
+                         parts, cost);
+    case Aim::equal_tolerance:
+      return fmt::format("The drawing: one tolerance for {}; an angle has it at a radius of 1 m{}", parts, cost);
+    case Aim::common_factor:
+      return fmt::format("The drawing: tolerances of {}, the study's errors times one factor{}", parts, cost);
+  }
+  return {};
+}
+
+/// How far from the least cost these tolerances can be.
+void add_bound_note(const Result& found, Table& table) {
+  if (std::isnan(found.lower_bound) || !has_costs(found)) return;
+  const double gap = found.total_cost - found.lower_bound;
+  table.notes.push_back(
+      fmt::format("no tolerances cost less than {} under the final limits on root mean squares; gap: {} ({})",
+                  cost_text(found.lower_bound), number_text(gap), percent_text(gap / found.total_cost)));
+}
+
+FilledColumn cost_column(std::string name, std::string heading, const std::vector<double>& values,
+                         int dispensable = 0) {
+  return {number_column(std::move(name), std::move(heading), "", dispensable),
+          [&values](std::size_t at) { return number_cell(values[at], kCostDigits); }};
+}
+
+FilledColumn share_column(std::string name, std::string heading, const std::vector<double>& values,
+                          int dispensable = 0) {
+  return {percent_column(std::move(name), std::move(heading), dispensable),
+          [&values](std::size_t at) { return percent_cell(values[at]); }};
+}
+
+FilledColumn words_column(std::string name, std::string heading, const std::vector<std::string>& values,
+                          int dispensable = 0) {
+  return {text_column(std::move(name), std::move(heading), dispensable),
+          [&values](std::size_t at) { return text_cell(values[at]); }};
+}
+
+/// T in full and what it means, for those who have the room.
+void add_details(const Result& found, std::vector<FilledColumn>& columns) {
+  constexpr int kFirstToGo = 3;
+  const auto length = [&](std::string name, std::string heading, const std::vector<double>& values) {
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", kFirstToGo), [&](std::size_t n) {
+                          return number_cell(values[n] / display_unit(dimension_of(found.part_unit[n])).si,
+                                             kCostDigits);
+                        }};
+  };
+  columns.push_back(length("tolerance", "T", found.tolerance));
+  columns.push_back(length("sigma", "sigma", found.sigma));
+  columns.push_back({text_column("unit", "unit", kFirstToGo),
+                     [&](std::size_t n) { return text_cell(display_unit(dimension_of(found.part_unit[n])).name); }});
+  columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
+}
+
+std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
+  static constexpr std::array<std::string_view, 4> kBounds{"", "lower", "upper", "no choice"};
+  std::vector<FilledColumn> columns{words_column("part", "part", found.part_names),
+                                    {text_column("drawing", "drawing"), [&](std::size_t n) {
+                                       return text_cell(drawing_text(found.tolerance[n], found.part_unit[n]));
+                                     }}};
+  if (std::ranges::any_of(found.chosen, [](const std::string& one) { return !one.empty(); })) {
+    columns.push_back(words_column("chosen", "grade or process", found.chosen));
+  }
+  if (!alike) {
+    columns.push_back({text_column("made_of", "T ="), [&](std::size_t n) { return text_cell(made_of(found, n)); }});
+  }
+  if (has_costs(found)) {
+    columns.push_back(cost_column("cost", "cost", found.cost));
+    columns.push_back(share_column("share", "of cost", found.share));
+  }
+  columns.push_back(share_column("mean_square_share", "of mean square", found.mean_square_share));
+  columns.push_back(
+      {text_column("bound", "at bound"), [&](std::size_t n) { return text_cell(kBounds.at(found.bound[n])); }});
+  columns.push_back(share_column("coarser_yield", "yield if coarser", found.coarser_yield, 2));
+  add_details(found, columns);
+  return columns;
+}
+
+Table drawing_table(const Result& found, RowOrder order) {
+  std::set<std::string> statements;
+  for (std::size_t n = 0; n < found.parts(); ++n) statements.insert(made_of(found, n));
+  const bool alike = statements.size() == 1;
+  Table table{.name = "drawing", .caption = drawing_caption(found), .columns = {}, .ranked = true};
+  table.notes.push_back(
+      fmt::format("{}sigma: standard deviation about the mean{}; on the drawing T is rounded down to four digits",
+                  alike ? "T = " + *statements.begin() + "; " : "",
+                  std::ranges::any_of(found.shift, [](double one) { return one > 0.0; })
+                      ? "; a share of T is for a mean that is off by so much, as often up as down"
+                      : ""));
+  table.notes.emplace_back(
+      "of mean square: share of what all parts add to the mean square under the tightest limit; yield if coarser: of "
+      "the design's machines, if this part alone gets a T 5 % larger, or the next larger one that can be had");
+  add_bound_note(found, table);
+  fill(table, ordered_parts(found, order), drawing_columns(found, alike));
+  return table;
+}
+
+/// A pose, with the cell of its number and that of its coordinates.
+std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::string& name,
+                                       const std::vector<double>& values, int dispensable) {
+  const Result& found = allocation_of(result);
+  const auto worst = [&](std::size_t r) { return worst_pose(found, values, r); };
+  return {{number_column(name + "_pose", "at pose", "", dispensable),
+           [worst](std::size_t r) {
+             const std::optional<std::size_t> pose = worst(r);
+             return pose ? count_cell(*pose) : text_cell("");
+           }},
+          {text_column(name + "_place", "where", 2), [&result, worst](std::size_t r) {
+             const std::optional<std::size_t> pose = worst(r);
+             return text_cell(pose ? coordinates_text(result, *pose) : std::string());
+           }}};
+}
+
+/// The largest of numbers at poses, 0 where none is above zero.
+double largest(const Result& found, const std::vector<double>& values, std::size_t r) {
+  const std::optional<std::size_t> pose = worst_pose(found, values, r);
+  return pose ? values[r * found.poses + *pose] : 0.0;
+}
+
+Table use_table(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  std::vector<FilledColumn> columns{name_column(result.responses, "response"),
+                                    {number_column("limit", "limit"),
+                                     [&](std::size_t r) { return value_cell(found.limit[r], result.responses[r], 6); }},
+                                    unit_column(result.responses),
+                                    {percent_column("used", "used"),
+                                     [&](std::size_t r) { return percent_cell(largest(found, found.limit_use, r)); }}};
+  std::ranges::move(pose_columns(result, "used", found.limit_use, 0), std::back_inserter(columns));
+  Table table{
+      .name = "allocation_limits",
+      .caption = "What each limit asks for, and where",
+      .columns = {},
+      .notes = {"used: the predicted root mean square over what the tightest limit allows it, at the pose where "
+                "it is largest"}};
+  if (has_costs(found)) {
+    columns.push_back(cost_column("saving", "1 % wider saves", found.saving));
+    columns.push_back({number_column("price", "saved per unit", "", 1), [&](std::size_t r) {
+                         return number_cell(largest(found, found.multiplier, r) * display(result.responses[r]).si);
+                       }});
+    std::ranges::move(pose_columns(result, "price", found.multiplier, 1), std::back_inserter(columns));
+    table.notes.emplace_back(
+        "1 % wider saves: of the cost, if this limit is wider by 1 % at all poses, to first order; saved per unit: if "
+        "it is one unit wider at one pose alone, the one where that saves most");
+  }
+  fill(table, limited_responses(found), columns);
+  return table;
+}
+
+Table stages_table(const Result& found) {
+  const auto stage = [&](std::size_t k) -> const AllocationStage& { return found.stages[k]; };
+  const auto of_tried = [&](std::size_t k, auto number) {
+    return stage(k).machines == 0 ? text_cell("") : count_cell(number(stage(k)));
+  };
+  std::vector<FilledColumn> columns{
+      {text_column("stage", "stage"), [=](std::size_t k) { return text_cell(stage(k).name); }}};
+  if (has_costs(found)) {
+    columns.push_back(
+        {number_column("cost", "cost"), [=](std::size_t k) { return number_cell(stage(k).cost, kCostDigits); }});
+    columns.push_back({number_column("gap", "gap"),
+                       [=](std::size_t k) { return number_cell(stage(k).cost - stage(k).lower_bound); }});
+  }
+  columns.push_back(
+      {number_column("rms_share", "rms over limit"), [=](std::size_t k) { return number_cell(stage(k).rms_share); }});
+  columns.push_back({number_column("machines", "machines"),
+                     [=](std::size_t k) { return of_tried(k, [](const auto& one) { return one.machines; }); }});
+  columns.push_back({number_column("rejects", "rejects"),
+                     [=](std::size_t k) { return of_tried(k, [](const auto& one) { return one.rejects; }); }});
+  Table table{.name = "stages",
+              .caption = "How the tolerances were found, step by step",
+              .columns = {},
+              .notes = {"rms over limit: the limit on a root mean square over the limit on a value; rejects: of the "
+                        "machines that were tried at these tolerances"}};
+  if (found.design_machines > 0) {
+    table.notes.push_back(fmt::format(
+        "at the end {} of the design's {} rejected; {} were allowed, so that the certificate will probably hold",
+        count_text(found.design_rejects), counted(found.design_machines, "machine", "machines"),
+        count_text(found.design_most)));
+  }
+  if (has_costs(found)) table.notes.emplace_back("gap: cost above what no tolerances of this step's problem go below");
+  fill(table, positions(found.stages.size()), columns);
+  return table;
+}
+
+/// A predicted cost beside that of the tolerances found.
+void add_costs(const Result& found, const std::vector<double>& costs, FilledColumn at, Table& table) {
+  table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
+  fill(table, positions(costs.size()),
+       {std::move(at), cost_column("cost", "cost", costs), {percent_column("change", "change"), [&](std::size_t k) {
+                                                              return percent_cell(costs[k] / found.total_cost - 1.0);
+                                                            }}});
+}
+
+void append_curves(const Result& found, std::vector<Table>& tables) {
+  if (!has_costs(found)) return;
+  if (!found.curve_yield.empty()) {
+    Table table{.name = "cost_of_yield", .caption = "What another yield would cost", .columns = {}};
+    add_costs(found, found.curve_yield_cost, share_column("yield", "yield", found.curve_yield), table);
+    tables.push_back(std::move(table));
+  }
+  if (!found.curve_factor.empty()) {
+    Table table{.name = "cost_of_limits", .caption = "What other limits would cost", .columns = {}};
+    add_costs(found, found.curve_factor_cost,
+              {number_column("factor", "all limits times"),
+               [&](std::size_t k) { return number_cell(found.curve_factor[k]); }},
+              table);
+    tables.push_back(std::move(table));
+  }
+}
+
+}  // namespace
+
+std::vector<Table> allocation_tables(const StoredResult& result, const TableOptions& options) {
+  const Result& found = allocation_of(result);
+  std::vector<Table> tables{certificate_table(result), drawing_table(found, options.order), use_table(result),
+                            stages_table(found)};
+  append_curves(found, tables);
+  return tables;
+}
+
+}  // namespace poesy
