@@ -1,6 +1,7 @@
 #include "models/chain/separation.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <string>
 #include <utility>
@@ -130,15 +131,19 @@ class LimbSeparation {
   Columns drives_;
 };
 
+/// Twists of the platform times this have the root mean square displacement of its points as their norm.
+Matrix6 root_of_metric(const DeformationModel& model, std::span<const double> displacements) {
+  return platform_metric(model.chain, model.platform->points, displacements).W.llt().matrixU();
+}
+
 std::vector<LimbSeparation> limb_separations(const DeformationModel& model, std::span<const double> displacements,
                                              FirstOrder& first_order) {
-  const std::vector<Vector3>& points = model.platform->points;
-  const Matrix6 root = platform_metric(model.chain, points, displacements).W.llt().matrixU();
+  const Matrix6 root = root_of_metric(model, displacements);
   std::vector<LimbSeparation> limbs;
   for (std::size_t i = 0; i < model.chain.limbs.size(); ++i) {
     const std::size_t joints = model.chain.limbs[i].joints.size();
     limbs.emplace_back(joints_of(model.chain.limbs[i], displacements.first(joints)),
-                       root * platform_by_limb(model.chain, first_order, i), radius_of(points));
+                       root * platform_by_limb(model.chain, first_order, i), radius_of(model.platform->points));
     displacements = displacements.subspan(joints);
   }
   return limbs;
@@ -176,6 +181,20 @@ Separation separation(const DeformationModel& model, std::span<const double> pos
     found.residual.push_back(left_of(constraint, uncorrected).norm());
   }
   return found;
+}
+
+std::optional<Matrix6> left_by_drives(const DeformationModel& model, std::span<const double> pose) {
+  POESY_EXPECTS(model.platform && model.platform->points.size() >= 3);
+  const std::vector<double> displacements = model.joint_displacements(pose);
+  const std::optional<Metric> metric = model.metric(displacements);
+  FirstOrder first_order(model.chain);
+  if (!first_order.prepare(displacements, metric ? &metric->W : nullptr)) return std::nullopt;
+  // From [theta; displacement of the origin] to lengths: first to the twist, whose v is that of the base's origin.
+  Matrix6 to_lengths = Matrix6::Identity();
+  to_lengths.bottomLeftCorner<3, 3>() = lie::hat<double>(model.platform_points(displacements)->platform.p);
+  to_lengths = root_of_metric(model, displacements) * to_lengths;
+  const Matrix6 left = beyond_all_drives(limb_separations(model, displacements, first_order));
+  return to_lengths.partialPivLu().solve(left * to_lengths);
 }
 
 std::optional<SeparationDescription> separation_description(const DeformationModel& model) {

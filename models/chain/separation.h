@@ -28,6 +28,12 @@ namespace poesy::chain {
 /// more. Precondition: platform->points are at least three, on no line.
 Separation separation(const DeformationModel& model, std::span<const double> pose);
 
+/// From a displacement of the platform, [theta; displacement of its origin] in the base frame, to what corrections of
+/// all drives leave of it: the projection along the drives' motions that leaves the least by the measure of
+/// separation(), [6 x 6]. So residual is the measure of this times an error's effect. Empty where passive joints are in
+/// a singular configuration. Precondition as for separation().
+std::optional<lie::Matrix6<double>> left_by_drives(const DeformationModel& model, std::span<const double> pose);
+
 /// Without classes of the literature; none where the model has no platform->points.
 std::optional<SeparationDescription> separation_description(const DeformationModel& model);
 

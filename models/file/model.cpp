@@ -10,6 +10,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/schema/keys.h"
+#include "models/chain/calibration.h"
 #include "models/chain/deformation_model.h"
 #include "models/chain/deformation_trace.h"
 #include "models/chain/metric.h"
@@ -150,6 +151,10 @@ class FileModel final : public Model {
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     return chain::deformation_evaluator(model_, options, fidelity_);
+  }
+
+  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
+    return description_.separation ? chain::calibrated_evaluator(model_, options, fidelity_) : nullptr;
   }
 
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,

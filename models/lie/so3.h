@@ -81,6 +81,15 @@ Matrix3<T> exp(const Vector3<T>& w) {
   return rotation;
 }
 
+/// exp(w) x - x: by how much a rotation moves a point, without the cancellation where it is small.
+template <class T>
+Vector3<T> moved_by_rotation(const Vector3<T>& w, const Vector3<T>& x) {
+  const auto [a, b, c] = exp_coefficients<T>(w.squaredNorm());
+  static_cast<void>(c);
+  const Vector3<T> across = w.cross(x);
+  return a * across + b * w.cross(across);
+}
+
 /// Left Jacobian of SO(3) at w: V with exp([w; v]) = (exp(w), V v) (Eq. A4 for a vector that is not of unit length).
 template <class T>
 Matrix3<T> left_jacobian(const Vector3<T>& w) {

@@ -119,17 +119,11 @@ class CalibratedEvaluator final : public Evaluator {
     const lie::Screw<double> left = displacement - by.motions.topRows<6>() * dq;
     const Vector3 theta = left.head<3>();
     responses.head<6>() = left;
-    responses.segment<3>(kTip) = left.tail<3>() + moved(arm, theta);
+    const bool linear = fidelity_ == Fidelity::first_order;
+    responses.segment<3>(kTip) =
+        left.tail<3>() + (linear ? Vector3(theta.cross(arm)) : lie::moved_by_rotation<double>(theta, arm));
     if (outcomes.details.empty()) return;
     rows_of(outcomes.details, sample, count) -= by.motions.bottomRows<3>() * dq;
-  }
-
-  /// By how much the end of an arm moves where this rotation turns it; to first order also at that fidelity.
-  Vector3 moved(const Vector3& arm, const Vector3& theta) const {
-    const Vector3 across = theta.cross(arm);
-    if (fidelity_ == Fidelity::first_order) return across;
-    const auto by = lie::exp_coefficients<double>(theta.squaredNorm());
-    return by.a * across + by.b * theta.cross(across);
   }
 
   Geometry geometry_;

@@ -4,8 +4,10 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
+#include "engine/model/calibrated.h"
 #include "models/file/model.h"
 #include "models/registry.h"
 #include "tests/models/file/files.h"
@@ -18,6 +20,21 @@ std::unique_ptr<Model> build(const CatalogEntry& entry, std::size_t fidelity = 0
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
   return entry.build(geometry, fidelity);
+}
+
+/// Of one sample, by name.
+std::map<std::string, double> responses_of(const Model& model, const std::vector<double>& pose,
+                                           const std::vector<double>& errors) {
+  const ModelDescription& description = model.description();
+  std::vector<double> values(description.responses.size());
+  std::vector<SolveStatus> status(1);
+  std::vector<std::uint32_t> iterations(1);
+  model.evaluator({.tolerance = description.tolerance})
+      ->evaluate({pose, errors, {}, {}, 1}, {values, status, iterations, {}});
+  EXPECT_TRUE(solved(status.front()));
+  std::map<std::string, double> named;
+  for (std::size_t r = 0; r < values.size(); ++r) named[description.responses[r].name] = values[r];
+  return named;
 }
 
 /// A pose in the middle half of the workspace.
@@ -52,6 +69,30 @@ TEST(SeparationOfFile, IsThatOfTheCompiledThreePrs) {
           EXPECT_EQ(value == 0.0, (truth.*part)[f] == 0.0) << name;
         }
       }
+    }
+  }
+}
+
+/// Of errors of some tenths of a millimetre and of a degree, all at once.
+TEST(CalibratedFile, IsTheCompiledThreePrs) {
+  std::ostringstream text;
+  text << std::ifstream(POESY_TEST_DATA "/../../results/gallery/3-prs/3-prs.toml").rdbuf();
+  const CatalogEntry entry = catalog_entry(text.str(), "3-prs.toml");
+  std::mt19937_64 engine(9);
+  for (const std::size_t fidelity : {0u, 1u}) {
+    const std::unique_ptr<Model> compiled = calibrated(build(*find(registry(), "3-prs"), fidelity));
+    const std::unique_ptr<Model> from_file = calibrated(build(entry, fidelity));
+    for (int n = 0; n < 10; ++n) {
+      const std::vector<double> pose = draw_pose(from_file->description(), engine);
+      std::vector<double> errors(compiled->description().factors.size());
+      std::vector<double> same(from_file->description().factors.size(), 0.0);
+      for (std::size_t f = 0; f < errors.size(); ++f) {
+        errors[f] = std::uniform_real_distribution<double>(-3e-4, 3e-4)(engine);
+        same[from_file->description().find_factor(compiled->description().factors[f].name)->value] = errors[f];
+      }
+      const auto truth = responses_of(*compiled, pose, errors);
+      const auto found = responses_of(*from_file, pose, same);
+      for (const auto& [name, value] : found) EXPECT_NEAR(value, truth.at(name), 1e-12) << name << " " << fidelity;
     }
   }
 }
@@ -182,6 +223,24 @@ TEST_P(OfMechanism, CorrectionsLeaveTheResidual) {
   check(*model, draw_pose(entry_.description, engine));
   if (!entry_.other_metric) return;
   check(*build(*entry_.other_metric), draw_pose(entry_.description, engine));
+}
+
+/// Calibrated responses are what is left of each error, by the exact solver and to first order.
+TEST_P(OfMechanism, CalibratedResponsesAreTheResidual) {
+  std::mt19937_64 engine(8);
+  constexpr double kStep = 1e-6;
+  for (const std::size_t fidelity : {0u, 1u}) {
+    const std::unique_ptr<Model> model = calibrated(build(entry_, fidelity));
+    const std::vector<double> pose = draw_pose(entry_.description, engine);
+    const Separation found = model->separation(pose);
+    const auto factors = static_cast<Eigen::Index>(found.effect.size());
+    const Eigen::MatrixXd left =
+        displacements(*model, pose, kStep * Eigen::MatrixXd::Identity(factors, factors)) / kStep;
+    for (Eigen::Index f = 0; f < factors; ++f) {
+      const auto at = static_cast<std::size_t>(f);
+      EXPECT_NEAR(found.residual[at], left.col(f).norm(), 2e-5 * (1.0 + found.effect[at])) << fidelity;
+    }
+  }
 }
 
 /// With six drives that hold six freedoms everything can be corrected; with fewer, shares are between none and all.

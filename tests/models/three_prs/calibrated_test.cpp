@@ -12,6 +12,8 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/study_file.h"
 #include "models/registry.h"
+#include "models/three_prs/error_mapping.h"
+#include "models/three_prs/evaluators.h"
 #include "tests/models/three_prs/reference.h"
 #include "tests/support/input_error.h"
 
@@ -201,7 +203,8 @@ TEST(Calibrated, GivesABlockAsItsSamples) {
     const Errors errors = all_errors(1e-3, 30);
     const Errors pool = all_errors(1e-3, 31);
     std::vector<double> values;
-    for (std::size_t k = 0; k < varied.size() * kCount; ++k) values.push_back(pool[k % pool.size()] * (1.0 + 1e-3 * k));
+    for (std::size_t k = 0; k < varied.size() * kCount; ++k)
+      values.push_back(pool[k % pool.size()] * (1.0 + 1e-3 * static_cast<double>(k)));
     const auto solve_block = [&](std::span<const double> rows, std::size_t count, bool with_details) {
       std::vector<double> outcome((kResponses + kLimbs) * count);
       std::vector<SolveStatus> status(count);
