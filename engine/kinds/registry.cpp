@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/contract.h"
+#include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/coupling/kind.h"
 #include "engine/kinds/evaluate/kind.h"
 #include "engine/kinds/identification/kind.h"
@@ -16,15 +17,15 @@
 namespace poesy {
 namespace {
 
-constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind,
-                          &kMonteCarloKind,  &kSobolKind,          &kCouplingKind};
+constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind, &kMonteCarloKind,
+                          &kSobolKind,       &kAllocationKind,     &kCouplingKind};
 
 /// The keys of [analysis] as the reference lists them; a key that is not among them comes last.
-constexpr std::array<std::string_view, 25> kKeys{"kind",       "factors",      "samples",   "draws",      "calibrated",
-                                                 "conf_level", "background",   "reference", "linearity",  "quantiles",
-                                                 "groups",     "second_order", "design",    "replicates", "pose_share",
-                                                 "cases",      "limits",       "judge",     "share",      "yield",
-                                                 "linear",     "angular",      "limbs",     "components", "sources"};
+constexpr std::array<std::string_view, 30> kKeys{
+    "kind",      "factors",   "samples", "draws",        "calibrated", "conf_level", "background", "reference",
+    "linearity", "quantiles", "groups",  "second_order", "design",     "replicates", "pose_share", "cases",
+    "limits",    "judge",     "share",   "yield",        "confidence", "aim",        "sigmas",     "cpk",
+    "parts",     "linear",    "angular", "limbs",        "components", "sources"};
 
 }  // namespace
 

@@ -14,8 +14,8 @@
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 10> kAllocationKeys{"factors", "limits",     "yield",  "confidence", "samples",
-                                                           "aim",     "background", "sigmas", "cpk",        "parts"};
+constexpr std::array<std::string_view, 11> kAllocationKeys{
+    "factors", "limits", "yield", "confidence", "samples", "aim", "background", "sigmas", "cpk", "parts", "calibrated"};
 
 /// In the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};

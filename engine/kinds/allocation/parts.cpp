@@ -13,7 +13,7 @@
 namespace poesy {
 namespace {
 
-using Choice = AllocatedPart::Choice;
+using PartChoice = AllocatedPart::Choice;
 
 constexpr double kSigmasOfCpk = 3.0;  // a capability of 1 is three standard deviations
 // So that a tolerance over it is no rounding.
@@ -108,15 +108,15 @@ void read_fixed(const StudyValue& value, const StudySection&, Dimension dimensio
 /// A key that says of what a tolerance is chosen.
 struct ChoiceKey {
   std::string_view name;
-  Choice choice;
+  PartChoice choice;
   void (*read)(const StudyValue& value, const StudySection& block, Dimension dimension, AllocatedPart& part);
 };
 
-constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", Choice::range, read_range},
-                                                {"values", Choice::values, read_values},
-                                                {"grades", Choice::grades, read_grades},
-                                                {"processes", Choice::processes, read_processes},
-                                                {"tolerance", Choice::fixed, read_fixed}}};
+constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", PartChoice::range, read_range},
+                                                {"values", PartChoice::values, read_values},
+                                                {"grades", PartChoice::grades, read_grades},
+                                                {"processes", PartChoice::processes, read_processes},
+                                                {"tolerance", PartChoice::fixed, read_fixed}}};
 
 /// Cost and choice, as the block has them for errors of this dimension.
 void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& part) {
@@ -132,14 +132,14 @@ void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& 
     chosen = value;
     part.choice = key.choice;
   }
-  if (const auto size = block.find("nominal_size"); size && part.choice != Choice::grades) {
+  if (const auto size = block.find("nominal_size"); size && part.choice != PartChoice::grades) {
     static_cast<void>(size->positive_quantity(Dimension::length));
     size->fail("is set, but the part has no grades", "write grades, e.g. [\"IT7\"], or leave it out");
   }
   const auto cost = block.find("cost");
   if (!cost) return;
   part.cost = read_cost(*cost, dimension);
-  if (part.choice != Choice::processes) return;
+  if (part.choice != PartChoice::processes) return;
   cost->fail("is set, but each of the processes has a cost of its own", "remove one or the other");
 }
 
@@ -231,15 +231,15 @@ std::string values_text(const AllocatedPart& part, Dimension dimension) {
 
 std::string choice_text(const AllocatedPart& part, Dimension dimension) {
   switch (part.choice) {
-    case Choice::values:
+    case PartChoice::values:
       return values_text(part, dimension);
-    case Choice::grades:
+    case PartChoice::grades:
       return grades_text(part);
-    case Choice::processes:
+    case PartChoice::processes:
       return processes_text(part, dimension);
-    case Choice::fixed:
+    case PartChoice::fixed:
       return "tolerance = " + exact_value(part.lo, dimension) + "\n";
-    case Choice::range:
+    case PartChoice::range:
       break;
   }
   return std::isfinite(part.hi) ? "bounds = " + bounds_text(part.lo, part.hi, dimension) + "\n" : "";
@@ -393,28 +393,28 @@ std::string part_text(const AllocatedPart& part, const ModelDescription& model) 
 
 void check_part_sizes(const StudySection& block, const AllocatedPart& part, const Model& model) {
   switch (part.choice) {
-    case Choice::range:
+    case PartChoice::range:
       if (std::isfinite(part.hi)) check_size(block.require("bounds").list()[1], part.hi, part, model);
       break;
-    case Choice::values:
+    case PartChoice::values:
       for (std::size_t v = 0; v < part.values.size(); ++v) {
         check_size(block.require("values").list()[v], part.values[v], part, model);
       }
       break;
-    case Choice::grades:
+    case PartChoice::grades:
       for (std::size_t g = 0; g < part.grades.size(); ++g) {
         const double width = it_grade_width(part.nominal_size, part.grades[g]).value();
         check_size(block.require("grades").list()[g], 0.5 * width, part, model);
       }
       break;
-    case Choice::processes:
+    case PartChoice::processes:
       for (std::size_t p = 0; p < part.processes.size(); ++p) {
         if (!std::isfinite(part.processes[p].hi)) continue;
         const StudySection process = block.require("processes").list()[p].section();
         check_size(process.require("bounds").list()[1], part.processes[p].hi, part, model);
       }
       break;
-    case Choice::fixed:
+    case PartChoice::fixed:
       check_size(block.require("tolerance"), part.lo, part, model);
       break;
   }

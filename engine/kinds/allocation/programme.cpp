@@ -7,6 +7,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/kinds/allocation/parts.h"
 #include "engine/stats/allocation/it_grade.h"
 #include "engine/stats/allocation/loosest.h"
 
@@ -32,6 +33,9 @@ double largest_of(const AllocatedPart& part, const Model& model) {
 std::vector<Process> processes_of(const AllocatedPart& part, const Model& model) {
   using Choice = AllocatedPart::Choice;
   const CostLaw law = part.cost.cost_law();
+  const auto bounded = [&](double hi, double lo) {
+    return std::isinf(hi) ? std::max(lo, largest_of(part, model)) : hi;
+  };
   switch (part.choice) {
     case Choice::fixed:
       return {{law, part.lo, part.lo}};
@@ -45,15 +49,14 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
     case Choice::processes: {
       std::vector<Process> list;
       for (const StatedProcess& process : part.processes) {
-        list.push_back({process.cost.cost_law(), process.lo, process.hi});
+        list.push_back({process.cost.cost_law(), process.lo, bounded(process.hi, process.lo)});
       }
       return list;
     }
     case Choice::range:
       break;
   }
-  const double hi = std::isinf(part.hi) ? std::max(part.lo, largest_of(part, model)) : part.hi;
-  return {{law, part.lo, hi}};
+  return {{law, part.lo, bounded(part.hi, part.lo)}};
 }
 
 /// Errors of this shape about a mean that is off, SI. Precondition: the shape is not measured.
@@ -76,11 +79,6 @@ Distribution error_of(const Distribution& shape, double sigma, double shift) {
     return Distribution::normal(sigma);
   };
   return scaled().shifted(shift);
-}
-
-bool has_cost(const AllocatedPart& part) {
-  const auto costs = [](const StatedCost& cost) { return cost.law != StatedCost::Law::none; };
-  return costs(part.cost) || std::ranges::any_of(part.processes, costs, &StatedProcess::cost);
 }
 
 DrawnPart drawn_part(const AllocatedPart& part, const Study& study) {

@@ -27,11 +27,12 @@ constexpr double kSettled = 1e-3;
 constexpr double kFine = 2e-3;
 constexpr std::size_t kMostTrials = 12;
 /// Machines below this share of the load that decides do not come to decide while tolerances change a little.
-constexpr double kNear = 0.6;
+constexpr double kNear = 0.75;
 /// The same while one tolerance gets coarser by kCoarser.
 constexpr double kVeryNear = 0.9;
 constexpr double kCoarser = 1.05;
-constexpr std::size_t kMostPasses = 12;
+constexpr double kFirstCoarser = 1.5;
+constexpr std::size_t kMostPasses = 40;
 /// From here on effects are measured again, and all machines tried.
 constexpr double kFar = 0.1;
 /// So many machines of largest load, at the most, tell the direction of the gradient.
@@ -313,46 +314,120 @@ bool ToleranceSearch::improve_by_gradient() {
 }
 
 /// Parts that would cost less if they were coarser, the largest saving first, then the others.
-std::vector<std::size_t> ToleranceSearch::by_saving() const {
+std::vector<std::size_t> ToleranceSearch::by_saving(std::span<const double> factor) const {
   std::vector<std::size_t> order(programme_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<double> saving;
   for (const std::size_t i : order) {
-    const auto next = programme_.coarser(found_, i, kCoarser);
+    const auto next = programme_.coarser(found_, i, factor[i]);
     saving.push_back(next && !std::isnan(found_.cost) ? found_.cost - next->cost : 0.0);
   }
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return saving[i]; });
   return order;
 }
 
-/// Makes one part after the other coarser where the design keeps its yield, until this is so for none. Of an aim
-/// without costs it only finds what each would do.
-bool ToleranceSearch::coarsen() {
-  bool any = true;
-  bool ever = false;
-  for (std::size_t pass = 0; pass < kMostPasses && any; ++pass) {
-    any = false;
-    std::vector<std::uint32_t> machines;
-    for (std::size_t k = 0; k < near_.machines.size(); ++k) {
-      if (near_.trial.load[k] >= kVeryNear) machines.push_back(near_.machines[k]);
+/// What each part does to the machines that may decide if it alone is coarser.
+std::optional<ToleranceSearch::CoarserParts> ToleranceSearch::try_coarser(std::span<const double> factor) const {
+  CoarserParts coarser;
+  std::vector<Variation> variations;
+  for (std::size_t k = 0; k < near_.machines.size(); ++k) {
+    if (near_.trial.load[k] < kVeryNear) continue;
+    coarser.machines.push_back(near_.machines[k]);
+    coarser.now.push_back(near_.trial.load[k]);
+  }
+  for (std::size_t i = 0; i < programme_.size(); ++i) {
+    coarser.next.push_back(programme_.coarser(found_, i, factor[i]));
+    coarser.row.push_back(variations.size());
+    if (!coarser.next[i]) continue;
+    const auto errors = programme_.errors(i);
+    variations.push_back({{errors.begin(), errors.end()}, coarser.next[i]->tolerance[i] / found_.tolerance[i]});
+  }
+  const Study study = programme_.at(found_.tolerance);
+  std::vector<double> poses;
+  for (std::size_t m = 0; m < run_.poses.size(); ++m) {
+    const auto pose = run_.poses[PoseIndex(m)];
+    if (near_.trial.pose_load[m] >= kVeryNear) poses.insert(poses.end(), pose.begin(), pose.end());
+  }
+  auto loads = try_variations(Plan(study, PoseSet(run_.poses.coordinates(), std::move(poses))), run_.model,
+                              study.analysis.limits, coarser.machines, variations, run_.options);
+  if (!loads) return std::nullopt;
+  coarser.loads = *std::move(loads);
+  return coarser;
+}
+
+std::uint64_t ToleranceSearch::CoarserParts::rejects(std::size_t part) const {
+  const auto of_part = std::span(loads).subspan(row[part] * machines.size(), machines.size());
+  return static_cast<std::uint64_t>(std::ranges::count_if(of_part, [](double load) { return load > 1.0; }));
+}
+
+/// Takes as many coarser parts as the design allows, the largest saving first, if what they do to a machine's load
+/// adds up. Gives which.
+std::vector<std::size_t> ToleranceSearch::acceptable(const CoarserParts& coarser,
+                                                     std::span<const double> factor) const {
+  std::vector<double> loads = coarser.now;
+  std::vector<std::size_t> taken;
+  std::vector<double> with(loads.size());
+  for (const std::size_t i : by_saving(factor)) {
+    if (!coarser.next[i] || !(coarser.next[i]->cost < found_.cost)) continue;
+    if (coarser.rejects(i) > allowed_.design) continue;
+    std::uint64_t rejects = 0;
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      with[k] = loads[k] + coarser.loads[coarser.row[i] * loads.size() + k] - coarser.now[k];
+      if (with[k] > 1.0) ++rejects;
     }
-    for (const std::size_t i : by_saving()) {
-      const auto next = programme_.coarser(found_, i, kCoarser);
-      coarser_yield_[i] = kNaN;
-      if (!next) continue;
-      const auto tried = try_some(*next, machines);
-      if (!tried) return false;
-      const std::uint64_t rejects = tried->trial.rejects();
-      coarser_yield_[i] = 1.0 - static_cast<double>(rejects) / static_cast<double>(trial_.load.size());
-      if (asked_.aim != Aim::least_cost || rejects > allowed_.design || !(next->cost < found_.cost)) continue;
-      found_ = *next;
-      any = true;
+    if (rejects > allowed_.design) continue;
+    loads.swap(with);
+    taken.push_back(i);
+  }
+  return taken;
+}
+
+/// Makes these parts coarser, or as many of the first of them as machines really allow. False when stopped.
+bool ToleranceSearch::take_coarser(const CoarserParts& coarser, std::vector<std::size_t>& taken) {
+  while (!taken.empty()) {
+    TolerancePoint point = found_;
+    for (const std::size_t i : taken) {
+      point.tolerance[i] = coarser.next[i]->tolerance[i];
+      point.process[i] = coarser.next[i]->process[i];
+      point.cost += coarser.next[i]->cost - found_.cost;
     }
-    if (!any) break;
-    ever = true;
-    auto near = try_near(found_);
+    auto near = try_near(point);
     if (!near) return false;
-    near_ = *std::move(near);
+    if (near->trial.rejects() <= allowed_.design) {
+      found_ = std::move(point);
+      near_ = *std::move(near);
+      return true;
+    }
+    taken.resize(taken.size() / 2);
+  }
+  return true;
+}
+
+/// Makes parts coarser where the design keeps its yield and the cost falls, by ever smaller steps, until no part alone
+/// can be coarser by the last one. Of an aim without costs it only finds what that would do.
+bool ToleranceSearch::coarsen() {
+  const bool moves = asked_.aim == Aim::least_cost;
+  std::vector<double> factor(programme_.size(), moves ? kFirstCoarser : kCoarser);
+  bool ever = false;
+  for (std::size_t pass = 0; pass < kMostPasses; ++pass) {
+    const auto coarser = try_coarser(factor);
+    if (!coarser) return false;
+    std::vector<std::size_t> taken = moves ? acceptable(*coarser, factor) : std::vector<std::size_t>();
+    if (!take_coarser(*coarser, taken)) return false;
+    ever = ever || !taken.empty();
+    bool smallest = true;
+    for (std::size_t i = 0; i < programme_.size(); ++i) {
+      if (std::ranges::find(taken, i) != taken.end()) continue;
+      if (factor[i] == kCoarser) continue;
+      factor[i] = std::max(kCoarser, std::sqrt(factor[i]));
+      smallest = false;
+    }
+    if (!taken.empty() || !smallest) continue;
+    for (std::size_t i = 0; i < programme_.size(); ++i) {
+      if (!coarser->next[i]) continue;
+      coarser_yield_[i] = 1.0 - static_cast<double>(coarser->rejects(i)) / static_cast<double>(trial_.load.size());
+    }
+    break;
   }
   if (ever) add_stage("parts one by one", trial_.load.size(), near_.trial.rejects());
   return true;

@@ -72,7 +72,22 @@ class ToleranceSearch {
   bool lower_to_least();
   ToleranceLimits gradient_limits() const;
   std::optional<bool> fit_gradient(ToleranceLimits direction);
-  std::vector<std::size_t> by_saving() const;
+
+  /// What every part does to machines if it alone is coarser: N parts, n machines.
+  struct CoarserParts {
+    std::vector<std::uint32_t> machines;              ///< [n]
+    std::vector<double> now;                          ///< [n] their loads
+    std::vector<std::optional<TolerancePoint>> next;  ///< [N] none where a part cannot be coarser
+    std::vector<std::size_t> row;                     ///< [N] of a part that can, in loads
+    std::vector<double> loads;                        ///< [rows x n]
+
+    std::uint64_t rejects(std::size_t part) const;
+  };
+
+  std::vector<std::size_t> by_saving(std::span<const double> factor) const;
+  std::optional<CoarserParts> try_coarser(std::span<const double> factor) const;
+  std::vector<std::size_t> acceptable(const CoarserParts& coarser, std::span<const double> factor) const;
+  bool take_coarser(const CoarserParts& coarser, std::vector<std::size_t>& taken);
   void add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects);
   std::string row_text(std::size_t row) const;
   [[noreturn]] void refuse(const CannotBeMet& broken) const;

@@ -6,14 +6,13 @@
 #include <limits>
 
 #include "engine/base/bytes.h"
-#include "engine/run/evaluate_unit.h"
+#include "engine/kinds/allocation/load_solver.h"
 #include "engine/run/fold.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 72;            ///< no other state begins with this number
-constexpr std::size_t kMachinesOfPiece = 200;  ///< solved at once at each pose
+constexpr std::uint64_t kKind = 72;  ///< no other state begins with this number
 
 /// Which machines are tried.
 struct Machines {
@@ -29,6 +28,7 @@ struct Machines {
 /// Some machines at all poses.
 struct TriedPiece {
   std::vector<double> load;           ///< [B]
+  std::vector<double> pose_load;      ///< [M]
   std::vector<SolveCounts> solves;    ///< [M]
   std::vector<FailedSamples> failed;  ///< [M]
   std::vector<std::uint64_t> beyond;  ///< [K]
@@ -36,20 +36,26 @@ struct TriedPiece {
 };
 
 /// Owns the scratch of one thread.
-class TrialEvaluator : private UnitSolver {
+class TrialEvaluator : private LoadSolver {
  public:
   TrialEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, const Machines& machines)
-      : UnitSolver(plan, model, plan.factors().size()), limits_(limits), machines_(machines) {}
+      : LoadSolver(plan, model, limits), machines_(machines) {}
 
   TriedPiece operator()(std::size_t piece) {
     const std::size_t count = machines_.count_of(piece);
     const std::size_t poses = plan_->poses().size();
-    draw(piece, count);
-    TriedPiece found{std::vector<double>(count, 0.0), std::vector<SolveCounts>(poses),
-                     std::vector<FailedSamples>(poses), std::vector<std::uint64_t>(limits_.size()), 0};
+    numbers_.clear();
+    for (std::size_t b = 0; b < count; ++b) numbers_.push_back(machines_.number(machines_.first(piece) + b));
+    draw(numbers_);
+    TriedPiece found{std::vector<double>(count),
+                     std::vector<double>(poses),
+                     std::vector<SolveCounts>(poses),
+                     std::vector<FailedSamples>(poses),
+                     std::vector<std::uint64_t>(limits_.size()),
+                     0};
     missing_.assign(count, 0);
     beyond_.assign(limits_.size() * count, 0);
-    for (std::size_t m = 0; m < poses; ++m) add_pose(piece, PoseIndex(m), found);
+    for (std::size_t m = 0; m < poses; ++m) add(m, found);
     for (std::size_t b = 0; b < count; ++b) {
       if (missing_[b] == 0) continue;
       if (found.load[b] <= 1.0) ++found.unsolved;
@@ -64,49 +70,20 @@ class TrialEvaluator : private UnitSolver {
   }
 
  private:
-  /// Fills values_ with the errors of the piece's machines: runs of consecutive ones are drawn together.
-  void draw(std::size_t piece, std::size_t count) {
-    const std::size_t first = machines_.first(piece);
-    const std::size_t errors = plan_->factors().size();
-    for (std::size_t from = 0; from < count;) {
-      std::size_t to = from + 1;
-      while (to < count && machines_.number(first + to) == machines_.number(first + to - 1) + 1) ++to;
-      const WorkUnit run{0, PoseIndex(0), SampleIndex(machines_.number(first + from)), to - from};
-      for (std::size_t p = 0; p < errors; ++p) {
-        draw_uniforms(run, p, std::span(values_).subspan(p * count + from, to - from));
-      }
-      from = to;
-    }
-    plan_->transform(std::span(values_).first(errors * count), count);
-  }
-
-  void add_pose(std::size_t piece, PoseIndex pose, TriedPiece& found) {
-    const std::size_t count = found.load.size();
-    const UnitOutcomes outcomes = UnitSolver::solve(pose, plan_->factors(), count, 0.0);
-    for (std::size_t b = 0; b < count; ++b) {
-      found.solves[pose.value].add(outcomes.status[b], outcomes.iterations[b]);
-      found.failed[pose.value].add(SampleIndex(machines_.number(machines_.first(piece) + b)), outcomes.status[b]);
-      if (!counts(outcomes.status[b], plan_->not_converged())) missing_[b] = 1;
-    }
-    for (std::size_t k = 0; k < limits_.size(); ++k) {
-      const double* const y = &outcomes.responses[limits_[k].response * count];
-      for (std::size_t b = 0; b < count; ++b) {
-        if (!counts(outcomes.status[b], plan_->not_converged())) continue;
-        const double load = over_limit(std::abs(y[b]), limits_[k].most);
-        found.load[b] = std::max(found.load[b], load);
-        if (load > 1.0) beyond_[k * count + b] = 1;
-      }
+  void add(std::size_t m, TriedPiece& found) {
+    at_pose_.assign(found.load.size(), 0.0);
+    const UnitOutcomes outcomes = add_pose(PoseIndex(m), at_pose_, missing_, beyond_);
+    for (std::size_t b = 0; b < at_pose_.size(); ++b) {
+      found.load[b] = std::max(found.load[b], at_pose_[b]);
+      found.pose_load[m] = std::max(found.pose_load[m], at_pose_[b]);
+      found.solves[m].add(outcomes.status[b], outcomes.iterations[b]);
+      found.failed[m].add(SampleIndex(numbers_[b]), outcomes.status[b]);
     }
   }
 
-  /// At most 1 for a value up to the limit, whatever a division rounds to.
-  static double over_limit(double value, double limit) {
-    const double load = value / limit;
-    return value <= limit ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
-  }
-
-  std::span<const ResponseLimit> limits_;
   const Machines& machines_;
+  std::vector<std::size_t> numbers_;   ///< [B]
+  std::vector<double> at_pose_;        ///< [B] loads
   std::vector<std::uint8_t> missing_;  ///< [B] whether a pose is not solved
   std::vector<std::uint8_t> beyond_;   ///< [K x B] whether the limit is broken at a pose
 };
@@ -116,6 +93,7 @@ class TrialWork {
  public:
   TrialWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, Machines machines)
       : plan_(plan), model_(model), limits_(limits), machines_(machines) {
+    trial_.pose_load.resize(plan.poses().size());
     trial_.solves.resize(plan.poses().size());
     trial_.failed.resize(plan.poses().size());
     trial_.beyond.resize(limits.size());
@@ -132,6 +110,7 @@ class TrialWork {
   SolveCounts merge(std::size_t, const TriedPiece& found) {
     trial_.load.insert(trial_.load.end(), found.load.begin(), found.load.end());
     for (std::size_t m = 0; m < found.solves.size(); ++m) {
+      trial_.pose_load[m] = std::max(trial_.pose_load[m], found.pose_load[m]);
       trial_.solves[m].merge(found.solves[m]);
       trial_.failed[m].merge(found.failed[m]);
     }
@@ -141,7 +120,7 @@ class TrialWork {
     return total_of(found.solves);
   }
   static void write(std::size_t, const TriedPiece& found, ByteWriter& to) {
-    to.reals(found.load);
+    for (const auto* list : {&found.load, &found.pose_load}) to.reals(*list);
     for (const SolveCounts& solves : found.solves) solves.write(to);
     for (const FailedSamples& failed : found.failed) failed.write(to);
     for (const std::uint64_t beyond : found.beyond) to.number(beyond);
@@ -152,6 +131,7 @@ class TrialWork {
     const std::size_t piece = begun_ + n;
     const std::size_t count = machines_.count_of(piece);
     found.load = from.reals(count);
+    found.pose_load = from.reals(plan_.poses().size());
     read_poses(from, machines_.number(machines_.first(piece)), end_of(machines_.first(piece) + count), found.solves,
                found.failed);
     for (std::size_t k = 0; k < limits_.size(); ++k) found.beyond.push_back(from.number_up_to(count));
@@ -164,7 +144,7 @@ class TrialWork {
     ByteWriter to;
     for (const std::uint64_t size : sizes()) to.number(size);
     to.number(next_);
-    to.reals(trial_.load);
+    for (const auto* list : {&trial_.load, &trial_.pose_load}) to.reals(*list);
     for (const SolveCounts& solves : trial_.solves) solves.write(to);
     for (const FailedSamples& failed : trial_.failed) failed.write(to);
     for (const std::uint64_t beyond : trial_.beyond) to.number(beyond);
@@ -179,6 +159,7 @@ class TrialWork {
     next_ = static_cast<std::size_t>(from.number_up_to(machines_.pieces()));
     const std::size_t count = std::min(machines_.count, machines_.first(next_));
     trial_.load = from.reals(count);
+    trial_.pose_load = from.reals(plan_.poses().size());
     trial_.solves.clear();
     trial_.failed.clear();
     read_poses(from, count == 0 ? 0 : machines_.number(0), end_of(count), trial_.solves, trial_.failed);
@@ -211,6 +192,122 @@ class TrialWork {
   std::size_t begun_ = 0;
 };
 
+/// Variations of some machines: for each variation pieces of all machines.
+struct VariedMachines {
+  std::span<const std::uint32_t> machines;  ///< [n]
+  std::span<const Variation> variations;    ///< [V]
+
+  std::size_t of_variation() const { return (machines.size() + kMachinesOfPiece - 1) / kMachinesOfPiece; }
+  std::size_t pieces() const { return variations.size() * of_variation(); }
+  const Variation& variation(std::size_t piece) const { return variations[piece / of_variation()]; }
+  std::span<const std::uint32_t> machines_of(std::size_t piece) const {
+    const std::size_t first = piece % of_variation() * kMachinesOfPiece;
+    return machines.subspan(first, std::min(kMachinesOfPiece, machines.size() - first));
+  }
+};
+
+/// Owns the scratch of one thread.
+class VariationEvaluator : private LoadSolver {
+ public:
+  VariationEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                     const VariedMachines& varied)
+      : LoadSolver(plan, model, limits), varied_(varied) {}
+
+  std::vector<double> operator()(std::size_t piece) {
+    const auto machines = varied_.machines_of(piece);
+    const std::size_t count = machines.size();
+    numbers_.assign(machines.begin(), machines.end());
+    draw(numbers_);
+    const Variation& variation = varied_.variation(piece);
+    for (const std::size_t p : variation.errors) {
+      for (double& error : std::span(values_).subspan(p * count, count)) error *= variation.factor;
+    }
+    std::vector<double> loads(count);
+    missing_.assign(count, 0);
+    beyond_.assign(limits_.size() * count, 0);
+    for (std::size_t m = 0; m < plan_->poses().size(); ++m) add_pose(PoseIndex(m), loads, missing_, beyond_);
+    for (std::size_t b = 0; b < count; ++b) {
+      if (missing_[b] == 1) loads[b] = std::numeric_limits<double>::infinity();
+    }
+    return loads;
+  }
+
+ private:
+  const VariedMachines& varied_;
+  std::vector<std::size_t> numbers_;
+  std::vector<std::uint8_t> missing_;
+  std::vector<std::uint8_t> beyond_;
+};
+
+/// All pieces in their order: the work of fold().
+class VariationWork {
+ public:
+  VariationWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, VariedMachines varied)
+      : plan_(plan), model_(model), limits_(limits), varied_(varied) {}
+  VariationWork(const VariationWork&) = delete;
+  VariationWork& operator=(const VariationWork&) = delete;
+
+  std::size_t begin_round() {
+    begun_ = next_;
+    return varied_.pieces() - next_;
+  }
+  VariationEvaluator worker() const { return {plan_, model_, limits_, varied_}; }
+  std::vector<double> solve(VariationEvaluator& evaluate, std::size_t n) const { return evaluate(begun_ + n); }
+  SolveCounts merge(std::size_t, const std::vector<double>& loads) {
+    loads_.insert(loads_.end(), loads.begin(), loads.end());
+    ++next_;
+    return solves_of(loads.size());
+  }
+  static void write(std::size_t, const std::vector<double>& loads, ByteWriter& to) { to.reals(loads); }
+  std::vector<double> read(std::size_t n, ByteReader& from) const {
+    return from.reals(varied_.machines_of(begun_ + n).size());
+  }
+  SolveCounts solved() const { return solves_of(loads_.size()); }
+  std::uint64_t left() const {
+    return solves_of(varied_.variations.size() * varied_.machines.size()).total() - solved().total();
+  }
+  Bytes state() const {
+    ByteWriter to;
+    for (const std::uint64_t size : sizes()) to.number(size);
+    to.number(next_);
+    to.reals(loads_);
+    return to.take();
+  }
+  void restore(std::span<const std::byte> state) {
+    ByteReader from(state);
+    for (const std::uint64_t size : sizes()) {
+      if (from.number() != size) throw BytesError("is the state of another kind or size of study");
+    }
+    next_ = static_cast<std::size_t>(from.number_up_to(varied_.pieces()));
+    std::size_t count = 0;
+    for (std::size_t piece = 0; piece < next_; ++piece) count += varied_.machines_of(piece).size();
+    loads_ = from.reals(count);
+    from.expect_end();
+  }
+  static bool next_round() { return false; }
+
+  std::vector<double> result() && { return std::move(loads_); }
+
+ private:
+  std::array<std::uint64_t, 4> sizes() const {
+    return {kKind + 1, varied_.machines.size(), varied_.variations.size(), plan_.poses().size()};
+  }
+  /// How solves end is told by the machines that are tried plainly.
+  SolveCounts solves_of(std::size_t machines) const {
+    SolveCounts counts;
+    counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = std::uint64_t{machines} * plan_.poses().size();
+    return counts;
+  }
+
+  const Plan& plan_;
+  const Model& model_;
+  std::span<const ResponseLimit> limits_;
+  VariedMachines varied_;
+  std::vector<double> loads_;
+  std::size_t next_ = 0;
+  std::size_t begun_ = 0;
+};
+
 std::optional<Trial> run(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                          const Machines& machines, const RunOptions& options) {
   TrialWork work(plan, model, limits, machines);
@@ -232,6 +329,15 @@ std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::spa
 std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                   std::span<const std::uint32_t> machines, const RunOptions& options) {
   return run(plan, model, limits, {machines.size(), machines}, options);
+}
+
+std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
+                                                  std::span<const ResponseLimit> limits,
+                                                  std::span<const std::uint32_t> machines,
+                                                  std::span<const Variation> variations, const RunOptions& options) {
+  VariationWork work(plan, model, limits, {machines, variations});
+  if (!fold(work, options)) return std::nullopt;
+  return std::move(work).result();
 }
 
 }  // namespace poesy

@@ -18,6 +18,7 @@ namespace poesy {
 /// limits (K) at all poses (M): it is good up to 1. A machine that is not solved at a pose has an infinite load.
 struct Trial {
   std::vector<double> load;           ///< [n] in the order in which they were asked for
+  std::vector<double> pose_load;      ///< [M] the largest load of any of them at the pose alone
   std::vector<SolveCounts> solves;    ///< [M] of them
   std::vector<FailedSamples> failed;  ///< [M] the first of them
   std::vector<std::uint64_t> beyond;  ///< [K] machines that break this limit, or are not solved, at a pose
@@ -35,5 +36,17 @@ std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::spa
 std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                   std::span<const std::uint32_t> machines, const RunOptions& options);
 /// @}
+
+/// Errors of these positions in a plan that are all so many times as large: a tolerance that is changed.
+struct Variation {
+  std::vector<std::size_t> errors;
+  double factor;
+};
+
+/// Loads [V x n] of the listed machines with one variation after the other. Otherwise as try_machines.
+std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
+                                                  std::span<const ResponseLimit> limits,
+                                                  std::span<const std::uint32_t> machines,
+                                                  std::span<const Variation> variations, const RunOptions& options);
 
 }  // namespace poesy

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/result.h"
+#include "engine/study/plan.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+
+/// Machines that are solved at once at each pose.
+inline constexpr std::size_t kMachinesOfPiece = 200;
+
+/// Solves machines at all poses of a plan, and finds their loads. Owns the scratch of one thread.
+class LoadSolver : protected UnitSolver {
+ protected:
+  /// Refers to all three.
+  LoadSolver(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits)
+      : UnitSolver(plan, model, plan.factors().size()), limits_(limits) {}
+
+  /// Draws the errors of these machines, ascending numbers, at most kMachinesOfPiece of them: [P x B] of values_.
+  void draw(std::span<const std::size_t> machines) {
+    const std::size_t count = machines.size();
+    const std::size_t errors = plan_->factors().size();
+    for (std::size_t from = 0; from < count;) {  // consecutive ones are drawn together
+      std::size_t to = from + 1;
+      while (to < count && machines[to] == machines[to - 1] + 1) ++to;
+      const WorkUnit run{0, PoseIndex(0), SampleIndex(machines[from]), to - from};
+      for (std::size_t p = 0; p < errors; ++p) {
+        draw_uniforms(run, p, std::span(values_).subspan(p * count + from, to - from));
+      }
+      from = to;
+    }
+    plan_->transform(std::span(values_).first(errors * count), count);
+  }
+
+  /// Solves the machines that were drawn at one pose and raises their loads [B]. missing: [B] set to 1 where a machine
+  /// is not solved. beyond: [K x B] set to 1 where it breaks a limit.
+  UnitOutcomes add_pose(PoseIndex pose, std::span<double> loads, std::span<std::uint8_t> missing,
+                        std::span<std::uint8_t> beyond) {
+    const std::size_t count = loads.size();
+    const UnitOutcomes outcomes = UnitSolver::solve(pose, plan_->factors(), count, 0.0);
+    for (std::size_t b = 0; b < count; ++b) {
+      if (!counts(outcomes.status[b], plan_->not_converged())) missing[b] = 1;
+    }
+    for (std::size_t k = 0; k < limits_.size(); ++k) {
+      const double* const y = &outcomes.responses[limits_[k].response * count];
+      for (std::size_t b = 0; b < count; ++b) {
+        if (!counts(outcomes.status[b], plan_->not_converged())) continue;
+        const double load = over_limit(std::abs(y[b]), limits_[k].most);
+        loads[b] = std::max(loads[b], load);
+        if (load > 1.0) beyond[k * count + b] = 1;
+      }
+    }
+    return outcomes;
+  }
+
+  std::span<const ResponseLimit> limits_;  ///< [K]
+
+ private:
+  /// At most 1 for a value up to the limit, whatever a division rounds to.
+  static double over_limit(double value, double limit) {
+    const double load = value / limit;
+    return value <= limit ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
+  }
+};
+
+}  // namespace poesy
