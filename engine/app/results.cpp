@@ -22,6 +22,7 @@
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
+#include "engine/study/study_kind.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -74,11 +75,19 @@ ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std
   return kTooManyNotConverged;
 }
 
-ExitCode judge_yield(const YieldVerdict& yield, const std::string& study_path, const std::string& remedy) {
+/// certificate: whether the study found tolerances and looked at these machines once, to certify them.
+ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::string& study_path,
+                     const std::string& remedy) {
   using enum YieldVerdict::Decision;
   const std::string found =
       fmt::format("the yield is {} ({} to {} at {})", percent_text(yield.value), percent_text(yield.ci_low),
                   percent_text(yield.ci_high), percent_text(yield.conf_level));
+  if (certificate && yield.decision == undecided) {
+    say(Message::error, fmt::format("{}: the tolerances are not certified: {}, which does not tell whether it is {}; "
+                                    "take more samples; {}",
+                                    study_path, found, percent_text(yield.asked), remedy));
+    return kLimitNotKept;
+  }
   if (yield.decision == undecided) {
     say(Message::warning, fmt::format("{}: {}, which does not tell whether it is {}; take more samples, whose number "
                                       "may grow with --resume if the checkpoint is kept",
@@ -90,12 +99,17 @@ ExitCode judge_yield(const YieldVerdict& yield, const std::string& study_path, c
   return kLimitNotKept;
 }
 
-ExitCode judge_limits(const StoredResult& result, const std::string& study_path, const std::string& remedy) {
+ExitCode judge_limits(const Study& study, const StoredResult& result, const std::string& study_path,
+                      const std::string& remedy) {
   const std::optional<Table> table = limits_table(result);
   if (!table) return kDone;
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
-  if (verdicts.yield) return judge_yield(*verdicts.yield, study_path, remedy);
+  if (verdicts.yield) {
+    // A study that judges machines by a yield can be asked for one; any other certifies what it found.
+    const bool certificate = study.analysis.kind != nullptr && study.analysis.kind->ask_yield == nullptr;
+    return judge_yield(*verdicts.yield, certificate, study_path, remedy);
+  }
   for (const LimitVerdict& one : verdicts.limits) {
     if (one.passed) continue;
     const NamedUnit& response = result.responses[one.response];
@@ -132,7 +146,7 @@ RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solve
 
 ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
                const Remedies& remedies) {
-  const ExitCode limits = judge_limits(result, study_path, remedies.limits);
+  const ExitCode limits = judge_limits(study, result, study_path, remedies.limits);
   const ExitCode failures = judge_failures(study, solves, study_path, remedies.failures);
   return failures != kDone ? failures : limits;
 }
