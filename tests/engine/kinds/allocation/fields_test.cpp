@@ -205,8 +205,8 @@ TEST_F(AllocationFile, IsExportedAsTheDrawingHasIt) {
   EXPECT_EQ(csv("allocation"),
             "part,tolerance [m or rad],tolerance [mm or deg],sigma [m or rad],sigma [mm or deg],shift [m or rad],"
             "shift [mm or deg],sigmas,cost,share,mean_square_share,bound,coarser_yield,unit\n"
-            "bars,1.23456789e-05,0.0123456789,4.11522e-06,0.00411522,0,0,3,2.5,0.25,0.5,0,0.9965,m\n"
-            "hinge,0.0017453292519943296,0.1,0.00058177641733144,0.033333333333333,0,0,3,7,0.7,0.375,2,0.9971,rad\n"
+            "bars,1.23456789e-05,0.0123456789,4.11522e-06,0.004115219999999999,0,0,3,2.5,0.25,0.5,0,0.9965,m\n"
+            "hinge,0.0017453292519943296,0.1,0.00058177641733144,0.03333333333333315,0,0,3,7,0.7,0.375,2,0.9971,rad\n"
             "plate,2.5e-05,0.025,7.5e-06,0.0075,2.5e-06,0.0025,3,0.5,0.05,0.125,3,NaN,m\n");
   EXPECT_EQ(csv("allocation_limits"),
             "response,limit,saving,largest_limit_use,largest_limit_use_pose,largest_multiplier,"
