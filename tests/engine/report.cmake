@@ -6,3 +6,6 @@ poesy_test(report_test LABELS unit SOURCES engine/kinds/coupling/tables_test.cpp
            LINKS poesy_kinds nlohmann_json::nlohmann_json)
 poesy_test(html_report_test LABELS unit SOURCES engine/report/html_parts_test.cpp engine/kinds/report_test.cpp
            LINKS poesy_kinds nlohmann_json::nlohmann_json)
+poesy_test(allocation_report_test LABELS unit
+           SOURCES engine/kinds/allocation/fields_test.cpp engine/kinds/allocation/report_test.cpp
+           LINKS poesy_kinds nlohmann_json::nlohmann_json hdf5::hdf5)

@@ -64,6 +64,9 @@ void add_drawing(const StoredResult& result, std::span<const Table> tables, Page
   const Result& found = allocation_of(result);
   Section& section = page.add_section("drawing", "What goes on the drawing");
   section.table(tables, "drawing");
+  for (std::size_t n = 0; n < found.parts(); ++n) {
+    page.figures.about.emplace(found.part_names[n], found.part_members[n]);
+  }
   add_figure(page, section, "parts", part_bars(found, page.figures.pool),
              has_costs(found) ? "What the tolerance of each part costs." : "Which parts use the tightest limit.");
 }

@@ -114,9 +114,9 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
   }
   if (has_costs(found)) {
     columns.push_back(cost_column("cost", "cost", found.cost));
-    columns.push_back(share_column("share", "of cost", found.share));
+    columns.push_back(share_column("share", "share of cost", found.share));
   }
-  columns.push_back(share_column("mean_square_share", "of mean square", found.mean_square_share));
+  columns.push_back(share_column("mean_square_share", "share of mean square", found.mean_square_share));
   columns.push_back(
       {text_column("bound", "at bound"), [&](std::size_t n) { return text_cell(kBounds.at(found.bound[n])); }});
   columns.push_back(share_column("coarser_yield", "yield if coarser", found.coarser_yield, 2));
@@ -136,7 +136,7 @@ Table drawing_table(const Result& found, RowOrder order) {
                       ? "; a share of T is for a mean that is off by so much, as often up as down"
                       : ""));
   table.notes.emplace_back(
-      "of mean square: share of what all parts add to the mean square under the tightest limit; yield if coarser: of "
+      "share of mean square: of what all parts add to the mean square under the tightest limit; yield if coarser: of "
       "the design's machines, if this part alone gets a T 5 % larger, or the next larger one that can be had");
   add_bound_note(found, table);
   fill(table, ordered_parts(found, order), drawing_columns(found, alike));
@@ -220,7 +220,7 @@ Table stages_table(const Result& found) {
                         "machines that were tried at these tolerances"}};
   if (found.design_machines > 0) {
     table.notes.push_back(fmt::format(
-        "at the end {} of the design's {} rejected; {} were allowed, so that the certificate will probably hold",
+        "at the end {} of the design's {} are rejects; {} were allowed, so that the certificate will probably hold",
         count_text(found.design_rejects), counted(found.design_machines, "machine", "machines"),
         count_text(found.design_most)));
   }

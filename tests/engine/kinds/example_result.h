@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/result.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/identification/identification.h"
@@ -371,6 +373,67 @@ class Example {
     result.failures = {{0, PoseIndex(1), {SampleIndex(2), SolveStatus::iteration_cap}}};
     result.failed_samples = 1;
     return result;
+  }
+  /// Three parts under one limit, that of the second response, in two stages; certified. The study is one of machines,
+  /// which has all that such a result says of its study.
+  AllocationResult allocation() {
+    study.analysis.kind = &kMonteCarloStudy;
+    study.analysis.draws = Draws::per_machine;
+    study.analysis.limits = {{1, 3e-5}};
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    AllocationResult result;
+    result.responses = 2;
+    result.poses = kPoses;
+    result.part_names = {"bars", "hinge", "plate"};
+    result.part_members = {"delta_1 delta_2", "epsilon_1", "delta_3"};
+    result.part_unit = {"m", "rad", "m"};
+    result.tolerance = {1.23456789e-5, 1.7453292519943295e-3, 2.5e-5};
+    result.sigma = {4.11522e-6, 5.8177641733144e-4, 7.5e-6};
+    result.sigmas = {3.0, 3.0, 3.0};
+    result.shift = {0.0, 0.0, 2.5e-6};
+    result.cost = {2.5, 7.0, 0.5};
+    result.share = {0.25, 0.7, 0.05};
+    result.mean_square_share = {0.5, 0.375, 0.125};
+    result.bound = {0, 2, 3};
+    result.chosen = {"", "grinding", "IT7"};
+    result.coarser_yield = {0.9965, 0.9971, kNone};
+    result.multiplier = {kNone, kNone, kNone, kNone, 0.0, 0.0, 2e5, 1e5};
+    result.limit_use = {kNone, kNone, kNone, kNone, 0.25, 0.5, 0.75, 1.0};
+    result.limit = {kNone, 3e-5};
+    result.saving = {kNone, 0.09};
+    result.total_cost = 10.0;
+    result.lower_bound = 9.995;
+    result.wanted_yield = 0.9973;
+    result.confidence = 0.95;
+    result.stages = {{"linear", 9.0, 8.75, 0.3333, 0, 0}, {"scaled to the yield", 10.0, 9.995, 0.3, 20000, 48}};
+    result.design_machines = 20000;
+    result.design_rejects = 48;
+    result.design_most = 49;
+    result.certificate_seed = 12345678901234567890U;
+    result.certificate_most = 366;
+    result.certificate = {.decision = YieldVerdict::Decision::kept,
+                          .asked = 0.9973,
+                          .conf_level = 0.95,
+                          .value = 147640.0 / 148000.0,
+                          .ci_low = 0.9973,
+                          .ci_high = 0.9978,
+                          .machines = 148000,
+                          .rejects = 360,
+                          .unsolved = 2};
+    result.calibrated = true;
+    result.curve_yield = {0.99, 0.9973, 0.999};
+    result.curve_yield_cost = {8.0, 10.0, 12.5};
+    result.curve_factor = {0.5, 1.0};
+    result.curve_factor_cost = {20.0, 10.0};
+    result.certificate_study = "format = \"poesy-study\"\n# limits < 30 um\n";
+    for (std::size_t m = 0; m < kPoses; ++m) {
+      result.solves.push_back({.by_status = {147990 - m, 7, 2, 1, m}, .iterations = 700000, .most_iterations = 50});
+    }
+    result.failures = {{0, PoseIndex(2), {SampleIndex(7), SolveStatus::singular}}};
+    return result;
+  }
+  void write_allocation(const std::string& path, const AllocationResult& result) const {
+    poesy::write_result(path, "allocation", kAllocationFile, study, poses, result, facts);
   }
   void write_monte_carlo(const std::string& path) {
     const MonteCarloResult result = monte_carlo();

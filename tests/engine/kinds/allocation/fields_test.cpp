@@ -1,0 +1,237 @@
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/files/h5.h"
+#include "engine/kinds/allocation/kind.h"
+#include "engine/kinds/allocation/result.h"
+#include "engine/stats/proportion.h"
+#include "tests/engine/kinds/example_result.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy {
+namespace {
+
+/// Equal bit by bit, but for NaN, which equals NaN.
+void expect_same(const std::vector<double>& found, const std::vector<double>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_TRUE(found[k] == expected[k] || (std::isnan(found[k]) && std::isnan(expected[k]))) << k;
+  }
+}
+
+void expect_same(const YieldVerdict& found, const YieldVerdict& expected) {
+  EXPECT_EQ(found.decision, expected.decision);
+  EXPECT_EQ(found.asked, expected.asked);
+  EXPECT_EQ(found.conf_level, expected.conf_level);
+  EXPECT_EQ(found.value, expected.value);
+  EXPECT_EQ(found.ci_low, expected.ci_low);
+  EXPECT_EQ(found.ci_high, expected.ci_high);
+  EXPECT_EQ(found.machines, expected.machines);
+  EXPECT_EQ(found.rejects, expected.rejects);
+  EXPECT_EQ(found.unsolved, expected.unsolved);
+}
+
+class AllocationFile : public testing::Test {
+ protected:
+  AllocationFile() : path_(folder_.file("r.h5")), written_(example_.allocation()) { write(); }
+
+  void write() const { example_.write_allocation(path_, written_); }
+
+  StoredResult stored() const {
+    return read_result(path_, [](std::string_view name) { return name == "allocation" ? &kAllocationFile : nullptr; });
+  }
+
+  /// What reading says of the file after one of its objects was replaced by another; empty: it was read.
+  std::string problem_with(const std::string& replaced, const std::string& by) const {
+    write();
+    const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    EXPECT_GE(H5Ldelete(file, replaced.c_str(), H5P_DEFAULT), 0) << replaced;
+    EXPECT_GE(H5Lcreate_hard(file, by.c_str(), file, replaced.c_str(), H5P_DEFAULT, H5P_DEFAULT), 0) << by;
+    H5Fclose(file);
+    try {
+      stored();
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  /// A text file of the exported tables.
+  std::string csv(const std::string& name) const {
+    const std::string tables = folder_.file("tables");
+    export_tables(stored(), kAllocationFile, tables);
+    return test::read_bytes(tables + "/" + name + ".csv");
+  }
+
+  test::TempFolder folder_;
+  test::Example example_;
+  std::string path_;
+  AllocationResult written_;
+};
+
+TEST_F(AllocationFile, IsReadBackAsItWas) {
+  const StoredResult result = stored();
+  const AllocationResult& found = allocation_of(result);
+  EXPECT_EQ(result.kind, "allocation");
+  EXPECT_EQ(found.responses, 2u);
+  EXPECT_EQ(found.poses, test::Example::kPoses);
+  for (const auto member : {&AllocationResult::part_names, &AllocationResult::part_members,
+                            &AllocationResult::part_unit, &AllocationResult::chosen}) {
+    EXPECT_EQ(found.*member, written_.*member);
+  }
+  using Result = AllocationResult;
+  for (const auto member : {&Result::tolerance, &Result::sigma, &Result::sigmas, &Result::shift, &Result::cost,
+                            &Result::share, &Result::mean_square_share, &Result::coarser_yield, &Result::multiplier,
+                            &Result::limit_use, &Result::limit, &Result::saving, &Result::curve_yield,
+                            &Result::curve_yield_cost, &Result::curve_factor, &Result::curve_factor_cost}) {
+    expect_same(found.*member, written_.*member);
+  }
+  for (const auto member : {&Result::total_cost, &Result::lower_bound, &Result::wanted_yield, &Result::confidence}) {
+    EXPECT_EQ(found.*member, written_.*member);
+  }
+  EXPECT_EQ(found.bound, written_.bound);
+  EXPECT_EQ(found.aim, Aim::least_cost);
+  EXPECT_TRUE(found.calibrated);
+  EXPECT_TRUE(verify_result(path_).matches());
+}
+
+TEST_F(AllocationFile, KeepsTheWayAndTheCertificate) {
+  const StoredResult result = stored();
+  const AllocationResult& found = allocation_of(result);
+  ASSERT_EQ(found.stages.size(), 2u);
+  EXPECT_EQ(found.stages[1].name, "scaled to the yield");
+  EXPECT_EQ(found.stages[1].cost, 10.0);
+  EXPECT_EQ(found.stages[1].lower_bound, 9.995);
+  EXPECT_EQ(found.stages[1].rms_share, 0.3);
+  EXPECT_EQ(found.stages[1].machines, 20000u);
+  EXPECT_EQ(found.stages[1].rejects, 48u);
+  for (const auto member :
+       {&AllocationResult::design_machines, &AllocationResult::design_rejects, &AllocationResult::design_most,
+        &AllocationResult::certificate_seed, &AllocationResult::certificate_most}) {
+    EXPECT_EQ(found.*member, written_.*member);
+  }
+  expect_same(found.certificate, written_.certificate);
+  EXPECT_EQ(found.certificate_study, written_.certificate_study);
+  EXPECT_EQ(found.failures, written_.failures);
+  EXPECT_EQ(found.total().by_status, written_.total().by_status);
+  ASSERT_TRUE(result.verdicts && result.verdicts->yield);
+  EXPECT_EQ(result.verdicts->judge, Judge::yield);
+  expect_same(*result.verdicts->yield, written_.certificate);
+  EXPECT_TRUE(result.failures.empty()) << "'poesy replay' would draw other errors than the certificate's";
+}
+
+TEST_F(AllocationFile, KeepsEveryAimAndDecision) {
+  using enum YieldVerdict::Decision;
+  for (const Aim aim : {Aim::least_cost, Aim::equal_effect, Aim::equal_tolerance, Aim::common_factor}) {
+    for (const auto decision : {not_asked, kept, not_kept, undecided}) {
+      written_.aim = aim;
+      written_.certificate.decision = decision;
+      written_.calibrated = decision == kept;
+      write();
+      const StoredResult result = stored();
+      EXPECT_EQ(allocation_of(result).aim, aim);
+      EXPECT_EQ(allocation_of(result).certificate.decision, decision);
+      EXPECT_EQ(allocation_of(result).calibrated, decision == kept);
+    }
+  }
+}
+
+TEST_F(AllocationFile, MayHaveNeitherCostsNorCurvesNorFailures) {
+  written_.total_cost = written_.lower_bound = std::nan("");
+  written_.curve_yield = written_.curve_yield_cost = written_.curve_factor = written_.curve_factor_cost = {};
+  written_.failures.clear();
+  write();
+  const StoredResult result = stored();
+  EXPECT_TRUE(std::isnan(allocation_of(result).total_cost));
+  EXPECT_TRUE(allocation_of(result).curve_yield.empty());
+  EXPECT_TRUE(allocation_of(result).failures.empty());
+}
+
+TEST_F(AllocationFile, SaysWhatFollowsForOtherPrograms) {
+  const h5::File file = h5::File::open(path_);
+  const auto number = [&](const char* name) { return file.attribute<double>("/allocation", name).at(0); };
+  EXPECT_EQ(number("cost"), 10.0);
+  EXPECT_EQ(number("gap"), 10.0 - 9.995);
+  EXPECT_EQ(number("yield"), written_.certificate.value);
+  EXPECT_EQ(number("yield_ci_low"), written_.certificate.ci_low);
+  EXPECT_EQ(number("yield_ci_high"), written_.certificate.ci_high);
+  EXPECT_EQ(number("certified"), 1.0);
+  EXPECT_EQ(file.shape("/allocation/tolerance"), h5::Shape{3});
+  EXPECT_EQ(file.shape("/allocation/multiplier"), (h5::Shape{2, 4}));
+  EXPECT_EQ(file.read<std::string>("/allocation/part"), written_.part_names);
+  EXPECT_EQ(file.read<double>("/allocation/certificate/lower_bound").at(0), proportion_at_least(147640, 148000, 0.95));
+}
+
+TEST_F(AllocationFile, RefusesWrongShapes) {
+  const std::set<std::string> axes{"part", "response", "pose", "stage", "curve_yield", "curve_factor"};
+  std::vector<std::string> datasets{"/allocation/certificate_study"};
+  {
+    const h5::File file = h5::File::open(path_);
+    for (const std::string group :
+         {"/allocation", "/allocation/stages", "/allocation/curve", "/allocation/certificate"}) {
+      for (const std::string& name : file.children(group)) {
+        const std::string path = group + "/" + name;
+        if (!file.is_group(path) && !axes.contains(name)) datasets.push_back(path);
+      }
+    }
+  }
+  EXPECT_GT(datasets.size(), 36u);
+  for (const std::string& path : datasets) {
+    const bool large = path.ends_with("multiplier") || path.ends_with("limit_use");
+    EXPECT_NE(
+        problem_with(path, large ? "/allocation/limit" : "/allocation/multiplier").find("the shape it should have"),
+        std::string::npos)
+        << path;
+  }
+}
+
+TEST_F(AllocationFile, RefusesWhatNoCertificateHas) {
+  EXPECT_NE(problem_with("/allocation/certificate/decision", "/allocation/certificate_study").find("unknown decision"),
+            std::string::npos);
+  EXPECT_NE(problem_with("/allocation/certificate/rejects", "/allocation/certificate/seed").find("no certificate has"),
+            std::string::npos);
+  written_.bound.back() = 4;
+  write();
+  EXPECT_THROW(stored(), FileError);
+}
+
+TEST_F(AllocationFile, IsExportedAsTheDrawingHasIt) {
+  EXPECT_EQ(csv("allocation"),
+            "part,tolerance [m or rad],tolerance [mm or deg],sigma [m or rad],sigma [mm or deg],shift [m or rad],"
+            "shift [mm or deg],sigmas,cost,share,mean_square_share,bound,coarser_yield,unit\n"
+            "bars,1.23456789e-05,0.0123456789,4.11522e-06,0.004115219999999999,0,0,3,2.5,0.25,0.5,0,0.9965,m\n"
+            "hinge,0.0017453292519943296,0.1,0.00058177641733144,0.03333333333333315,0,0,3,7,0.7,0.375,2,0.9971,rad\n"
+            "plate,2.5e-05,0.025,7.5e-06,0.0075,2.5e-06,0.0025,3,0.5,0.05,0.125,3,NaN,m\n");
+  EXPECT_EQ(csv("allocation_limits"),
+            "response,limit,saving,largest_limit_use,largest_limit_use_pose,largest_multiplier,"
+            "largest_multiplier_pose,unit\nlinear_deformation,3e-05,0.09,1,3,200000,2,m\n");
+  EXPECT_EQ(csv("allocation_poses"),
+            "pose,limit_use_linear_deformation,multiplier_linear_deformation [cost/m]\n"
+            "0,0.25,0\n1,0.5,0\n2,0.75,200000\n3,1,100000\n");
+}
+
+TEST_F(AllocationFile, IsExportedWithItsWayAndItsCertificate) {
+  EXPECT_EQ(csv("allocation_stages"),
+            "stage,cost,lower_bound,rms_share,machines,rejects\n"
+            "linear,9,8.75,0.3333,0,0\nscaled to the yield,10,9.995,0.3,20000,48\n");
+  EXPECT_EQ(csv("allocation_curves"),
+            "curve,at,cost\nyield,0.99,8\nyield,0.9973,10\nyield,0.999,12.5\n"
+            "factor of limits,0.5,20\nfactor of limits,1,10\n");
+  const std::string certificate = csv("allocation_certificate");
+  EXPECT_TRUE(
+      certificate.starts_with("decision,asked,conf_level,seed,machines,rejects,unsolved,most_rejects,yield,"
+                              "ci_low,ci_high,lower_bound,design_machines,design_rejects,design_most\n"
+                              "kept,0.9973,0.95,"));
+  EXPECT_TRUE(csv("not_converged").starts_with("pose,not_converged,"));
+  EXPECT_EQ(csv("failures"), "factor,pose,sample,status\nall,2,7,3\n");
+  EXPECT_TRUE(csv("factors").starts_with("factor,sigma [rad or m],"));
+}
+
+}  // namespace
+}  // namespace poesy
