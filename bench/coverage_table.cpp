@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <vector>
 
 #include "tests/engine/stats/effect_coverage.h"
@@ -35,14 +36,22 @@ void print_poses(int repetitions) {
   }
 }
 
+void print_gradients(const char* shape, double limit, const YieldCase& yield, double good, int repetitions) {
+  for (const std::size_t machines : {500U, 1000U, 2000U, 5000U, 20000U}) {
+    fmt::print("{}, limit {:.2f}, yield {:.4f}, {:5} machines, {:7.1f} rejects: gradient {:.1f} %\n", shape, limit,
+               good, machines, (1.0 - good) * static_cast<double>(machines),
+               100.0 * gradient_coverage(yield, machines, repetitions, 600).share());
+  }
+}
+
 void print_gradients(int repetitions) {
   for (const double limit : {0.45, 0.35, 0.3, 0.1}) {
-    for (const std::size_t machines : {500U, 1000U, 2000U, 5000U, 20000U}) {
-      const double good = std::erf(limit / std::sqrt(0.06));
-      fmt::print("yield {:.4f}, {:5} machines, {:7.1f} rejects: gradient {:.1f} %\n", good, machines,
-                 (1.0 - good) * static_cast<double>(machines),
-                 100.0 * gradient_coverage(limit, machines, repetitions, 600).share());
-    }
+    print_gradients("normal", limit, normal_case(kThreeErrors, limit), std::erf(limit / std::sqrt(0.06)), repetitions);
+  }
+  const std::vector<double> half_widths(3, 0.1 * std::numbers::sqrt3);
+  for (const double limit : {0.45, 0.4, 0.35, 0.3, 0.1}) {
+    print_gradients("uniform", limit, uniform_case(kThreeErrors, limit), share_of_uniforms(half_widths, limit),
+                    repetitions);
   }
 }
 

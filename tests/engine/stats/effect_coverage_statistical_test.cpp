@@ -73,10 +73,23 @@ TEST(EffectCurve, HoldsTheMeansOfBins) {
 }
 
 TEST(YieldGradientInterval, CoversWithNineRejectsOrMore) {
-  EXPECT_GE(gradient_coverage(0.45, 1000, kRepetitions, 101).share(), 0.93);
-  EXPECT_GE(gradient_coverage(0.3, 1000, kRepetitions, 102).share(), 0.935);
-  EXPECT_GE(gradient_coverage(0.1, 1000, kRepetitions, 103).share(), 0.935);
-  EXPECT_NEAR(gradient_coverage(0.3, 5000, kRepetitions, 104).share(), 0.95, 0.01);
+  const auto share = [](double limit, std::size_t machines, std::uint64_t seed) {
+    return gradient_coverage(test::normal_case(test::kThreeErrors, limit), machines, kRepetitions, seed).share();
+  };
+  EXPECT_GE(share(0.45, 1000, 101), 0.93);
+  EXPECT_GE(share(0.3, 1000, 102), 0.935);
+  EXPECT_GE(share(0.1, 1000, 103), 0.935);
+  EXPECT_NEAR(share(0.3, 5000, 104), 0.95, 0.01);
+}
+
+TEST(YieldGradientInterval, OfUniformErrorsCoversWithTenRejectsOrMore) {
+  const auto share = [](double limit, std::size_t machines, std::uint64_t seed) {
+    return gradient_coverage(test::uniform_case(test::kThreeErrors, limit), machines, kRepetitions, seed).share();
+  };
+  EXPECT_GE(share(0.4, 1000, 105), 0.93);
+  EXPECT_GE(share(0.3, 1000, 106), 0.935);
+  EXPECT_GE(share(0.1, 1000, 107), 0.935);
+  EXPECT_NEAR(share(0.3, 5000, 108), 0.95, 0.01);
 }
 
 }  // namespace
