@@ -1,16 +1,15 @@
 #include "engine/random/weighted_points.h"
 
-#include <array>
 #include <boost/math/quadrature/gauss.hpp>
-#include <cmath>
+#include <span>
 
 #include "engine/base/contract.h"
 
 namespace poesy {
 namespace {
 
-using Gauss = boost::math::quadrature::gauss<double, 7>;
-static_assert(kExactDegree == 2 * 7 - 1);
+using Gauss = boost::math::quadrature::gauss<double, 10>;
+static_assert(kExactDegree == 2 * 10 - 1);
 
 /// Adds a piece from low to high that holds this share of all errors. slope: of the density, in units of its mean for
 /// half a piece; the density stays positive.
@@ -21,11 +20,9 @@ void add_piece(double low, double high, double share, double slope, WeightedPoin
     found.points.push_back(middle + half * place);
     found.weights.push_back(0.5 * weight * share * (1.0 + slope * place));
   };
-  // Boost has the nodes from zero on, once for both signs.
-  for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
-    const double place = Gauss::abscissa()[k];
-    if (place != 0.0) add(-place, Gauss::weights()[k]);
-    add(place, Gauss::weights()[k]);
+  for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {  // Boost has those above zero
+    add(-Gauss::abscissa()[k], Gauss::weights()[k]);
+    add(Gauss::abscissa()[k], Gauss::weights()[k]);
   }
 }
 

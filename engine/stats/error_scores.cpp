@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/base/contract.h"
 
@@ -40,21 +41,29 @@ double NormalScore::ends() const {
   return 2.0 * ratio * density / std::erf(ratio / std::numbers::sqrt2);
 }
 
-// Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for so low a degree.
 PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const double> weights) {
   POESY_EXPECTS(points.size() == weights.size() && !points.empty());
   const auto [low, high] = std::ranges::minmax(points);
   POESY_EXPECTS(low < high);
   middle_ = 0.5 * (low + high);
   inverse_half_ = 2.0 / (high - low);
-  const std::size_t count = points.size();
   const Mean mean(weights);
   std::vector<double> x;
   for (const double point : points) x.push_back((point - middle_) * inverse_half_);
   const double centre = mean([&](std::size_t n) { return x[n]; });
   sigma_ = std::sqrt(mean([&](std::size_t n) { return (x[n] - centre) * (x[n] - centre); })) / inverse_half_;
+  find_polynomials(x, weights, centre);
+  std::vector<double> scores;
+  for (const double point : points) scores.push_back((*this)(point));
+  mean_square_ = mean([&](std::size_t n) { return scores[n] * scores[n]; });
+  mean_cube_ = mean([&](std::size_t n) { return scores[n] * scores[n] * scores[n]; });
+}
 
+// Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for so low a degree.
+void PolynomialScore::find_polynomials(std::span<const double> x, std::span<const double> weights, double centre) {
   constexpr double kNone = 1e-12;  // of the norm before: there are no more points than the degree
+  const std::size_t count = x.size();
+  const Mean mean(weights);
   AtPoints before{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   AtPoints now{std::vector<double>(count, 1.0), std::vector<double>(count, 0.0)};
   double norm = 1.0;

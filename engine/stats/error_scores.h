@@ -32,15 +32,20 @@ class PolynomialScore {
  public:
   static constexpr std::size_t kDegree = 6;  ///< Higher ones have more noise than they take off bias (THEORY.md).
 
-  /// points, weights: [n] in the unit of the error, over which means of polynomials up to degree 2 kDegree + 1 are
+  /// points, weights: [n] in the unit of the error, over which means of polynomials up to degree 3 kDegree are
   /// those of the error. Where n points or fewer are distinct, the degree is below that number. Precondition: weights
   /// are positive and sum to 1; at least two distinct points.
   PolynomialScore(std::span<const double> points, std::span<const double> weights);
 
-  double sigma() const { return sigma_; }  ///< Standard deviation of the points: t.
-  double operator()(double error) const;   ///< S.
+  double sigma() const { return sigma_; }              ///< Standard deviation of the points: t.
+  double operator()(double error) const;               ///< S.
+  double mean_square() const { return mean_square_; }  ///< Of S over all errors, whose mean is 0.
+  double mean_cube() const { return mean_cube_; }      ///< Likewise.
 
  private:
+  /// x: [n] points from -1 to 1; centre: their mean.
+  void find_polynomials(std::span<const double> x, std::span<const double> weights, double centre);
+
   double sigma_;
   double middle_;        ///< of the points' range
   double inverse_half_;  ///< of half that range
@@ -48,6 +53,8 @@ class PolynomialScore {
   std::array<double, kDegree> centres_{};
   std::array<double, kDegree> ratios_{};
   std::array<double, kDegree> factors_{};  ///< of q_(k+1) in S; 0 beyond the degree that the points have
+  double mean_square_;
+  double mean_cube_;
 };
 
 /// Of an error of a NormalBlock.

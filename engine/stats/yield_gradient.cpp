@@ -18,6 +18,10 @@ std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
   return found;
 }
 
+/// So many rejects, with any error, are added where the spread of a score is estimated, because few rejects need not
+/// have had its largest values (as Agresti and Coull 1998, Am. Stat. 52, 119-126, add two of each kind for a share).
+constexpr double kAdded = 4.0;
+
 /// Sums of the powers of one error's score.
 struct PowerSums {
   double sum = 0.0;
@@ -130,10 +134,13 @@ Estimate ScoreSums::mean_score(std::size_t error, double conf_level) const {
   const double ends = normal == nullptr ? 0.0 : normal->ends();
   // the mean powers of the score, whose constant part is added here
   const double mean = (sums_[error] + ends * rejects) / n;
-  const double mean2 = (squares_[error] + ends * (2.0 * sums_[error] + ends * rejects)) / n;
-  const double mean3 =
-      (cubes_[error] + ends * (3.0 * squares_[error] + ends * (3.0 * sums_[error] + ends * rejects))) / n;
+  double mean2 = (squares_[error] + ends * (2.0 * sums_[error] + ends * rejects)) / n;
+  double mean3 = (cubes_[error] + ends * (3.0 * squares_[error] + ends * (3.0 * sums_[error] + ends * rejects))) / n;
   if (rejects_ < 2) return {mean, {kNaN, kNaN}};
+  if (const auto* polynomial = std::get_if<PolynomialScore>(&scores_.each[error])) {
+    mean2 += kAdded * polynomial->mean_square() / n;
+    mean3 += kAdded * polynomial->mean_cube() / n;
+  }
   const double variance = mean2 - mean * mean;
   const double third = mean3 - mean * (3.0 * mean2 - 2.0 * mean * mean);
   const double z = two_sided_student_quantile(rejects - 1.0, conf_level);

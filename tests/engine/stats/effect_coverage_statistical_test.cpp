@@ -82,14 +82,19 @@ TEST(YieldGradientInterval, CoversWithNineRejectsOrMore) {
   EXPECT_NEAR(share(0.3, 5000, 104), 0.95, 0.01);
 }
 
-TEST(YieldGradientInterval, OfUniformErrorsCoversWithTenRejectsOrMore) {
-  const auto share = [](double limit, std::size_t machines, std::uint64_t seed) {
-    return gradient_coverage(test::uniform_case(test::kThreeErrors, limit), machines, kRepetitions, seed).share();
+TEST(YieldGradientInterval, OfOtherErrorsCoversWithTenRejectsOrMore) {
+  const auto share = [](const test::YieldCase& yield, std::size_t machines, std::uint64_t seed) {
+    return gradient_coverage(yield, machines, kRepetitions, seed).share();
   };
-  EXPECT_GE(share(0.4, 1000, 105), 0.93);
-  EXPECT_GE(share(0.3, 1000, 106), 0.935);
-  EXPECT_GE(share(0.1, 1000, 107), 0.935);
-  EXPECT_NEAR(share(0.3, 5000, 108), 0.95, 0.01);
+  const auto uniform = [](double limit) { return test::uniform_case(test::kThreeErrors, limit); };
+  EXPECT_GE(share(uniform(0.4), 1000, 105), 0.935);
+  EXPECT_GE(share(uniform(0.35), 250, 106), 0.935);
+  EXPECT_GE(share(uniform(0.3), 1000, 107), 0.935);
+  EXPECT_NEAR(share(uniform(0.3), 5000, 108), 0.95, 0.01);
+  const auto triangular = [](double limit) { return test::triangular_case(test::kThreeErrors, limit); };
+  EXPECT_GE(share(triangular(0.4), 500, 109), 0.93);
+  EXPECT_GE(share(triangular(0.3), 500, 110), 0.91);
+  EXPECT_NEAR(share(triangular(0.3), 5000, 111), 0.95, 0.01);
 }
 
 }  // namespace

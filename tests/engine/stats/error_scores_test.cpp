@@ -27,6 +27,8 @@ TEST(PolynomialScore, OfTheUniformIsASumOfLegendrePolynomials) {
   const WeightedPoints points = weighted_points(Distribution::uniform(kHalf));
   const PolynomialScore score(points.points, points.weights);
   EXPECT_NEAR(score.sigma(), kHalf / std::numbers::sqrt3, 1e-15 * kHalf);
+  EXPECT_NEAR(score.mean_square(), 5.0 + 9.0 + 13.0, 1e-12);
+  EXPECT_NEAR(score.mean_cube(), mean_of(points, [&](double e) { return std::pow(score(e), 3); }), 1e-11);
   for (const double u : {-1.0, -0.7, -0.1, 0.0, 0.3, 0.95, 1.0}) {
     const double expected = 5.0 * std::legendre(2, u) + 9.0 * std::legendre(4, u) + 13.0 * std::legendre(6, u);
     EXPECT_NEAR(score(u * kHalf), expected, 1e-12) << u;
