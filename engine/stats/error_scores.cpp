@@ -121,4 +121,22 @@ void NormalBlock::replace(std::span<double> z) const {
   for (std::size_t i = 0; i < size; ++i) z[i] = z[i] * solution[i] - 1.0;
 }
 
+ScoreMoments score_moments(const ErrorScores& scores, std::size_t error) {
+  if (const auto* polynomial = std::get_if<PolynomialScore>(&scores.each[error])) {
+    return {polynomial->mean_square(), polynomial->mean_cube()};
+  }
+  for (const NormalBlock& block : scores.blocks) {
+    const auto place = std::ranges::find(block.errors, error);
+    if (place == block.errors.end()) continue;
+    std::vector<double> unit(block.errors.size(), 0.0);
+    double& at_error = unit[static_cast<std::size_t>(place - block.errors.begin())];
+    at_error = 1.0;
+    block.replace(unit);
+    const double r = at_error + 1.0;
+    return {1.0 + r, 2.0 + 6.0 * r};
+  }
+  POESY_EXPECTS(false);
+  return {};
+}
+
 }  // namespace poesy

@@ -39,7 +39,7 @@ class PolynomialScore {
 
   double sigma() const { return sigma_; }              ///< Standard deviation of the points: t.
   double operator()(double error) const;               ///< S.
-  double mean_square() const { return mean_square_; }  ///< Of S over all errors, whose mean is 0.
+  double mean_square() const { return mean_square_; }  ///< Of S over all errors; its mean is 0.
   double mean_cube() const { return mean_cube_; }      ///< Likewise.
 
  private:
@@ -83,5 +83,15 @@ struct ErrorScores {
   std::vector<ErrorScore> each;          ///< [P]
   std::vector<NormalBlock> blocks = {};  ///< an error is in one at the most
 };
+
+/// Means of a score's powers over all machines; its own mean is 0.
+struct ScoreMoments {
+  double square;
+  double cube;
+};
+
+/// Of the error at this position. In a NormalBlock: 1 + r and 2 + 6 r with r = (R^-1)_ii, because it is a product of
+/// two normals of variances 1 and r and covariance 1. Precondition: the error has a PolynomialScore or a BlockScore.
+ScoreMoments score_moments(const ErrorScores& scores, std::size_t error);
 
 }  // namespace poesy

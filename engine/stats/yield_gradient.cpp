@@ -141,9 +141,10 @@ Estimate ScoreSums::mean_score(std::size_t error, double conf_level) const {
   double mean2 = (squares_[error] + ends * (2.0 * sums_[error] + ends * rejects)) / n;
   double mean3 = (cubes_[error] + ends * (3.0 * squares_[error] + ends * (3.0 * sums_[error] + ends * rejects))) / n;
   if (rejects_ < 2) return {mean, {kNaN, kNaN}};
-  if (const auto* polynomial = std::get_if<PolynomialScore>(&scores_.each[error])) {
-    mean2 += kAdded * polynomial->mean_square() / n;
-    mean3 += kAdded * polynomial->mean_cube() / n;
+  if (normal == nullptr) {
+    const ScoreMoments all = score_moments(scores_, error);
+    mean2 += kAdded * all.square / n;
+    mean3 += kAdded * all.cube / n;
   }
   const double variance = mean2 - mean * mean;
   const double third = mean3 - mean * (3.0 * mean2 - 2.0 * mean * mean);

@@ -36,10 +36,10 @@ class ScoreSums {
   /// good ones have the score 0, by the central limit theorem. Few rejects make that mean skewed, so the variance is
   /// taken at the end in question (variance + skewness (end - mean), as in Wilson's interval for a share), and
   /// Student's quantile is that for the number of rejects: of 95 % intervals, 94 to 95 % held the gradient of a sum of
-  /// normal errors from nine rejects on, and 90 % with five (THEORY.md). The scores of a PolynomialScore spread more,
-  /// so their second and third moment have four rejects in addition, with any error: 92 to 97 % from five on. Its
-  /// interval does not cover what is left out beyond the degree. NaN for errors without a score; NaN at both ends below
-  /// two rejects. Precondition: 0 < conf_level < 1.
+  /// normal errors from nine rejects on, and 90 % with five (THEORY.md). The scores of errors of other shapes and of
+  /// correlated ones spread more, so their second and third moments are taken with four rejects in addition, with any
+  /// error. The interval does not cover what a PolynomialScore leaves out. NaN for errors without a score; NaN at both
+  /// ends below two rejects. Precondition: 0 < conf_level < 1.
   std::vector<Estimate> gradient(double conf_level) const;
 
   /// Every bit of the sums, and back.

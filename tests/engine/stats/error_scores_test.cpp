@@ -112,6 +112,31 @@ TEST(NormalScore, OfACutOffNormalHasTheEnds) {
   EXPECT_NEAR((NormalScore{2.0, 3.0}.ends()), 2.0 * slope, 1e-9);
 }
 
+TEST(ScoreMoments, AreThoseOfTheScores) {
+  // of one normal in a block: z^2 - 1
+  const ScoreMoments alone = score_moments({{BlockScore{2.0}}, {{{0}, {1.0}}}}, 0);
+  EXPECT_DOUBLE_EQ(alone.square, 2.0);
+  EXPECT_DOUBLE_EQ(alone.cube, 8.0);
+  // of two with correlation 0.6, (R^-1)_ii = 1 / 0.64, by the trapezoidal rule over independent normals
+  const ErrorScores two{{ErrorScore(), BlockScore{1.0}, BlockScore{1.0}},
+                        {{{2, 1}, lower_triangle(std::array{1.0, 0.6, 0.6, 1.0})}}};
+  ScoreMoments sums{0.0, 0.0};
+  for (int i = -100; i <= 100; ++i) {
+    for (int j = -100; j <= 100; ++j) {
+      const double u = 0.1 * i;
+      const double v = 0.1 * j;
+      std::array z{u, 0.6 * u + 0.8 * v};
+      two.blocks[0].replace(z);
+      const double weight = 0.01 * std::exp(-0.5 * (u * u + v * v)) / (2.0 * std::numbers::pi);
+      sums.square += weight * z[0] * z[0];
+      sums.cube += weight * z[0] * z[0] * z[0];
+    }
+  }
+  EXPECT_NEAR(score_moments(two, 2).square, sums.square, 1e-9);
+  EXPECT_NEAR(score_moments(two, 2).cube, sums.cube, 1e-9);
+  EXPECT_NEAR(score_moments(two, 1).square, 1.0 + 1.0 / 0.64, 1e-12);
+}
+
 TEST(NormalBlock, HasTheScoreOfTheDensity) {
   const Eigen::Matrix3d correlation{{1.0, 0.6, -0.3}, {0.6, 1.0, 0.2}, {-0.3, 0.2, 1.0}};
   const Eigen::Matrix3d precision = correlation.inverse();
