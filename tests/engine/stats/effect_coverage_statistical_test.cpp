@@ -91,6 +91,7 @@ TEST(YieldGradientInterval, OfOtherErrorsCoversWithTenRejectsOrMore) {
   EXPECT_GE(share(uniform(0.35), 250, 106), 0.935);
   EXPECT_GE(share(uniform(0.3), 1000, 107), 0.935);
   EXPECT_NEAR(share(uniform(0.3), 5000, 108), 0.95, 0.01);
+  EXPECT_GE(share(test::correlated_case(0.1, 0.6, 0.7), 1000, 112), 0.93);
   const auto triangular = [](double limit) { return test::triangular_case(test::kThreeErrors, limit); };
   EXPECT_GE(share(triangular(0.4), 500, 109), 0.93);
   EXPECT_GE(share(triangular(0.3), 500, 110), 0.91);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/random/distribution.h"
+#include "engine/random/normal_copula.h"
 #include "engine/random/stream.h"
 #include "engine/random/weighted_points.h"
 #include "engine/stats/yield_gradient.h"
@@ -29,23 +30,48 @@ inline ErrorScore score_of(const Distribution& distribution) {
 struct YieldCase {
   std::vector<Distribution> errors;
   double limit;
-  std::vector<double> gradient;  ///< true dY/dt of each error
+  std::vector<double> gradient;          ///< true dY/dt of each error
+  std::vector<double> correlation = {};  ///< of all errors, which are normal then; empty for independent ones
+
+  /// What is known of the errors.
+  ErrorScores scores() const {
+    ErrorScores made;
+    for (const Distribution& error : errors) {
+      made.each.push_back(correlation.empty() ? score_of(error) : BlockScore{error.sigma()});
+    }
+    if (correlation.empty()) return made;
+    made.blocks.push_back({{}, lower_triangle(correlation)});
+    for (std::size_t p = 0; p < errors.size(); ++p) made.blocks[0].errors.push_back(p);
+    return made;
+  }
+
+  /// Replaces uniforms by errors, row by row.
+  void transform(std::span<const std::span<double>> rows) const {
+    if (correlation.empty()) {
+      for (std::size_t p = 0; p < rows.size(); ++p) errors[p].transform(rows[p]);
+      return;
+    }
+    for (const std::span<double> row : rows) normal_quantiles(1.0, row);
+    NormalCopula(correlation).correlate(rows);
+    for (std::size_t p = 0; p < rows.size(); ++p) errors[p].transform_scores(rows[p]);
+  }
 
   /// Of new machines from this engine.
   std::vector<Estimate> estimate(std::size_t machines, double conf_level, boost::random::mt19937_64& engine) const {
     std::vector<double> values(errors.size() * machines);
     for (double& value : values) value = uniform_from_bits(engine());
-    std::vector<double> sum(machines);
-    ErrorScores scores;
+    std::vector<std::span<double>> rows;
     for (std::size_t p = 0; p < errors.size(); ++p) {
-      const std::span row = std::span(values).subspan(p * machines, machines);
-      errors[p].transform(row);
-      for (std::size_t b = 0; b < machines; ++b) sum[b] += row[b];
-      scores.each.push_back(score_of(errors[p]));
+      rows.push_back(std::span(values).subspan(p * machines, machines));
     }
+    transform(rows);
     std::vector<std::uint8_t> rejected;
-    for (const double y : sum) rejected.push_back(static_cast<std::uint8_t>(std::abs(y) > limit));
-    ScoreSums sums(scores);
+    for (std::size_t b = 0; b < machines; ++b) {
+      double sum = 0.0;
+      for (const std::span<double> row : rows) sum += row[b];
+      rejected.push_back(static_cast<std::uint8_t>(std::abs(sum) > limit));
+    }
+    ScoreSums sums(scores());
     sums.add(values, rejected);
     return sums.gradient(conf_level);
   }
@@ -87,6 +113,19 @@ inline YieldCase normal_case(std::span<const double> sigma, double limit) {
     made.errors.push_back(Distribution::normal(one));
     made.gradient.push_back(-2.0 * density * limit * one / std::pow(variance, 1.5));
   }
+  return made;
+}
+
+/// Normal errors of the same size, each two of which have this correlation.
+inline YieldCase correlated_case(double sigma, double correlation, double limit) {
+  constexpr std::size_t kErrors = 3;
+  const double variance = sigma * sigma * (kErrors + kErrors * (kErrors - 1) * correlation);
+  const double density = std::exp(-0.5 * limit * limit / variance) / std::sqrt(2.0 * std::numbers::pi);
+  const double by_size = sigma * (1.0 + (kErrors - 1) * correlation);
+  YieldCase made{std::vector(kErrors, Distribution::normal(sigma)), limit,
+                 std::vector(kErrors, -2.0 * density * limit * by_size / std::pow(variance, 1.5)),
+                 std::vector(kErrors * kErrors, correlation)};
+  for (std::size_t p = 0; p < kErrors; ++p) made.correlation[p * kErrors + p] = 1.0;
   return made;
 }
 
