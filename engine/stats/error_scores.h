@@ -86,8 +86,8 @@ struct ErrorScores {
 
 /// Means of a score's powers over all machines; its own mean is 0.
 struct ScoreMoments {
-  double square;
-  double cube;
+  double square;  ///< E[S^2]
+  double cube;    ///< E[S^3]
 };
 
 /// Of the error at this position. In a NormalBlock: 1 + r and 2 + 6 r with r = (R^-1)_ii, because it is a product of

@@ -21,7 +21,7 @@ namespace poesy {
 /// each error, and looks at the rejects alone.
 class ScoreSums {
  public:
-  explicit ScoreSums(ErrorScores scores);
+  explicit ScoreSums(ErrorScores scores);  ///< Of no machines. [P] errors.
 
   /// Adds B machines. errors: [P x B], SI, row-major as SampleBlock::values are. rejected: [B] 1 or 0, as
   /// MachineBlock::rejected gives it. Precondition: the errors are finite.
@@ -35,7 +35,7 @@ class ScoreSums {
   /// [P] dY/dt, for each unit of the error (1/m, 1/rad). The interval is that of a mean over all machines, of which the
   /// good ones have the score 0, by the central limit theorem. Few rejects make that mean skewed, so the variance is
   /// taken at the end in question (variance + skewness (end - mean), as in Wilson's interval for a share), and
-  /// Student's quantile is that for the number of rejects: of 95 % intervals, 94 to 95 % held the gradient of a sum of
+  /// Student's quantile is that for the number of rejects: of 95 % intervals, 93 to 95 % held the gradient of a sum of
   /// normal errors from nine rejects on, and 90 % with five (THEORY.md). The scores of errors of other shapes and of
   /// correlated ones spread more, so their second and third moments are taken with four rejects in addition, with any
   /// error. The interval does not cover what a PolynomialScore leaves out. NaN for errors without a score; NaN at both
