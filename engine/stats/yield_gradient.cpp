@@ -23,7 +23,7 @@ std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
 constexpr double kAdded = 4.0;
 
 /// Sums of the powers of one error's score.
-struct PowerSums {
+struct ScorePowers {
   double sum = 0.0;
   double squares = 0.0;
   double cubes = 0.0;
@@ -37,27 +37,27 @@ struct PowerSums {
 
 /// score: of the error at a machine.
 template <class Score>
-PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
-  PowerSums sums;
+ScorePowers score_powers(std::span<const std::size_t> rejects, const Score score) {
+  ScorePowers sums;
   for (const std::size_t b : rejects) sums.add(score(b));
   return sums;
 }
 
 /// Of a normal error. Never inlined, because its sums then stay in registers.
-[[gnu::noinline]] PowerSums power_sums(const NormalScore& score, std::span<const double> row,
-                                       std::span<const std::size_t> rejects) {
+[[gnu::noinline]] ScorePowers score_powers(const NormalScore& score, std::span<const double> row,
+                                           std::span<const std::size_t> rejects) {
   const double inverse_sigma = 1.0 / score.sigma;
-  return power_sums(rejects, [row, inverse_sigma](std::size_t b) {
+  return score_powers(rejects, [row, inverse_sigma](std::size_t b) {
     const double z = row[b] * inverse_sigma;
     return z * z - 1.0;
   });
 }
 
 /// Of an error that depends on no other. row: [B].
-PowerSums power_sums(const ErrorScore& score, std::span<const double> row, std::span<const std::size_t> rejects) {
-  if (const auto* normal = std::get_if<NormalScore>(&score)) return power_sums(*normal, row, rejects);
+ScorePowers score_powers(const ErrorScore& score, std::span<const double> row, std::span<const std::size_t> rejects) {
+  if (const auto* normal = std::get_if<NormalScore>(&score)) return score_powers(*normal, row, rejects);
   if (const auto* polynomial = std::get_if<PolynomialScore>(&score)) {
-    return power_sums(rejects, [&](std::size_t b) { return (*polynomial)(row[b]); });
+    return score_powers(rejects, [&](std::size_t b) { return (*polynomial)(row[b]); });
   }
   return {};
 }
@@ -75,7 +75,7 @@ void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t
   POESY_EXPECTS(errors.size() == sums_.size() * count);
   const std::vector<std::size_t> rejects = places(rejected);  // few of many machines, as a rule
   for (std::size_t p = 0; p < sums_.size(); ++p) {
-    const PowerSums found = power_sums(scores_.each[p], errors.subspan(p * count, count), rejects);
+    const ScorePowers found = score_powers(scores_.each[p], errors.subspan(p * count, count), rejects);
     sums_[p] += found.sum;
     squares_[p] += found.squares;
     cubes_[p] += found.cubes;
@@ -89,7 +89,7 @@ void ScoreSums::add_block(const NormalBlock& block, std::span<const double> erro
                           std::span<const std::size_t> rejects) {
   const std::size_t size = block.errors.size();
   std::vector<double> z(size);
-  std::vector<PowerSums> found(size);
+  std::vector<ScorePowers> found(size);
   for (const std::size_t b : rejects) {
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t p = block.errors[i];
