@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <vector>
 
 #include "tests/engine/kinds/sobol/shapley_coverage.h"
@@ -36,13 +37,29 @@ void print_poses(int repetitions) {
   }
 }
 
+/// good: the yield.
+void print_gradients(const char* shape, double good, const YieldCase& yield, int repetitions) {
+  for (const std::size_t machines : {250U, 500U, 1000U, 2000U, 5000U, 20000U}) {
+    fmt::print("{}, yield {:.4f}, {:5} machines, {:7.1f} rejects: gradient {:.1f} %\n", shape, good, machines,
+               (1.0 - good) * static_cast<double>(machines),
+               100.0 * gradient_coverage(yield, machines, repetitions, 600).share());
+  }
+}
+
 void print_gradients(int repetitions) {
-  for (const double limit : {0.45, 0.35, 0.3, 0.1}) {
-    for (const std::size_t machines : {500U, 1000U, 2000U, 5000U, 20000U}) {
-      const double good = std::erf(limit / std::sqrt(0.06));
-      fmt::print("yield {:.4f}, {:5} machines, {:7.1f} rejects: gradient {:.1f} %\n", good, machines,
-                 (1.0 - good) * static_cast<double>(machines),
-                 100.0 * gradient_coverage(limit, machines, repetitions, 600).share());
+  const std::vector<double> uniform(3, 0.1 * std::numbers::sqrt3);
+  const std::vector<double> triangular(6, 0.1 * std::sqrt(1.5));
+  for (const double limit : {0.45, 0.4, 0.35, 0.3, 0.1}) {
+    print_gradients("normal", std::erf(limit / std::sqrt(0.06)), normal_case(kThreeErrors, limit), repetitions);
+    print_gradients("uniform", share_of_uniforms(uniform, limit), uniform_case(kThreeErrors, limit), repetitions);
+    print_gradients("triangular", share_of_uniforms(triangular, limit), triangular_case(kThreeErrors, limit),
+                    repetitions);
+  }
+  for (const double correlation : {0.3, 0.6, 0.9}) {
+    for (const double z : {2.6, 2.0, 1.0}) {
+      const double limit = z * 0.1 * std::sqrt(3.0 + 6.0 * correlation);
+      print_gradients("correlated", std::erf(z / std::numbers::sqrt2), correlated_case(0.1, correlation, limit),
+                      repetitions);
     }
   }
 }

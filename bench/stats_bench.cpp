@@ -89,7 +89,8 @@ void AddMachinesAtPose(benchmark::State& state) {
 /// For each error of a machine, one machine in so many a reject.
 void AddScores(benchmark::State& state) {
   const auto one_in = static_cast<std::size_t>(state.range(0));
-  poesy::ScoreSums scores(std::vector<poesy::ErrorScale>(kErrors, {1.0, std::numeric_limits<double>::infinity()}));
+  const poesy::NormalScore normal{1.0, std::numeric_limits<double>::infinity()};
+  poesy::ScoreSums scores({std::vector<poesy::ErrorScore>(kErrors, normal)});
   const std::vector<double> errors = uniforms(kErrors, 0);
   std::vector<std::uint8_t> rejected(kSamples);
   for (std::size_t b = 0; b < kSamples; b += one_in) rejected[b] = 1;

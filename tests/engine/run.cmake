@@ -5,7 +5,7 @@ poesy_test(analysis_test LABELS unit SOURCES engine/kinds/evaluate/cases_test.cp
 poesy_test(allocation_test LABELS property SOURCES engine/run/allocation_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(monte_carlo_sort_test LABELS regression SOURCES engine/kinds/monte_carlo/sort_test.cpp
            LINKS poesy_kinds poesy_models)
-poesy_test(machines_test LABELS unit SOURCES engine/kinds/monte_carlo/machines_test.cpp LINKS poesy_kinds)
+poesy_test(machines_test LABELS unit SOURCES engine/kinds/monte_carlo/machines_test.cpp LINKS poesy_kinds Boost::headers)
 poesy_test(tolerance_confirmation_test LABELS statistical SOURCES engine/kinds/sensitivity/tolerance_confirmation_test.cpp
            LINKS poesy_kinds)
 poesy_test(fidelity_statistical_test LABELS statistical SOURCES engine/kinds/sensitivity/fidelity_statistical_test.cpp

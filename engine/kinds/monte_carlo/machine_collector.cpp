@@ -175,8 +175,8 @@ MonteCarloResult MachineCollector::result() && {
 
 Bytes MachineCollector::state() const {
   ByteWriter to;
-  for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, table_->responses(), poses(),
-                                                                 table_->scales().size(), table_->plan().samples()}) {
+  for (const std::uint64_t number :
+       std::array<std::uint64_t, 5>{kKind, table_->responses(), poses(), table_->errors(), table_->plan().samples()}) {
     to.number(number);
   }
   to.number(sums_.empty() ? 0 : 1);
@@ -198,7 +198,7 @@ void MachineCollector::restore(std::span<const std::byte> state) {
 
 void MachineCollector::restore_one(ByteReader& from) {
   for (const std::uint64_t expected :
-       std::array<std::uint64_t, 4>{kKind, table_->responses(), poses(), table_->scales().size()}) {
+       std::array<std::uint64_t, 4>{kKind, table_->responses(), poses(), table_->errors()}) {
     if (from.number() != expected) throw BytesError("is the state of another kind or size of study");
   }
   if (tail_) throw BytesError("goes on after the last machine");

@@ -87,8 +87,9 @@ const Group<YieldResult> kYield{
       "Share of the machines that are not within the limit of this response at this pose; NaN for a response without a "
       "limit"},
      {"gradient", &YieldResult::gradient, kByFactor, "SI: 1 / factor unit",
-      "What the yield changes by for each unit of the error's sigma (likelihood ratio); NaN for errors that are not "
-      "made of a normal, and where there are no rejects to tell"},
+      "What the yield changes by for each unit of the error's sigma (likelihood ratio; of uniform, triangular and "
+      "measured errors what polynomials up to degree 6 say of it); NaN for errors of a correlated block that are not "
+      "all normal, and where there are no rejects to tell"},
      {"gradient_ci_low", &YieldResult::gradient_ci_low, kByFactor, "SI: 1 / factor unit",
       "Lower end of its interval (central limit theorem)"},
      {"gradient_ci_high", &YieldResult::gradient_ci_high, kByFactor, "SI: 1 / factor unit",

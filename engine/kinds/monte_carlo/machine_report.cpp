@@ -91,7 +91,7 @@ Table gradient_table(const StoredResult& result) {
       .caption = fmt::format("What the yield changes by if the sigma of one error grows by {}", percent_text(kPart)),
       .columns = {},
       .notes = {fmt::format("low, high: {} interval; slope: of the yield by sigma, 1/mm or 1/deg; - where an "
-                            "error is not made of a normal or is correlated, or no machine is rejected",
+                            "error is correlated and not all errors of its block are normal, or no machine is rejected",
                             percent_text(yield.conf_level))},
       .ranked = true};
   fill(table, largest_first(result.factors.size(), [&](std::size_t p) { return -change(yield.gradient)(p); }),

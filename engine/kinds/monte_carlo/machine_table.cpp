@@ -5,24 +5,51 @@
 #include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/random/weighted_points.h"
 #include "engine/run/effect_poses.h"
 
 namespace poesy {
+namespace {
+
+ErrorScore score_of(const Distribution& distribution) {
+  using enum Distribution::Shape;
+  if (distribution.shape() == normal || distribution.shape() == truncated_normal) {
+    return NormalScore{distribution.sigma(), distribution.half_width()};
+  }
+  const WeightedPoints points = weighted_points(distribution);
+  return PolynomialScore(points.points, points.weights);
+}
+
+ErrorScores scores_of(const Plan& plan) {
+  ErrorScores scores;
+  for (std::size_t p = 0; p < plan.factors().size(); ++p) {
+    // The score of an error by itself is not that of one whose others go with it, or whose mean is shifted: the shift
+    // does not grow with sigma.
+    const bool has_score = !plan.is_correlated(p) && plan.distributions()[p].shift() == 0.0;
+    scores.each.push_back(has_score ? score_of(plan.distributions()[p]) : ErrorScore());
+  }
+  for (const CorrelatedSlots& block : plan.correlated()) {
+    const auto is_normal = [&](std::size_t p) {
+      return plan.distributions()[p].shape() == Distribution::Shape::normal;
+    };
+    if (!std::ranges::all_of(block.slots, is_normal)) continue;
+    for (const std::size_t p : block.slots) scores.each[p] = BlockScore{plan.distributions()[p].sigma()};
+    scores.blocks.push_back({block.slots, lower_triangle(block.copula.correlation())});
+  }
+  return scores;
+}
+
+}  // namespace
+
 MachineTable::MachineTable(const Plan& plan, std::size_t responses, const Analysis& analysis)
     : plan_(&plan),
       responses_(responses),
       has_limits_(!analysis.limits.empty()),
-      limits_(responses_, std::numeric_limits<double>::infinity()) {
+      limits_(responses_, std::numeric_limits<double>::infinity()),
+      scores_(scores_of(plan)) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
   for (const ResponseLimit& limit : analysis.limits) limits_[limit.response] = limit.most;
-  for (std::size_t p = 0; p < plan.factors().size(); ++p) {
-    // The score of an error by itself is not that of one whose others go with it, or whose mean is shifted: then there
-    // is none.
-    const Distribution& distribution = plan.distributions()[p];
-    const bool has_score = !plan.is_correlated(p) && distribution.shift() == 0.0;
-    scales_.push_back({has_score ? distribution.sigma() : 0.0, distribution.half_width()});
-  }
-  effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, scales_.size());
+  effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, errors());
 }
 
 std::size_t MachineTable::unit_machines(std::size_t poses) {

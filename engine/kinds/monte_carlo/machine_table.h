@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/stats/error_scores.h"
 #include "engine/stats/main_effects.h"
-#include "engine/stats/yield_gradient.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
@@ -35,8 +35,10 @@ class MachineTable {
 
   bool has_limits() const { return has_limits_; }             ///< Whether machines may be rejected.
   std::span<const double> limits() const { return limits_; }  ///< [R] on magnitudes, infinite for none.
-  /// [P] a correlated error has no sigma here, so that it has no score.
-  std::span<const ErrorScale> scales() const { return scales_; }
+  std::size_t errors() const { return scores_.each.size(); }  ///< P.
+  /// How the yield depends on the size of each error. Not known of an error that is correlated with others unless they
+  /// are all normal.
+  const ErrorScores& scores() const { return scores_; }
 
   /// The poses at which main effects are added up (engine/run/effect_poses.h).
   std::span<const PoseIndex> effect_poses() const { return effect_poses_; }
@@ -49,7 +51,7 @@ class MachineTable {
   std::size_t responses_;
   bool has_limits_;
   std::vector<double> limits_;
-  std::vector<ErrorScale> scales_;
+  ErrorScores scores_;
   std::vector<PoseIndex> effect_poses_;
 };
 

@@ -31,8 +31,8 @@ MachineSums::MachineSums(const MachineTable& table)
       mean(table.responses()),
       largest(table.responses()),
       rms(table.responses()) {
-  if (table.has_limits()) scores.emplace(table.scales());
-  effects.assign(table.effects(), MainEffectSums(table.scales().size(), table.responses()));
+  if (table.has_limits()) scores.emplace(table.scores());
+  effects.assign(table.effects(), MainEffectSums(table.errors(), table.responses()));
 }
 
 void MachineSums::merge(const MachineSums& later) {
@@ -54,10 +54,10 @@ MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
   MachineSums sums(table);
   for (auto* moments : {&sums.at_pose, &sums.mean, &sums.largest, &sums.rms})
     read_each(from, moments->size(), *moments);
-  if (sums.scores) sums.scores = ScoreSums::read(from, table.scales());
+  if (sums.scores) sums.scores = ScoreSums::read(from, table.scores());
   sums.effects.clear();
   for (std::size_t k = 0; k < table.effects(); ++k) {
-    sums.effects.push_back(MainEffectSums::read(from, table.scales().size(), table.responses()));
+    sums.effects.push_back(MainEffectSums::read(from, table.errors(), table.responses()));
   }
   return sums;
 }
@@ -88,7 +88,7 @@ MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::
 }
 
 MachineUnitEvaluator::MachineUnitEvaluator(const MachineTable& table, const Model& model)
-    : UnitSolver(table.plan(), model, table.scales().size()), table_(&table) {
+    : UnitSolver(table.plan(), model, table.errors()), table_(&table) {
   const std::size_t machines = MachineTable::unit_machines(table.plan().poses().size());
   counts_.resize(machines);
   kept_.reserve(machines);
@@ -146,7 +146,7 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectB
   found.sums->effects[at_poses].add(bins, sum_, block.solved());
   found.sums->effects[at_poses + 1].add(bins, largest, block.solved());
   if (!found.sums->scores) return;
-  found.sums->scores->add(std::span(values_).first(table_->scales().size() * machines), block.rejected());
+  found.sums->scores->add(std::span(values_).first(table_->errors() * machines), block.rejected());
 }
 
 MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {

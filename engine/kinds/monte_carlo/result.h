@@ -58,7 +58,7 @@ struct YieldResult {
   std::vector<double> by_response_ci_high = {};  ///< [R]
   std::vector<double> worst_pose_share =
       {};                             ///< [R x M] share of the machines that are not within this limit at the pose
-  std::vector<double> gradient = {};  ///< [P] of the yield by the sigma of each error; NaN where it has no score
+  std::vector<double> gradient = {};  ///< [P] of the yield by the sigma of each error; NaN where it is not known
   std::vector<double> gradient_ci_low = {};   ///< [P] central limit theorem
   std::vector<double> gradient_ci_high = {};  ///< [P]
 };

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/stats/yield_gradient.h"
 #include "tests/engine/stats/coverage.h"
 #include "tests/engine/stats/effect_functions.h"
+#include "tests/engine/stats/yield_cases.h"
 
 // Repeated experiments: how often 95 % intervals of first-order indices, main effects and gradients of a yield hold the
 // truth.
@@ -80,37 +80,18 @@ inline Coverage aggregated_coverage(Dependence dependence, std::size_t samples, 
   return coverage;
 }
 
-/// The gradient of P(|z1 / 10 + ...| <= limit) for the three errors of the reference case (yield_gradient_test.cpp).
-inline Coverage gradient_coverage(double limit, std::size_t machines, int repetitions, std::uint64_t seed) {
-  constexpr std::array kSlope{1.0, 2.0, 0.5};
-  constexpr std::array kSigma{0.1, 0.05, 0.2};
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const double deviation = std::sqrt(0.03);
-  const double density = std::exp(-0.5 * limit * limit / 0.03) / std::sqrt(2.0 * std::numbers::pi);
+/// The intervals of all gradients of a yield.
+inline Coverage gradient_coverage(const YieldCase& yield, std::size_t machines, int repetitions, std::uint64_t seed) {
   boost::random::mt19937_64 engine(seed);
-  std::vector<double> errors(3 * machines);
-  std::vector<std::uint8_t> rejected(machines);
   Coverage coverage;
   for (int r = 0; r < repetitions; ++r) {
-    for (double& error : errors) error = uniform_from_bits(engine());
-    for (std::size_t p = 0; p < 3; ++p) {
-      Distribution::normal(kSigma[p]).transform(std::span(errors).subspan(p * machines, machines));
-    }
-    for (std::size_t b = 0; b < machines; ++b) {
-      double y = 0.0;
-      for (std::size_t p = 0; p < 3; ++p) y += kSlope[p] * errors[p * machines + b];
-      rejected[b] = static_cast<std::uint8_t>(std::abs(y) > limit);
-    }
-    ScoreSums scores(std::array{ErrorScale{kSigma[0], kInfinity}, ErrorScale{kSigma[1], kInfinity},
-                                ErrorScale{kSigma[2], kInfinity}});
-    scores.add(errors, rejected);
-    const std::vector<Estimate> gradient = scores.gradient(0.95);
-    for (std::size_t p = 0; p < 3; ++p) {
-      const double slope = kSlope[p] * kSlope[p] * kSigma[p];
-      coverage.add(gradient[p].interval, -2.0 * density * limit * slope / (deviation * deviation * deviation));
-    }
+    const std::vector<Estimate> gradient = yield.estimate(machines, 0.95, engine);
+    for (std::size_t p = 0; p < gradient.size(); ++p) coverage.add(gradient[p].interval, yield.gradient[p]);
   }
   return coverage;
 }
+
+/// Three errors of the same size.
+inline constexpr std::array kThreeErrors{0.1, 0.1, 0.1};
 
 }  // namespace poesy::test

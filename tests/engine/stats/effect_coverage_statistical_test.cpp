@@ -73,10 +73,29 @@ TEST(EffectCurve, HoldsTheMeansOfBins) {
 }
 
 TEST(YieldGradientInterval, CoversWithNineRejectsOrMore) {
-  EXPECT_GE(gradient_coverage(0.45, 1000, kRepetitions, 101).share(), 0.93);
-  EXPECT_GE(gradient_coverage(0.3, 1000, kRepetitions, 102).share(), 0.935);
-  EXPECT_GE(gradient_coverage(0.1, 1000, kRepetitions, 103).share(), 0.935);
-  EXPECT_NEAR(gradient_coverage(0.3, 5000, kRepetitions, 104).share(), 0.95, 0.01);
+  const auto share = [](double limit, std::size_t machines, std::uint64_t seed) {
+    return gradient_coverage(test::normal_case(test::kThreeErrors, limit), machines, kRepetitions, seed).share();
+  };
+  EXPECT_GE(share(0.45, 1000, 101), 0.93);
+  EXPECT_GE(share(0.3, 1000, 102), 0.935);
+  EXPECT_GE(share(0.1, 1000, 103), 0.935);
+  EXPECT_NEAR(share(0.3, 5000, 104), 0.95, 0.01);
+}
+
+TEST(YieldGradientInterval, OfOtherErrorsCoversWithTenRejectsOrMore) {
+  const auto share = [](const test::YieldCase& yield, std::size_t machines, std::uint64_t seed) {
+    return gradient_coverage(yield, machines, kRepetitions, seed).share();
+  };
+  const auto uniform = [](double limit) { return test::uniform_case(test::kThreeErrors, limit); };
+  EXPECT_GE(share(uniform(0.4), 1000, 105), 0.935);
+  EXPECT_GE(share(uniform(0.35), 250, 106), 0.935);
+  EXPECT_GE(share(uniform(0.3), 1000, 107), 0.935);
+  EXPECT_NEAR(share(uniform(0.3), 5000, 108), 0.95, 0.01);
+  EXPECT_GE(share(test::correlated_case(0.1, 0.6, 0.7), 1000, 112), 0.93);
+  const auto triangular = [](double limit) { return test::triangular_case(test::kThreeErrors, limit); };
+  EXPECT_GE(share(triangular(0.4), 500, 109), 0.93);
+  EXPECT_GE(share(triangular(0.3), 500, 110), 0.91);
+  EXPECT_NEAR(share(triangular(0.3), 5000, 111), 0.95, 0.01);
 }
 
 }  // namespace

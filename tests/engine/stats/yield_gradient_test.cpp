@@ -9,8 +9,10 @@
 #include <numbers>
 
 #include "engine/random/distribution.h"
+#include "engine/random/normal_copula.h"
 #include "engine/random/stream.h"
 #include "tests/engine/stats/stored_bytes.h"
+#include "tests/engine/stats/yield_cases.h"
 
 namespace poesy {
 namespace {
@@ -27,8 +29,8 @@ struct Sum {
   std::array<double, 3> sigma{0.1, 0.05, 0.2};
   double limit = 0.3;
 
-  std::vector<ErrorScale> errors() const {
-    return {{sigma[0], kInfinity}, {sigma[1], kInfinity}, {sigma[2], kInfinity}};
+  ErrorScores errors() const {
+    return {{NormalScore{sigma[0], kInfinity}, NormalScore{sigma[1], kInfinity}, NormalScore{sigma[2], kInfinity}}};
   }
 };
 
@@ -91,7 +93,7 @@ struct OneError {
     distribution.transform(errors);
     std::vector<std::uint8_t> rejected;
     for (const double error : errors) rejected.push_back(static_cast<std::uint8_t>(std::abs(error) > limit));
-    ScoreSums scores(std::array{ErrorScale{sigma, half_width}});
+    ScoreSums scores(ErrorScores{{NormalScore{sigma, half_width}}});
     scores.add(errors, rejected);
     return scores.gradient(0.95).front().value;
   }
@@ -107,8 +109,106 @@ TEST(YieldGradient, OfNormalAndTruncatedErrorsIsExact) {
   }
 }
 
+/// Each true gradient is in its interval of 99.9 %, whose half-width is within this part of it.
+void expect_gradient(const test::YieldCase& yield, std::size_t machines, double part, std::uint64_t seed) {
+  boost::random::mt19937_64 engine(seed);
+  const std::vector<Estimate> found = yield.estimate(machines, 0.999, engine);
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    EXPECT_LT(found[p].interval.low, yield.gradient[p]) << p;
+    EXPECT_GT(found[p].interval.high, yield.gradient[p]) << p;
+    EXPECT_LT(found[p].interval.high - found[p].interval.low, 2.0 * part * std::abs(yield.gradient[p])) << p;
+  }
+}
+
+TEST(YieldGradient, OfUniformErrorsHoldsTheClosedForm) {
+  expect_gradient(test::uniform_case(std::array{0.1, 0.08, 0.15}, 0.32), 1000000, 0.1, 21);
+  expect_gradient(test::uniform_case(std::array{0.1, 0.1}, 0.2), 1000000, 0.1, 22);
+}
+
+TEST(YieldGradient, OfTriangularErrorsHoldsTheClosedForm) {
+  expect_gradient(test::triangular_case(std::array{0.1, 0.08, 0.15}, 0.32), 1000000, 0.1, 23);
+}
+
+TEST(YieldGradient, OfMeasuredErrorsHoldsTheClosedForm) {
+  const std::vector<double> skewed{-0.3, -0.29, -0.25, -0.2, -0.15, -0.1, 0.0, 0.2, 0.6, 0.9};
+  expect_gradient(test::measured_case(skewed, 0.3, 0.8), 1000000, 0.1, 24);
+}
+
+/// y = a . e, of which all but the second are correlated.
+TEST(YieldGradient, OfCorrelatedNormalErrorsHoldsTheClosedForm) {
+  constexpr std::size_t kMachines = 200000;
+  constexpr double kLimit = 0.4;
+  constexpr std::array kSlope{1.0, 1.5, -0.5, 2.0};
+  constexpr std::array kSigma{0.1, 0.08, 0.2, 0.05};
+  const NormalCopula copula(std::array{1.0, 0.6, -0.2, 0.6, 1.0, 0.3, -0.2, 0.3, 1.0});
+  const std::vector<std::size_t> block{0, 2, 3};
+  std::vector<double> errors(4 * kMachines);
+  boost::random::mt19937_64 engine(25);
+  for (double& error : errors) error = uniform_from_bits(engine());
+  normal_quantiles(1.0, errors);
+  const auto row = [&](std::size_t p) { return std::span(errors).subspan(p * kMachines, kMachines); };
+  copula.correlate(std::array{row(0), row(2), row(3)});
+  std::vector<double> y(kMachines);
+  for (std::size_t p = 0; p < 4; ++p) {
+    for (double& error : row(p)) error *= kSigma[p];
+    for (std::size_t b = 0; b < kMachines; ++b) y[b] += kSlope[p] * row(p)[b];
+  }
+  std::vector<std::uint8_t> rejected;
+  for (const double one : y) rejected.push_back(static_cast<std::uint8_t>(std::abs(one) > kLimit));
+  ScoreSums scores(
+      {{BlockScore{kSigma[0]}, NormalScore{kSigma[1], kInfinity}, BlockScore{kSigma[2]}, BlockScore{kSigma[3]}},
+       {{block, lower_triangle(copula.correlation())}}});
+  scores.add(errors, rejected);
+  const std::vector<Estimate> found = scores.gradient(0.999);
+  // variance = s' R s with s_i = a_i t_i
+  std::array<double, 4> by_size{0.0, kSlope[1] * kSlope[1] * kSigma[1], 0.0, 0.0};
+  double variance = by_size[1] * kSigma[1];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      by_size[block[i]] += kSlope[block[i]] * copula.correlation()[3 * i + j] * kSlope[block[j]] * kSigma[block[j]];
+    }
+    variance += by_size[block[i]] * kSigma[block[i]];
+  }
+  const double density = std::exp(-0.5 * kLimit * kLimit / variance) / std::sqrt(2.0 * std::numbers::pi);
+  for (std::size_t p = 0; p < 4; ++p) {
+    const double expected = -2.0 * density * kLimit * by_size[p] / std::pow(variance, 1.5);
+    EXPECT_LT(found[p].interval.low, expected) << p;
+    EXPECT_GT(found[p].interval.high, expected) << p;
+    EXPECT_LT(found[p].interval.high - found[p].interval.low, 0.15) << p;
+  }
+}
+
+/// The sums of normal errors, bit for bit.
+TEST(ScoreSums, OfNormalErrorsAreTheirSquares) {
+  constexpr std::size_t kMachines = 501;
+  const Sum sum;
+  const Machines machines(sum, kMachines, 6);
+  ScoreSums scores(sum.errors());
+  scores.add(machines.errors, machines.rejected);
+  std::array<std::vector<double>, 3> powers;
+  std::uint64_t rejects = 0;
+  for (std::size_t p = 0; p < 3; ++p) {
+    std::array<double, 3> sums{};
+    for (std::size_t b = 0; b < kMachines; ++b) {
+      if (machines.rejected[b] == 0) continue;
+      const double z = machines.errors[p * kMachines + b] * (1.0 / sum.sigma[p]);
+      const double score = z * z - 1.0;
+      sums[0] += score;
+      sums[1] += score * score;
+      sums[2] += score * score * score;
+      rejects += p == 0 ? 1 : 0;
+    }
+    for (std::size_t k = 0; k < 3; ++k) powers[k].push_back(sums[k]);
+  }
+  ByteWriter to;
+  to.number(kMachines);
+  to.number(rejects);
+  for (const std::vector<double>& one : powers) to.reals(one);
+  EXPECT_EQ(written(scores), to.take());
+}
+
 TEST(YieldGradient, OfErrorsWithoutAScoreIsNotKnown) {
-  ScoreSums scores(std::array{ErrorScale{0.0, 1.0}, ErrorScale{1.0, kInfinity}});
+  ScoreSums scores(ErrorScores{{ErrorScore(), NormalScore{1.0, kInfinity}}});
   scores.add(std::array{0.5, 0.9, -0.9, 2.0, 3.0, 0.1}, std::array<std::uint8_t, 3>{1, 1, 0});
   const std::vector<Estimate> gradient = scores.gradient(0.95);
   EXPECT_TRUE(std::isnan(gradient[0].value));
@@ -118,7 +218,7 @@ TEST(YieldGradient, OfErrorsWithoutAScoreIsNotKnown) {
 }
 
 TEST(YieldGradient, NeedsTwoRejectsForAnInterval) {
-  ScoreSums scores(std::array{ErrorScale{1.0, kInfinity}});
+  ScoreSums scores(ErrorScores{{NormalScore{1.0, kInfinity}}});
   EXPECT_TRUE(std::isnan(scores.gradient(0.95).front().value));
   scores.add(std::array{0.5, 3.0}, std::array<std::uint8_t, 2>{0, 1});
   EXPECT_DOUBLE_EQ(scores.gradient(0.95).front().value, -4.0);
@@ -171,6 +271,20 @@ TEST(StoredScoreSums, GoOnWithTheSameBits) {
   expect_no_harm(written(scores), read);
 }
 
+TEST(StoredScoreSums, OfEveryShapeGoOnWithTheSameBits) {
+  const ErrorScores scores{{test::score_of(Distribution::uniform(0.2)), BlockScore{0.05}, BlockScore{0.2}},
+                           {{{1, 2}, lower_triangle(std::array{1.0, 0.5, 0.5, 1.0})}}};
+  const auto read = [&](ByteReader& from) { return ScoreSums::read(from, scores); };
+  const Machines machines(Sum{}, 300, 7);
+  ScoreSums sums(scores);
+  sums.add(machines.errors, machines.rejected);
+  ScoreSums stored = read_all(written(sums), read);
+  for (ScoreSums* one : {&sums, &stored}) one->add(machines.errors, machines.rejected);
+  EXPECT_EQ(written(stored), written(sums));
+  for (const Estimate& one : stored.gradient(0.95)) EXPECT_TRUE(std::isfinite(one.interval.low));
+  expect_no_harm(written(sums), read);
+}
+
 TEST(StoredScoreSums, OfNoMachinesAreRefused) {
   const auto refused = [](std::uint64_t machines, std::uint64_t rejects, double sum, double square, double cube) {
     ByteWriter to;
@@ -180,7 +294,7 @@ TEST(StoredScoreSums, OfNoMachinesAreRefused) {
     const Bytes bytes = to.take();
     ByteReader from(bytes);
     try {
-      ScoreSums::read(from, std::array{ErrorScale{1.0, kInfinity}});
+      ScoreSums::read(from, {{NormalScore{1.0, kInfinity}}});
     } catch (const BytesError&) {
       return true;
     }

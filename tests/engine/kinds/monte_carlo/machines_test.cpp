@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/machine_table.h"
@@ -12,6 +13,7 @@
 #include "engine/run/run_options.h"
 #include "engine/stats/main_effects.h"
 #include "tests/engine/stats/plain_sort.h"
+#include "tests/engine/stats/yield_cases.h"
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"
 
@@ -158,6 +160,65 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
     const double share = std::pow(LinearModel::kSlopes[p] * study.errors.by_factor[p].standard_deviation(), 2) / all;
     EXPECT_NEAR(found.effects->effects.s1[p], share, 0.02) << p;
   }
+}
+
+/// Of the yield, by the sigma of each of three errors.
+std::vector<Estimate> gradient_of(const Study& study) {
+  const MonteCarloResult found = run(study, LinearModel());
+  const YieldResult& yield = *found.machines->yield;
+  std::vector<Estimate> gradient;
+  for (std::size_t p = 0; p < 3; ++p) {
+    gradient.push_back({yield.gradient[p], {yield.gradient_ci_low[p], yield.gradient_ci_high[p]}});
+  }
+  return gradient;
+}
+
+TEST(Machines, HaveAGradientByErrorsOfEveryShape) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 3, 40'500, {0.1, 0.05, 0.2});
+  study.analysis.limits = {{0, 0.3}};
+  // Closed form of the sum of three uniforms, each of the standard deviation 0.1 after its slope.
+  for (std::size_t p = 0; p < 3; ++p) {
+    study.errors.by_factor[p] = Distribution::uniform(std::sqrt(3.0) * 0.1 / LinearModel::kSlopes[p]);
+  }
+  const test::YieldCase uniform = test::uniform_case(std::array{0.1, 0.1, 0.1}, 0.3);
+  const std::vector<Estimate> found = gradient_of(study);
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double expected = uniform.gradient[p] * LinearModel::kSlopes[p];
+    const double half = 0.5 * (found[p].interval.high - found[p].interval.low);
+    EXPECT_NEAR(found[p].value, expected, half * 3.9 / 1.96) << p;
+    EXPECT_LT(half, 0.3 * std::abs(expected)) << p;
+  }
+  study.errors.by_factor[0] = Distribution::triangular(0.2);
+  study.errors.by_factor[1] = Distribution::measured({-.08, -.04, -.03, 0.0, 0.01, 0.01, 0.02, 0.12});
+  for (const Estimate& one : gradient_of(study)) {
+    EXPECT_LT(one.interval.low, one.value);
+    EXPECT_LT(one.interval.high, 0.0);
+  }
+}
+
+TEST(Machines, HaveAGradientByCorrelatedNormalErrors) {
+  constexpr double kCorrelation = 0.5;
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 3, 40'500, {0.1, 0.05, 0.2});
+  study.analysis.limits = {{0, 0.3}};
+  study.errors.correlated = {{{FactorIndex(0), FactorIndex(2)}, {1.0, kCorrelation, kCorrelation, 1.0}}};
+  // a_i t_i is 0.1 of each error
+  constexpr double kVariance = 0.03 + 0.02 * kCorrelation;
+  const double density = std::exp(-0.5 * 0.09 / kVariance) / std::sqrt(2.0 * std::numbers::pi);
+  const std::vector<Estimate> found = gradient_of(study);
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double slope = 0.1 * LinearModel::kSlopes[p] * (p == 1 ? 1.0 : 1.0 + kCorrelation);
+    const double expected = -2.0 * density * 0.3 * slope / std::pow(kVariance, 1.5);
+    const double half = 0.5 * (found[p].interval.high - found[p].interval.low);
+    EXPECT_NEAR(found[p].value, expected, half * 3.9 / 1.96) << p;
+    EXPECT_LT(half, 0.1 * std::abs(expected)) << p;
+  }
+  study.errors.by_factor[2] = Distribution::uniform(0.3);
+  const std::vector<Estimate> mixed = gradient_of(study);
+  EXPECT_TRUE(std::isnan(mixed[0].value));
+  EXPECT_LT(mixed[1].interval.high, 0.0);
+  EXPECT_TRUE(std::isnan(mixed[2].value));
 }
 
 /// Indices and curves of draws that are made anew at each pose.

@@ -1,0 +1,49 @@
+#include "engine/random/weighted_points.h"
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <span>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+using Gauss = boost::math::quadrature::gauss<double, 10>;
+static_assert(kExactDegree == 2 * 10 - 1);
+
+/// Adds a piece from low to high that holds this share of all errors. slope: of the density, in units of its mean for
+/// half a piece; the density stays positive.
+void add_piece(double low, double high, double share, double slope, WeightedPoints& found) {
+  const double middle = 0.5 * (low + high);
+  const double half = 0.5 * (high - low);
+  const auto add = [&](double place, double weight) {
+    found.points.push_back(middle + half * place);
+    found.weights.push_back(0.5 * weight * share * (1.0 + slope * place));
+  };
+  for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {  // Boost has those above zero
+    add(-Gauss::abscissa()[k], Gauss::weights()[k]);
+    add(Gauss::abscissa()[k], Gauss::weights()[k]);
+  }
+}
+
+}  // namespace
+
+WeightedPoints weighted_points(const Distribution& distribution) {
+  using enum Distribution::Shape;
+  POESY_EXPECTS(distribution.shape() == uniform || distribution.shape() == triangular ||
+                distribution.shape() == measured);
+  const double w = distribution.half_width();
+  WeightedPoints found;
+  if (distribution.shape() == uniform) add_piece(-w, w, 1.0, 0.0, found);
+  if (distribution.shape() == triangular) {
+    add_piece(-w, 0.0, 0.5, 1.0, found);
+    add_piece(0.0, w, 0.5, -1.0, found);
+  }
+  const std::span<const double> values = distribution.values();
+  for (std::size_t k = 0; k + 1 < values.size(); ++k) {
+    add_piece(values[k], values[k + 1], 1.0 / static_cast<double>(values.size() - 1), 0.0, found);
+  }
+  return found;
+}
+
+}  // namespace poesy

@@ -1,0 +1,142 @@
+#include "engine/stats/error_scores.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "engine/base/contract.h"
+
+namespace poesy {
+namespace {
+
+/// Means over weighted points.
+class Mean {
+ public:
+  explicit Mean(std::span<const double> weights) : weights_(weights) {}
+
+  template <class Value>
+  double operator()(const Value& value) const {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < weights_.size(); ++n) sum += weights_[n] * value(n);
+    return sum;
+  }
+
+ private:
+  std::span<const double> weights_;
+};
+
+/// A monic polynomial with its derivative at each point [n].
+struct AtPoints {
+  std::vector<double> value;
+  std::vector<double> slope;
+};
+
+}  // namespace
+
+double NormalScore::ends() const {
+  const double ratio = half_width / sigma;
+  if (std::isinf(ratio)) return 0.0;
+  const double density = std::exp(-0.5 * ratio * ratio) / std::sqrt(2.0 * std::numbers::pi);
+  return 2.0 * ratio * density / std::erf(ratio / std::numbers::sqrt2);
+}
+
+PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const double> weights) {
+  POESY_EXPECTS(points.size() == weights.size() && !points.empty());
+  const auto [low, high] = std::ranges::minmax(points);
+  POESY_EXPECTS(low < high);
+  middle_ = 0.5 * (low + high);
+  inverse_half_ = 2.0 / (high - low);
+  const Mean mean(weights);
+  std::vector<double> x;
+  for (const double point : points) x.push_back((point - middle_) * inverse_half_);
+  const double centre = mean([&](std::size_t n) { return x[n]; });
+  sigma_ = std::sqrt(mean([&](std::size_t n) { return (x[n] - centre) * (x[n] - centre); })) / inverse_half_;
+  find_polynomials(x, weights, centre);
+  std::vector<double> scores;
+  for (const double point : points) scores.push_back((*this)(point));
+  mean_square_ = mean([&](std::size_t n) { return scores[n] * scores[n]; });
+  mean_cube_ = mean([&](std::size_t n) { return scores[n] * scores[n] * scores[n]; });
+}
+
+// Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for so low a degree.
+void PolynomialScore::find_polynomials(std::span<const double> x, std::span<const double> weights, double centre) {
+  constexpr double kNone = 1e-12;  // of the norm before: there are no more points than the degree
+  const std::size_t count = x.size();
+  const Mean mean(weights);
+  AtPoints before{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+  AtPoints now{std::vector<double>(count, 1.0), std::vector<double>(count, 0.0)};
+  double norm = 1.0;
+  double ratio = 0.0;
+  for (std::size_t k = 0; k < kDegree; ++k) {
+    const double shift = mean([&](std::size_t n) { return x[n] * now.value[n] * now.value[n]; }) / norm;
+    for (std::size_t n = 0; n < count; ++n) {  // the next one takes the place of the one before
+      before.slope[n] = now.value[n] + (x[n] - shift) * now.slope[n] - ratio * before.slope[n];
+      before.value[n] = (x[n] - shift) * now.value[n] - ratio * before.value[n];
+    }
+    std::swap(before, now);
+    const double next = mean([&](std::size_t n) { return now.value[n] * now.value[n]; });
+    if (!(next > kNone * norm)) return;
+    centres_[k] = shift;
+    ratios_[k] = ratio;
+    factors_[k] = mean([&](std::size_t n) { return now.slope[n] * (x[n] - centre); }) / next;
+    ratio = next / norm;
+    norm = next;
+  }
+}
+
+double PolynomialScore::operator()(double error) const {
+  const double x = (error - middle_) * inverse_half_;
+  double before = 0.0;
+  double value = 1.0;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kDegree; ++k) {
+    const double next = (x - centres_[k]) * value - ratios_[k] * before;
+    before = value;
+    value = next;
+    sum += factors_[k] * value;
+  }
+  return sum;
+}
+
+double size_of(const ErrorScore& score) {
+  if (const auto* normal = std::get_if<NormalScore>(&score)) return normal->sigma;
+  if (const auto* polynomial = std::get_if<PolynomialScore>(&score)) return polynomial->sigma();
+  if (const auto* block = std::get_if<BlockScore>(&score)) return block->sigma;
+  return 0.0;
+}
+
+void NormalBlock::replace(std::span<double> z) const {
+  const std::size_t size = errors.size();
+  POESY_EXPECTS(z.size() == size && triangle.size() == size * size);
+  std::vector<double> solution(z.begin(), z.end());  // of L L^T x = z
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < i; ++j) solution[i] -= triangle[i * size + j] * solution[j];
+    solution[i] /= triangle[i * size + i];
+  }
+  for (std::size_t i = size; i-- > 0;) {
+    solution[i] /= triangle[i * size + i];
+    for (std::size_t j = 0; j < i; ++j) solution[j] -= triangle[i * size + j] * solution[i];
+  }
+  for (std::size_t i = 0; i < size; ++i) z[i] = z[i] * solution[i] - 1.0;
+}
+
+ScoreMoments score_moments(const ErrorScores& scores, std::size_t error) {
+  if (const auto* polynomial = std::get_if<PolynomialScore>(&scores.each[error])) {
+    return {polynomial->mean_square(), polynomial->mean_cube()};
+  }
+  for (const NormalBlock& block : scores.blocks) {
+    const auto place = std::ranges::find(block.errors, error);
+    if (place == block.errors.end()) continue;
+    std::vector<double> unit(block.errors.size(), 0.0);
+    double& at_error = unit[static_cast<std::size_t>(place - block.errors.begin())];
+    at_error = 1.0;
+    block.replace(unit);
+    const double r = at_error + 1.0;
+    return {1.0 + r, 2.0 + 6.0 * r};
+  }
+  POESY_EXPECTS(false);
+  return {};
+}
+
+}  // namespace poesy
