@@ -28,11 +28,11 @@ constexpr double kFine = 2e-3;
 constexpr std::size_t kMostTrials = 12;
 /// Machines below this share of the load that decides do not come to decide while tolerances change a little.
 constexpr double kNear = 0.75;
-/// The same while one tolerance gets coarser by kCoarser.
-constexpr double kVeryNear = 0.9;
+/// How much coarser a part is made to see what it does, and how near to 1 loads are that tell it.
 constexpr double kCoarser = 1.05;
-constexpr double kFirstCoarser = 1.5;
-constexpr std::size_t kMostPasses = 40;
+constexpr double kWindow = 0.1;
+/// Of all machines so many are tried first.
+constexpr std::size_t kFirstOf = 8;
 /// From here on effects are measured again, and all machines tried.
 constexpr double kFar = 0.1;
 /// So many machines of largest load, at the most, tell the direction of the gradient.
@@ -110,8 +110,10 @@ bool ToleranceSearch::choose(const Reach& reach) {
   return true;
 }
 
-void ToleranceSearch::add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects) {
-  stages_.push_back({std::move(name), found_.cost, chosen_.lower_bound, share_, machines, rejects});
+/// by_programme: whether the last programme chose the tolerances.
+void ToleranceSearch::add_stage(std::string name, bool by_programme, std::uint64_t machines, std::uint64_t rejects) {
+  stages_.push_back(
+      {std::move(name), found_.cost, by_programme ? chosen_.lower_bound : kNaN, share_, machines, rejects});
 }
 
 /// Tolerances as if every effect were linear. Where root mean squares cannot be as small as a normal response needs
@@ -129,7 +131,7 @@ bool ToleranceSearch::linearise() {
       (choose({}) ? high : low) = share_;
     }
   }
-  add_stage("linear", 0, 0);
+  add_stage("linear", true, 0, 0);
   // An error that does nothing alone may act among others, and is as large as usual until this is known.
   for (std::size_t i = 0; i < programme_.size(); ++i) {
     bool acts = false;
@@ -151,7 +153,7 @@ bool ToleranceSearch::settle_effects() {
     const bool cost_stays = !(std::abs(found_.cost - before.cost) > kSettled * std::abs(found_.cost));
     if (cost_stays && largest_ratio(found_.tolerance, before.tolerance) < 1.0 + 10.0 * kSettled) break;
   }
-  add_stage("effects among the others", 0, 0);
+  add_stage("effects among the others", true, 0, 0);
   return true;
 }
 
@@ -189,55 +191,68 @@ bool ToleranceSearch::lower_to_least() {
   return true;
 }
 
+/// Scales the limits on root mean squares by this load of the machine that decides, and chooses tolerances by them.
+/// Nothing where there are none, or they stay as they are.
+bool ToleranceSearch::rescale(double load) {
+  const TolerancePoint before = found_;
+  share_ /= std::clamp(load * (1.0 + 0.25 * kFine), 0.25, 4.0);
+  return choose({before.tolerance, kGrowth}) && (load > 1.0 || found_.tolerance != before.tolerance);
+}
+
+/// Comes near the yield with some of the machines, and measures effects again where tolerances have changed much.
+bool ToleranceSearch::come_near() {
+  const std::size_t machines = std::max<std::size_t>(trial_machines() / kFirstOf, 1);
+  for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
+    const Study study = programme_.at(found_.tolerance);
+    const Plan plan = Plan(study, run_.poses).with_samples(machines);
+    const auto first = try_machines(plan, run_.model, study.analysis.limits, run_.options);
+    if (!first) return false;
+    if (trial == 0) add_stage("tried on machines", true, machines, first->rejects());
+    const double load = deciding_load(first->load, allowed_.design / kFirstOf);
+    if (std::abs(std::log(load)) < kFar) break;
+    const ChosenTolerances before = chosen_;
+    if (!rescale(load)) {
+      found_ = load > 1.0 ? programme_.lowest() : before;
+      break;
+    }
+    if (largest_ratio(found_.tolerance, measured_) < 1.0 + kFar) continue;
+    const std::vector<double> at = found_.tolerance;
+    if (!measure(at, kDrawsAmongOthers)) return false;
+    if (!choose({at, kGrowth})) found_ = programme_.lowest();
+  }
+  return true;
+}
+
 /// Scales the limits on root mean squares until the design has as many rejects as it may, and no more.
 bool ToleranceSearch::meet_yield() {
+  if (!come_near()) return false;
   auto all = try_all();
   if (!all) return false;
   trial_ = *std::move(all);
-  add_stage("tried on machines", trial_.load.size(), trial_.rejects());
+  struct Kept {
+    TolerancePoint point;
+    ChosenTolerances chosen;
+    double share;
+  };
+  std::optional<Kept> best;
   double load = deciding_load(trial_.load, allowed_.design);
-  std::optional<TolerancePoint> best;
-  std::optional<ChosenTolerances> best_choice;
-  double best_share = 0.0;
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
-    if (load <= 1.0 && share_ > best_share) {
-      best = found_;
-      best_choice = chosen_;
-      best_share = share_;
-    }
+    if (load <= 1.0 && (!best || share_ > best->share)) best = {found_, chosen_, share_};
     if (load <= 1.0 && load >= 1.0 - kFine) break;
-    const TolerancePoint before = found_;
-    share_ /= std::clamp(load * (1.0 + 0.25 * kFine), 0.25, 4.0);
-    if (!choose({before.tolerance, kGrowth})) {
-      if (best) break;
-      return lower_to_least();
-    }
-    if (load <= 1.0 && found_.tolerance == before.tolerance) break;  // all are as coarse as they may be
-    const bool far = std::abs(std::log(load)) > kFar || !std::isfinite(load);
-    if (far && largest_ratio(found_.tolerance, measured_) > 1.0 + kFar) {
-      if (!measure(found_.tolerance, kDrawsAmongOthers)) return false;
-      if (!choose({before.tolerance, kGrowth})) return lower_to_least();
-    }
-    if (far) {
-      all = try_all();
-      if (!all) return false;
-      trial_ = *std::move(all);
-      load = deciding_load(trial_.load, allowed_.design);
-    } else {
-      const auto near = try_near(found_);
-      if (!near) return false;
-      load = deciding_load(near->trial.load, allowed_.design);
-    }
+    if (!rescale(load)) break;
+    const auto near = try_near(found_);
+    if (!near) return false;
+    load = deciding_load(near->trial.load, allowed_.design);
   }
   if (!best) return lower_to_least();
-  found_ = *best;
-  chosen_ = *best_choice;
-  share_ = best_share;
+  found_ = best->point;
+  chosen_ = best->chosen;
+  share_ = best->share;
   limits_ = programme_.limits(squares_, measured_, share_);
   auto near = try_near(found_);
   if (!near) return false;
   near_ = *std::move(near);
-  add_stage("scaled to the yield", trial_.load.size(), near_.trial.rejects());
+  add_stage("scaled to the yield", true, trial_.load.size(), near_.trial.rejects());
   return true;
 }
 
@@ -309,127 +324,40 @@ bool ToleranceSearch::improve_by_gradient() {
     if (!*fitted) break;
     better = true;
   }
-  if (better) add_stage("by the gradient of the yield", trial_.load.size(), near_.trial.rejects());
+  if (better) add_stage("by the gradient of the yield", false, trial_.load.size(), near_.trial.rejects());
   return true;
 }
 
-/// Parts that would cost less if they were coarser, the largest saving first, then the others.
-std::vector<std::size_t> ToleranceSearch::by_saving(std::span<const double> factor) const {
-  std::vector<std::size_t> order(programme_.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::vector<double> saving;
-  for (const std::size_t i : order) {
-    const auto next = programme_.coarser(found_, i, factor[i]);
-    saving.push_back(next && !std::isnan(found_.cost) ? found_.cost - next->cost : 0.0);
-  }
-  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return saving[i]; });
-  return order;
-}
-
-/// What each part does to the machines that may decide if it alone is coarser.
-std::optional<ToleranceSearch::CoarserParts> ToleranceSearch::try_coarser(std::span<const double> factor) const {
-  CoarserParts coarser;
-  std::vector<Variation> variations;
+/// Finds what each part would do if it alone were coarser. Counts of rejects would drown a small part in noise, so the
+/// rejects to come are as many as machines have loads near 1, per load, times what the part adds to these loads.
+bool ToleranceSearch::try_coarser() {
+  std::vector<std::uint32_t> machines;
+  std::vector<double> now;
   for (std::size_t k = 0; k < near_.machines.size(); ++k) {
-    if (near_.trial.load[k] < kVeryNear) continue;
-    coarser.machines.push_back(near_.machines[k]);
-    coarser.now.push_back(near_.trial.load[k]);
+    if (std::abs(near_.trial.load[k] - 1.0) > kWindow) continue;
+    machines.push_back(near_.machines[k]);
+    now.push_back(near_.trial.load[k]);
   }
+  std::vector<Variation> variations;
+  std::vector<std::size_t> parts;
   for (std::size_t i = 0; i < programme_.size(); ++i) {
-    coarser.next.push_back(programme_.coarser(found_, i, factor[i]));
-    coarser.row.push_back(variations.size());
-    if (!coarser.next[i]) continue;
+    const auto next = programme_.coarser(found_, i, kCoarser);
+    if (!next) continue;
     const auto errors = programme_.errors(i);
-    variations.push_back({{errors.begin(), errors.end()}, coarser.next[i]->tolerance[i] / found_.tolerance[i]});
+    variations.push_back({{errors.begin(), errors.end()}, next->tolerance[i] / found_.tolerance[i]});
+    parts.push_back(i);
   }
   const Study study = programme_.at(found_.tolerance);
-  std::vector<double> poses;
-  for (std::size_t m = 0; m < run_.poses.size(); ++m) {
-    const auto pose = run_.poses[PoseIndex(m)];
-    if (near_.trial.pose_load[m] >= kVeryNear) poses.insert(poses.end(), pose.begin(), pose.end());
+  const auto loads =
+      try_variations(Plan(study, run_.poses), run_.model, study.analysis.limits, machines, variations, run_.options);
+  if (!loads) return false;
+  const auto count = static_cast<double>(trial_.load.size());
+  for (std::size_t v = 0; v < variations.size(); ++v) {
+    double added = 0.0;
+    for (std::size_t k = 0; k < now.size(); ++k) added += (*loads)[v * now.size() + k] - now[k];
+    const double rejects = static_cast<double>(trial_.rejects()) + added / (2.0 * kWindow);
+    coarser_yield_[parts[v]] = std::clamp(1.0 - rejects / count, 0.0, 1.0);
   }
-  auto loads = try_variations(Plan(study, PoseSet(run_.poses.coordinates(), std::move(poses))), run_.model,
-                              study.analysis.limits, coarser.machines, variations, run_.options);
-  if (!loads) return std::nullopt;
-  coarser.loads = *std::move(loads);
-  return coarser;
-}
-
-std::uint64_t ToleranceSearch::CoarserParts::rejects(std::size_t part) const {
-  const auto of_part = std::span(loads).subspan(row[part] * machines.size(), machines.size());
-  return static_cast<std::uint64_t>(std::ranges::count_if(of_part, [](double load) { return load > 1.0; }));
-}
-
-/// Takes as many coarser parts as the design allows, the largest saving first, if what they do to a machine's load
-/// adds up. Gives which.
-std::vector<std::size_t> ToleranceSearch::acceptable(const CoarserParts& coarser,
-                                                     std::span<const double> factor) const {
-  std::vector<double> loads = coarser.now;
-  std::vector<std::size_t> taken;
-  std::vector<double> with(loads.size());
-  for (const std::size_t i : by_saving(factor)) {
-    if (!coarser.next[i] || !(coarser.next[i]->cost < found_.cost)) continue;
-    if (coarser.rejects(i) > allowed_.design) continue;
-    std::uint64_t rejects = 0;
-    for (std::size_t k = 0; k < loads.size(); ++k) {
-      with[k] = loads[k] + coarser.loads[coarser.row[i] * loads.size() + k] - coarser.now[k];
-      if (with[k] > 1.0) ++rejects;
-    }
-    if (rejects > allowed_.design) continue;
-    loads.swap(with);
-    taken.push_back(i);
-  }
-  return taken;
-}
-
-/// Makes these parts coarser, or as many of the first of them as machines really allow. False when stopped.
-bool ToleranceSearch::take_coarser(const CoarserParts& coarser, std::vector<std::size_t>& taken) {
-  while (!taken.empty()) {
-    TolerancePoint point = found_;
-    for (const std::size_t i : taken) {
-      point.tolerance[i] = coarser.next[i]->tolerance[i];
-      point.process[i] = coarser.next[i]->process[i];
-      point.cost += coarser.next[i]->cost - found_.cost;
-    }
-    auto near = try_near(point);
-    if (!near) return false;
-    if (near->trial.rejects() <= allowed_.design) {
-      found_ = std::move(point);
-      near_ = *std::move(near);
-      return true;
-    }
-    taken.resize(taken.size() / 2);
-  }
-  return true;
-}
-
-/// Makes parts coarser where the design keeps its yield and the cost falls, by ever smaller steps, until no part alone
-/// can be coarser by the last one. Of an aim without costs it only finds what that would do.
-bool ToleranceSearch::coarsen() {
-  const bool moves = asked_.aim == Aim::least_cost;
-  std::vector<double> factor(programme_.size(), moves ? kFirstCoarser : kCoarser);
-  bool ever = false;
-  for (std::size_t pass = 0; pass < kMostPasses; ++pass) {
-    const auto coarser = try_coarser(factor);
-    if (!coarser) return false;
-    std::vector<std::size_t> taken = moves ? acceptable(*coarser, factor) : std::vector<std::size_t>();
-    if (!take_coarser(*coarser, taken)) return false;
-    ever = ever || !taken.empty();
-    bool smallest = true;
-    for (std::size_t i = 0; i < programme_.size(); ++i) {
-      if (std::ranges::find(taken, i) != taken.end()) continue;
-      if (factor[i] == kCoarser) continue;
-      factor[i] = std::max(kCoarser, std::sqrt(factor[i]));
-      smallest = false;
-    }
-    if (!taken.empty() || !smallest) continue;
-    for (std::size_t i = 0; i < programme_.size(); ++i) {
-      if (!coarser->next[i]) continue;
-      coarser_yield_[i] = 1.0 - static_cast<double>(coarser->rejects(i)) / static_cast<double>(trial_.load.size());
-    }
-    break;
-  }
-  if (ever) add_stage("parts one by one", trial_.load.size(), near_.trial.rejects());
   return true;
 }
 
@@ -447,14 +375,17 @@ bool ToleranceSearch::confirm() {
     found_ = programme_.at_most(tighter);
     if (found_.tolerance == before.tolerance) refuse_lowest();
   }
-  add_stage("all machines", trial_.load.size(), trial_.rejects());
+  add_stage("all machines", false, trial_.load.size(), trial_.rejects());
+  auto near = try_near(found_);
+  if (!near) return false;
+  near_ = *std::move(near);
   return true;
 }
 
 bool ToleranceSearch::find() {
   if (!linearise() || !settle_effects() || !meet_yield()) return false;
   if (near_.machines.empty()) return true;  // the lowest tolerances: nothing is left to choose
-  return improve_by_gradient() && coarsen() && confirm();
+  return improve_by_gradient() && confirm() && try_coarser();
 }
 
 double ToleranceSearch::cost_at(double share, double wider) const {

@@ -55,10 +55,12 @@ class ToleranceSearch {
   bool choose(const Reach& reach);
   bool linearise();
   bool settle_effects();
+  bool rescale(double load);
+  bool come_near();
   bool meet_yield();
   bool improve_by_gradient();
-  bool coarsen();
   bool confirm();
+  bool try_coarser();
 
   /// Machines of the design that were tried at some tolerances.
   struct Tried {
@@ -66,6 +68,7 @@ class ToleranceSearch {
     Trial trial;                          ///< of these
   };
 
+  std::size_t trial_machines() const { return run_.study.analysis.samples; }
   std::optional<Trial> try_all() const;
   std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
   std::optional<Tried> try_near(const TolerancePoint& point) const;
@@ -73,22 +76,7 @@ class ToleranceSearch {
   ToleranceLimits gradient_limits() const;
   std::optional<bool> fit_gradient(ToleranceLimits direction);
 
-  /// What every part does to machines if it alone is coarser: N parts, n machines.
-  struct CoarserParts {
-    std::vector<std::uint32_t> machines;              ///< [n]
-    std::vector<double> now;                          ///< [n] their loads
-    std::vector<std::optional<TolerancePoint>> next;  ///< [N] none where a part cannot be coarser
-    std::vector<std::size_t> row;                     ///< [N] of a part that can, in loads
-    std::vector<double> loads;                        ///< [rows x n]
-
-    std::uint64_t rejects(std::size_t part) const;
-  };
-
-  std::vector<std::size_t> by_saving(std::span<const double> factor) const;
-  std::optional<CoarserParts> try_coarser(std::span<const double> factor) const;
-  std::vector<std::size_t> acceptable(const CoarserParts& coarser, std::span<const double> factor) const;
-  bool take_coarser(const CoarserParts& coarser, std::vector<std::size_t>& taken);
-  void add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects);
+  void add_stage(std::string name, bool by_programme, std::uint64_t machines, std::uint64_t rejects);
   std::string row_text(std::size_t row) const;
   [[noreturn]] void refuse(const CannotBeMet& broken) const;
   [[noreturn]] void refuse_lowest() const;
