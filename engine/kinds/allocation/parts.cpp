@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "engine/base/text.h"
 #include "engine/kinds/allocation/cost_keys.h"
