@@ -98,58 +98,73 @@ std::vector<std::string> studies() {
       "\"6 mm\", \"7 mm\", \"8 mm\"] } }\n"
       "correlated = [{ factors = [\"delta_1\", \"delta_2\"], correlation = [[1, 0.5], [0.5, 1]] }]");
   const std::string background = "background = { factors = \"benign\", linear = \"2 mm\", angular = \"2 deg\" }\n";
-  return {head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
-              "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" +
-              background + "reference = { factor = \"delta_1\", tolerance = \"2 mm\" }\n",
-          from_file + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
-          by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
-          both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
-          head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
-              "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\ndraws = \"per machine\"\nconf_level = "
-              "0.95\nquantiles = [0.1, 0.2]\n" +
-              background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
-          head +
-              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
-              "judge = \"rms\"\nlimits = { angular_deformation = \"1 deg\", linear_deformation = \"1 mm\" }\n",
-          head +
-              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
-              "judge = \"share\"\nshare = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
-          head +
-              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
-              "judge = \"yield\"\nyield = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
-          head +
-              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nfactors = \"all\"\nsamples = "
-              "160\n"
-              "conf_level = 0.9\ngroups = { a = [\"delta_1\"], b = \"epsilon_1\" }\nsecond_order = true\n"
-              "design = \"lhs\"\nreplicates = 10\n" +
-              background,
-          head + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"random\"\n",
-          head + "[poses]\nselect = \"boundary\"\ncount = 3\n" + box +
-              "[analysis]\nkind = \"identification\"\nfactors = \"all\"\npose_share = 0.9\n"
-              "groups = [{ name = \"small\", linear = \"2 mm\", angular = \"2 deg\" }]\n",
-          head +
-              "[poses]\nselect = \"trajectory\"\nmax_condition = 1e6\n"
-              "trajectory = { curve = \"wave\", origin = [\"0.21 m\", \"-1 rad\", \"0 rad\"], points = 5, time = [\"0 "
-              "s\", \"1 s\"] }\n"
-              "[analysis]\nkind = \"evaluate\"\nlimits = { angular_deformation = \"1 deg\" }\n" +
-              background +
-              "cases = [{ name = \"one\", errors = { linear = \"1 mm\", angular = \"1 deg\", delta_1 = \"2 mm\", "
-              "deforming = { linear = \"1 mm\", angular = \"1 deg\" } } }]\n",
-          head +
-              "[poses]\nselect = \"trajectory\"\n"
-              "trajectory = { file = \"curve.csv\", points = 5, time = [\"0 s\", \"1 s\"] }\n"
-              "[analysis]\nkind = \"coupling\"\nlinear = [\"1 mm\"]\nangular = [\"1 deg\"]\nlimbs = \"independent\"\n"
-              "components = \"independent\"\nsources = [{ name = \"A\", factors = \"deforming\" }, { name = \"B\", "
-              "factors = "
-              "[\"delta_2\"] }]\n",
-          measured +
-              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nshapley = true\n"
-              "second_order = false\nfactors = \"all\"\nsamples = 80\nconf_level = 0.9\ndesign = \"lhs\"\n"
-              "groups = { one = [\"delta_1\"], other = \"delta_2\" }\nreplicates = 8\n" +
-              background,
-          head +
-              "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"lhs\"\n"
-              "samples = 80\ngroups = \"limb\"\nshapley = false\n"};
+  return {
+      head + "[poses]\nselect = \"interior\"\ncount = 3\n" + box +
+          "[analysis]\nkind = \"sensitivity\"\nfactors = [\"delta_1\"]\nsamples = 50\nconf_level = 0.9\n" + background +
+          "reference = { factor = \"delta_1\", tolerance = \"2 mm\" }\n",
+      from_file + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
+      by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
+      both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
+      head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
+          "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\ndraws = \"per machine\"\nconf_level = "
+          "0.95\nquantiles = [0.1, 0.2]\n" +
+          background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+          "judge = \"rms\"\nlimits = { angular_deformation = \"1 deg\", linear_deformation = \"1 mm\" }\n",
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\n"
+          "judge = \"share\"\nshare = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\ndraws = \"per machine\"\n"
+          "judge = \"yield\"\nyield = 0.99\nlimits = { angular_deformation = \"1 deg\" }\n",
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nfactors = \"all\"\nsamples = "
+          "160\n"
+          "conf_level = 0.9\ngroups = { a = [\"delta_1\"], b = \"epsilon_1\" }\nsecond_order = true\n"
+          "design = \"lhs\"\nreplicates = 10\n" +
+          background,
+      head + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"random\"\n",
+      head + "[poses]\nselect = \"boundary\"\ncount = 3\n" + box +
+          "[analysis]\nkind = \"identification\"\nfactors = \"all\"\npose_share = 0.9\n"
+          "groups = [{ name = \"small\", linear = \"2 mm\", angular = \"2 deg\" }]\n",
+      head +
+          "[poses]\nselect = \"trajectory\"\nmax_condition = 1e6\n"
+          "trajectory = { curve = \"wave\", origin = [\"0.21 m\", \"-1 rad\", \"0 rad\"], points = 5, time = [\"0 "
+          "s\", \"1 s\"] }\n"
+          "[analysis]\nkind = \"evaluate\"\nlimits = { angular_deformation = \"1 deg\" }\n" +
+          background +
+          "cases = [{ name = \"one\", errors = { linear = \"1 mm\", angular = \"1 deg\", delta_1 = \"2 mm\", "
+          "deforming = { linear = \"1 mm\", angular = \"1 deg\" } } }]\n",
+      head +
+          "[poses]\nselect = \"trajectory\"\n"
+          "trajectory = { file = \"curve.csv\", points = 5, time = [\"0 s\", \"1 s\"] }\n"
+          "[analysis]\nkind = \"coupling\"\nlinear = [\"1 mm\"]\nangular = [\"1 deg\"]\nlimbs = \"independent\"\n"
+          "components = \"independent\"\nsources = [{ name = \"A\", factors = \"deforming\" }, { name = \"B\", "
+          "factors = "
+          "[\"delta_2\"] }]\n",
+      measured +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\nshapley = true\n"
+          "second_order = false\nfactors = \"all\"\nsamples = 80\nconf_level = 0.9\ndesign = \"lhs\"\n"
+          "groups = { one = [\"delta_1\"], other = \"delta_2\" }\nreplicates = 8\n" +
+          background,
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sobol\"\ndesign = \"lhs\"\n"
+          "samples = 80\ngroups = \"limb\"\nshapley = false\n",
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\nfactors = \"all\"\n"
+          "samples = 5000\nlimits = { angular_deformation = \"1 deg\" }\nyield = 0.99\nconfidence = 0.9\n"
+          "aim = \"least-cost\"\nsigmas = 4\n" +
+          background +
+          "parts = [{ name = \"pins\", factors = [\"delta_1\"], each = false, sigmas = 2, shift = 0.1, processes = [{ "
+          "name = \"turning\", cost = { law = \"reciprocal\", a = 1, b = 2, unit = \"mm\" }, bounds = [\"1 mm\", "
+          "\"2 mm\"] }] }, { factors = [\"epsilon_1\"], cpk = 1, cost = { law = \"exponential\", a = 1, b = 2, tau = "
+          "\"1 deg\" }, bounds = [\"1 deg\", \"2 deg\"] }, { factors = [\"delta_2\"], sigmas = 3, cost = { law = "
+          "\"reciprocal-power\", a = 1, b = 2, k = 2, unit = \"mm\" }, values = [\"1 mm\"] }]\n",
+      head +
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\ncpk = 1\nlimits = { "
+          "angular_deformation = \"1 deg\" }\nparts = [{ factors = \"linear\", each = true, identical_limbs = [1, "
+          "2], grades = [\"IT7\"], nominal_size = \"50 mm\" }, { factors = \"angular\", tolerance = \"1 deg\" }]\n"};
 }
 
 using OnTable = std::function<void(toml::table& table, const std::string& path)>;
