@@ -24,13 +24,15 @@ constexpr const char* kCostPerResponse = "cost / SI: response unit";
 
 const Group<Result> kAllocation{
     "/allocation",
-    "Tolerances that keep the study's limits. cost: of all parts; lower_bound: no tolerances cost less under the final "
-    "limits on root mean squares; gap: cost - lower_bound; yield: share of the certificate's machines that are within "
+    "Tolerances that keep the study's limits. cost: of all parts; lower_bound: no tolerances cost less under the last "
+    "limits on root mean squares; gap: by how much tolerances of these limits may cost too much; yield: share of the "
+    "certificate's machines that are within "
     "all limits at all poses, with its interval; certified: 1 if it is shown at this confidence that the yield is at "
     "least wanted_yield, else 0; calibrated: 1 if responses are what the best correction of the actuators leaves. NaN "
     "costs: the aim has none",
     {{"cost", &Result::total_cost},
      {"lower_bound", &Result::lower_bound},
+     {"gap", &Result::gap},
      {"wanted_yield", &Result::wanted_yield},
      {"confidence", &Result::confidence}},
     {{"response", &Result::responses}, {"pose", &Result::poses}},
@@ -48,8 +50,8 @@ const Group<Result> kAllocation{
      {"unit", &Result::part_unit, kByPart, "1", "SI unit of T"},
      {"members", &Result::part_members, kByPart, "1", "Errors of the part, with blanks between"},
      {"coarser_yield", &Result::coarser_yield, kByPart, "1",
-      "Share of the design's machines that are within all limits if this part alone gets a T 5 % larger, or the next "
-      "larger one that can be had; NaN where nothing larger is allowed"},
+      "Predicted share of the design's machines that are within all limits if this part alone gets a T 5 % larger, or "
+      "the next larger one that can be had; NaN where nothing larger is allowed"},
      {"multiplier", &Result::multiplier, kByResponsePose, kCostPerResponse,
       "What one unit more of the limit at this pose alone would save; NaN for a response without a limit"},
      {"limit_use", &Result::limit_use, kByResponsePose, "1",
@@ -190,7 +192,6 @@ void restore(const Stored& certificate, Result& found) {
 /// What follows from the rest, for those who read the file without this program, and what is no number.
 void add_attributes(h5::File& file, const Result& found) {
   const auto set = [&](const char* name, const auto& value) { file.set_attribute(kAllocation.path, name, value); };
-  set("gap", found.total_cost - found.lower_bound);
   set("yield", found.certificate.value);
   set("yield_ci_low", found.certificate.ci_low);
   set("yield_ci_high", found.certificate.ci_high);

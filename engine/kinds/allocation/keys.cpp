@@ -136,7 +136,8 @@ StudyRow aim_row() {
           .value = asked_value(word_at<Aim>(
               {{Aim::least_cost, "the least sum of the parts' costs"},
                {Aim::equal_effect, "each part uses the same share of the limit that it uses most"},
-               {Aim::equal_tolerance, "the same T for all lengths; an angle has that T at a radius of 1 m"},
+               {Aim::equal_tolerance,
+                "one T for all lengths and one for all angles, in the ratio of their usual sizes in [errors]"},
                {Aim::common_factor,
                 "the standard deviations of [errors], all times the largest factor that the limits allow"}},
               &AllocationOptions::aim)),

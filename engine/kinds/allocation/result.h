@@ -121,8 +121,8 @@ struct AllocationResult {
   std::vector<double> mean_square_share;  ///< [N] of what all parts add to the mean square under the tightest limit
   std::vector<std::uint8_t> bound;  ///< [N] AtBound: 0 between its bounds, 1 at the lower, 2 at the upper, 3 no choice
   std::vector<std::string> chosen;  ///< [N] name of the process or grade; empty where there is none
-  /// [N] share of the design's machines that are good if this part alone is made 5 % coarser, or the next coarser
-  /// value that can be had; NaN where nothing coarser is allowed.
+  /// [N] predicted share of the design's machines that are good if this part alone is made 5 % coarser, or the next
+  /// coarser value that can be had; NaN where nothing coarser is allowed.
   std::vector<double> coarser_yield;
 
   std::vector<double> multiplier;  ///< [R x M] what one unit more of the limit at this pose alone would save

@@ -141,6 +141,7 @@ AllocationResult result_of(const StudyRun& run, const ToleranceSearch& search, c
   add_limits(search, study, found);
   add_curves(search, asked, found);
   found.aim = asked.aim;
+  found.calibrated = study.mechanism.calibrated;
   found.total_cost = search.found().cost;
   found.lower_bound = search.chosen().lower_bound;
   found.gap = search.chosen().cost - search.chosen().lower_bound;

@@ -212,7 +212,8 @@ bool ToleranceSearch::come_near() {
     if (std::abs(std::log(load)) < kFar) break;
     const ChosenTolerances before = chosen_;
     if (!rescale(load)) {
-      found_ = load > 1.0 ? programme_.lowest() : before;
+      found_ = before;
+      if (load > 1.0) found_ = programme_.lowest();
       break;
     }
     if (largest_ratio(found_.tolerance, measured_) < 1.0 + kFar) continue;

@@ -50,20 +50,20 @@ std::string drawing_caption(const Result& found) {
       return fmt::format("The drawing: tolerances of {}, each with the same share of the limit that it uses most{}",
                          parts, cost);
     case Aim::equal_tolerance:
-      return fmt::format("The drawing: one tolerance for {}; an angle has it at a radius of 1 m{}", parts, cost);
+      return fmt::format("The drawing: one tolerance for all lengths and one for all angles of {}{}", parts, cost);
     case Aim::common_factor:
       return fmt::format("The drawing: tolerances of {}, the study's errors times one factor{}", parts, cost);
   }
   return {};
 }
 
-/// How far from the least cost these tolerances can be.
+/// How far from the least cost of its problem the search was.
 void add_bound_note(const Result& found, Table& table) {
   if (std::isnan(found.lower_bound) || !has_costs(found)) return;
-  const double gap = found.total_cost - found.lower_bound;
   table.notes.push_back(
-      fmt::format("no tolerances cost less than {} under the final limits on root mean squares; gap: {} ({})",
-                  cost_text(found.lower_bound), number_text(gap), percent_text(gap / found.total_cost)));
+      fmt::format("under the last limits on root mean squares no tolerances cost less than {}, to within {}; what is "
+                  "cheaper than that keeps the yield with other shares among the parts",
+                  cost_text(found.lower_bound), number_text(found.gap, 2)));
 }
 
 FilledColumn cost_column(std::string name, std::string heading, const std::vector<double>& values,
@@ -119,7 +119,10 @@ std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
   columns.push_back(share_column("mean_square_share", "share of mean square", found.mean_square_share));
   columns.push_back(
       {text_column("bound", "at bound"), [&](std::size_t n) { return text_cell(kBounds.at(found.bound[n])); }});
-  columns.push_back(share_column("coarser_yield", "yield if coarser", found.coarser_yield, 2));
+  columns.push_back({number_column("coarser_rejects", "rejects if coarser", "", 2), [&](std::size_t n) {
+                       const double machines = static_cast<double>(found.design_machines);
+                       return number_cell(std::round(10.0 * machines * (1.0 - found.coarser_yield[n])) / 10.0);
+                     }});
   add_details(found, columns);
   return columns;
 }
@@ -136,8 +139,10 @@ Table drawing_table(const Result& found, RowOrder order) {
                       ? "; a share of T is for a mean that is off by so much, as often up as down"
                       : ""));
   table.notes.emplace_back(
-      "share of mean square: of what all parts add to the mean square under the tightest limit; yield if coarser: of "
-      "the design's machines, if this part alone gets a T 5 % larger, or the next larger one that can be had");
+      "share of mean square: of what all parts add to the mean square under the tightest limit; rejects if "
+      "coarser: of the design's machines, predicted for this part alone with a T 5 % larger, or the next larger one "
+      "that "
+      "can be had");
   add_bound_note(found, table);
   fill(table, ordered_parts(found, order), drawing_columns(found, alike));
   return table;
