@@ -16,7 +16,7 @@ namespace poesy {
 namespace {
 
 constexpr std::array<std::string_view, 11> kAllocationKeys{
-    "factors", "limits", "yield", "confidence", "samples", "aim", "background", "sigmas", "cpk", "parts", "calibrated"};
+    "factors", "limits", "yield", "confidence", "samples", "aim", "background", "sigmas", "cpk", "calibrated", "parts"};
 
 /// In the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};

@@ -176,8 +176,9 @@ Table use_table(const StoredResult& result) {
                                     {number_column("limit", "limit"),
                                      [&](std::size_t r) { return value_cell(found.limit[r], result.responses[r], 6); }},
                                     unit_column(result.responses),
-                                    {percent_column("used", "used"),
-                                     [&](std::size_t r) { return percent_cell(largest(found, found.limit_use, r)); }}};
+                                    {percent_column("used", "used"), [&](std::size_t r) {
+                                       return percent_cell(std::round(1e4 * largest(found, found.limit_use, r)) / 1e4);
+                                     }}};
   std::ranges::move(pose_columns(result, "used", found.limit_use, 0), std::back_inserter(columns));
   Table table{
       .name = "allocation_limits",
