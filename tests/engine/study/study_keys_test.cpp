@@ -23,6 +23,8 @@ namespace {
 /// The fake mechanism as if it could be calibrated, which makes no difference.
 class CalibratedFake : public test::FakeModel {
  public:
+  using FakeModel::FakeModel;
+
   std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
     return evaluator(options);
   }
@@ -45,7 +47,7 @@ Catalog catalog() {
     return entry;
   };
   two.front().description.separation = SeparationDescription{"of no interest", {}};
-  two.front().build = [](auto, auto) { return std::make_unique<CalibratedFake>(); };
+  two.front().build = [](auto geometry, auto) { return std::make_unique<CalibratedFake>(geometry[0]); };
   two.front().description.fidelities = {"exact", "first-order"};
   CatalogEntry by_platform = two.front();
   by_platform.description.metric = "platform";
