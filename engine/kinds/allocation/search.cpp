@@ -290,7 +290,8 @@ ToleranceLimits ToleranceSearch::gradient_limits() const {
     sum += direction.effects.back();
   }
   for (std::size_t i = 0; i < programme_.size(); ++i) {
-    direction.effects[i] /= sum * found_.tolerance[i] * found_.tolerance[i];
+    const double size = found_.tolerance[i] * found_.tolerance[i];
+    direction.effects[i] = size > 0.0 ? direction.effects[i] / (sum * size) : 0.0;
   }
   direction.room = {1.0};
   return direction;
