@@ -11,7 +11,7 @@
 namespace poesy {
 
 Study as_confirming_study(Study study, const std::string& stem) {
-  study.analysis.kind = &find_kind("monte-carlo")->study;
+  study.analysis.kind = &confirming_kind();
   study.analysis.asked.reset();
   study.mechanism.compared.reset();
   const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();
