@@ -42,9 +42,7 @@ class AllocationFile : public testing::Test {
 
   void write() const { example_.write_allocation(path_, written_); }
 
-  StoredResult stored() const {
-    return read_result(path_);
-  }
+  StoredResult stored() const { return read_result(path_); }
 
   /// What reading says of the file after one of its objects was replaced by another; empty: it was read.
   std::string problem_with(const std::string& replaced, const std::string& by) const {
