@@ -52,6 +52,11 @@ const Group<Result> kAllocation{
      {"coarser_yield", &Result::coarser_yield, kByPart, "1",
       "Predicted share of the design's machines that are within all limits if this part alone gets a T 5 % larger, or "
       "the next larger one that can be had; NaN where nothing larger is allowed"},
+     {"stage_tolerance",
+      &Result::stage_tolerance,
+      {"stage", "part"},
+      kPartUnit,
+      "T of each part after each step on the way"},
      {"multiplier", &Result::multiplier, kByResponsePose, kCostPerResponse,
       "What one unit more of the limit at this pose alone would save; NaN for a response without a limit"},
      {"limit_use", &Result::limit_use, kByResponsePose, "1",

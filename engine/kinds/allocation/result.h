@@ -138,6 +138,7 @@ struct AllocationResult {
   double confidence = 0.95;   ///< that was asked for
 
   std::vector<AllocationStage> stages;  ///< in their order
+  std::vector<double> stage_tolerance;  ///< [stages x N] T at the end of each
   std::uint64_t design_machines = 0;    ///< with which the tolerances were found
   std::uint64_t design_rejects = 0;     ///< of them
   std::uint64_t design_most = 0;        ///< as many were allowed, so that the certificate will probably hold

@@ -148,6 +148,7 @@ AllocationResult result_of(const StudyRun& run, const ToleranceSearch& search, c
   found.wanted_yield = asked.yield;
   found.confidence = asked.confidence;
   found.stages = search.stages();
+  found.stage_tolerance = search.stage_tolerance();
   found.design_machines = search.trial().load.size();
   found.design_rejects = search.trial().rejects();
   found.design_most = search.allowed().design;

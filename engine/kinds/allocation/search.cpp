@@ -114,6 +114,7 @@ bool ToleranceSearch::choose(const Reach& reach) {
 void ToleranceSearch::add_stage(std::string name, bool by_programme, std::uint64_t machines, std::uint64_t rejects) {
   stages_.push_back(
       {std::move(name), found_.cost, by_programme ? chosen_.lower_bound : kNaN, share_, machines, rejects});
+  stage_tolerance_.insert(stage_tolerance_.end(), found_.tolerance.begin(), found_.tolerance.end());
 }
 
 /// Tolerances as if every effect were linear. Where root mean squares cannot be as small as a normal response needs

@@ -37,10 +37,11 @@ class ToleranceSearch {
   /// limit, and by how much.
   bool find();
 
-  const ToleranceProgramme& programme() const { return programme_; }           ///< The parts.
-  const TolerancePoint& found() const { return found_; }                       ///< The tolerances.
-  const std::vector<AllocationStage>& stages() const { return stages_; }       ///< The way to them.
-  const AllowedRejects& allowed() const { return allowed_; }                   ///< With so many machines.
+  const ToleranceProgramme& programme() const { return programme_; }               ///< The parts.
+  const TolerancePoint& found() const { return found_; }                           ///< The tolerances.
+  const std::vector<double>& stage_tolerance() const { return stage_tolerance_; }  ///< [stages x N].
+  const std::vector<AllocationStage>& stages() const { return stages_; }           ///< The way to them.
+  const AllowedRejects& allowed() const { return allowed_; }                       ///< With so many machines.
   const Trial& trial() const { return trial_; }                                ///< The design's machines at found().
   const std::vector<double>& coarser_yield() const { return coarser_yield_; }  ///< [N] as AllocationResult has it.
   /// The last programme under limits on root mean squares, for what its prices say.
@@ -96,6 +97,7 @@ class ToleranceSearch {
   Tried near_;                         ///< machines that may decide, at found_
   std::vector<double> coarser_yield_;  ///< [N]
   std::vector<AllocationStage> stages_;
+  std::vector<double> stage_tolerance_;  ///< [stages x N]
 };
 
 }  // namespace poesy

@@ -60,10 +60,12 @@ std::string drawing_caption(const Result& found) {
 /// How far from the least cost of its problem the search was.
 void add_bound_note(const Result& found, Table& table) {
   if (std::isnan(found.lower_bound) || !has_costs(found)) return;
-  table.notes.push_back(
-      fmt::format("under the last limits on root mean squares no tolerances cost less than {}, to within {}; what is "
-                  "cheaper than that keeps the yield with other shares among the parts",
-                  cost_text(found.lower_bound), number_text(found.gap, 2)));
+  const std::string least = fmt::format(
+      "under the last limits on root mean squares no tolerances cost less than {}, to "
+      "within {}",
+      cost_text(found.lower_bound), number_text(found.gap, 2));
+  const bool cheaper = found.total_cost < found.lower_bound;
+  table.notes.push_back(cheaper ? least + "; these cost less, because they keep the yield with other shares" : least);
 }
 
 FilledColumn cost_column(std::string name, std::string heading, const std::vector<double>& values,

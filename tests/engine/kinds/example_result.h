@@ -401,9 +401,11 @@ class Example {
     result.saving = {kNone, 0.09};
     result.total_cost = 10.0;
     result.lower_bound = 9.995;
+    result.gap = 0.005;
     result.wanted_yield = 0.9973;
     result.confidence = 0.95;
     result.stages = {{"linear", 9.0, 8.75, 0.3333, 0, 0}, {"scaled to the yield", 10.0, 9.995, 0.3, 20000, 48}};
+    result.stage_tolerance = {1.5e-5, 1.9e-3, 2.5e-5, 1.23456789e-5, 1.7453292519943295e-3, 2.5e-5};
     result.design_machines = 20000;
     result.design_rejects = 48;
     result.design_most = 49;

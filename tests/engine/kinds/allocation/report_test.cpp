@@ -112,19 +112,20 @@ TEST_F(AllocationReport, HasTheYieldOnceAsAMonteCarloStudyHasIt) {
 TEST_F(AllocationReport, PutsTheDrawingInATable) {
   EXPECT_EQ(text_of(table("drawing"), 100),
             "The drawing: tolerances of 3 parts at least cost, 10 in all\n"
-            "                     grade or                               share     share of             yield if\n"
-            "part   drawing       process   T =                  cost  of cost  mean square  at bound    coarser\n"
-            "                                                              [%]          [%]                  [%]\n"
-            "hinge  +-0.1 deg     grinding  3 sigma               7         70         37.5  upper         99.71\n"
-            "bars   +-0.01234 mm  -         3 sigma               2.5       25         50    -             99.65\n"
-            "plate  +-0.025 mm    IT7       3 sigma + 10 % of T   0.5        5         12.5  no choice         -\n"
+            "                     grade or                               share     share of\n"
+            "part   drawing       process   T =                  cost  of cost  mean square  at bound\n"
+            "                                                              [%]          [%]\n"
+            "hinge  +-0.1 deg     grinding  3 sigma               7         70         37.5  upper\n"
+            "bars   +-0.01234 mm  -         3 sigma               2.5       25         50    -\n"
+            "plate  +-0.025 mm    IT7       3 sigma + 10 % of T   0.5        5         12.5  no choice\n"
             "sigma: standard deviation about the mean; a share of T is for a mean that is off by so much, as\n"
             "often up as down; on the drawing T is rounded down to four digits\n"
-            "share of mean square: of what all parts add to the mean square under the tightest limit; yield if\n"
-            "coarser: of the design's machines, if this part alone gets a T 5 % larger, or the next larger one\n"
-            "that can be had\n"
-            "no tolerances cost less than 9.995 under the final limits on root mean squares; gap: 0.005 (0.05 %)\n"
-            "(no room for T, errors: a wider terminal shows more)\n");
+            "share of mean square: of what all parts add to the mean square under the tightest limit; rejects if\n"
+            "coarser: of the design's machines, predicted for this part alone with a T 5 % larger, or the next\n"
+            "larger one that can be had\n"
+            "under the last limits on root mean squares no tolerances cost less than 9.995, to within 0.005\n"
+            "(no room for rejects if coarser, T, errors: a wider terminal shows more)\n");
+  EXPECT_EQ(column(table("drawing"), "coarser_rejects"), (Texts{"58", "70", "-"}));
   EXPECT_EQ(column(table("drawing"), "tolerance"), (Texts{"0.1", "0.0123457", "0.025"}));
   EXPECT_EQ(column(table("drawing"), "errors"), (Texts{"epsilon_1", "delta_1 delta_2", "delta_3"}));
 }
@@ -231,7 +232,7 @@ TEST_F(AllocationReport, LeavesCostsOutWhereThereAreNone) {
 TEST_F(AllocationReport, NamesEveryAim) {
   found().aim = Aim::equal_tolerance;
   EXPECT_EQ(table("drawing").caption,
-            "The drawing: one tolerance for 3 parts; an angle has it at a radius of 1 m, which cost 10");
+            "The drawing: one tolerance for all lengths and one for all angles of 3 parts, which cost 10");
   found().aim = Aim::common_factor;
   EXPECT_EQ(table("drawing").caption,
             "The drawing: tolerances of 3 parts, the study's errors times one factor, which cost 10");

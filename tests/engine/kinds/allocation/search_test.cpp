@@ -45,6 +45,7 @@ struct FunctionStudy {
       : model(errors, {"y"}, std::move(function)), entry{model.description(), nullptr} {
     study = function_study(entry, kAllocationStudy, Distribution::normal(0.05), machines);
     study.analysis.draws = Draws::per_machine;
+    study.poses.workspace = {{0.0, 1.0}};  // its text is kept
     study.analysis.limits = {{0, limit}};
     asked().yield = kThreeSigma;
   }
@@ -98,12 +99,15 @@ TEST(OverrunningClutch, HasTheLeastCostOfTheLiterature) {
   EXPECT_NEAR(linear.cost, 24.462426, 3e-6);
   EXPECT_LE(linear.lower_bound, linear.cost);
   EXPECT_GT(linear.lower_bound, linear.cost * (1.0 - 1e-6));
-  EXPECT_EQ(found.chosen, (std::vector<std::string>{"3", "2", "1", "3"}));
+  const std::vector<double> best{.173842, .166160, .128409, .200000};  // by processes 3, 2, 1 and 3
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.stage_tolerance[i], best[i], 1e-6) << i;
 }
 
 TEST(OverrunningClutch, HasTheLeastCostOfOneProcessEachWithoutBounds) {
   const AllocationResult found = clutch_study(2000, {3, 2, 1, 3}).find();
   EXPECT_NEAR(found.stages.front().cost, 24.42989011, 3e-6);
+  const std::vector<double> best{.17859228, .17069998, .13191761, .18931314};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.stage_tolerance[i], best[i], 1e-7) << i;
 }
 
 // Its yield at the tolerances of least cost is .99486: n = 148 000, 4.4 standard errors, alpha = 1e-5.
@@ -117,6 +121,19 @@ TEST(OverrunningClutch, IsRepairedByItsMachines) {
   EXPECT_GT(found.total_cost, 24.462426);
   EXPECT_LT(found.total_cost, 1.1 * 24.462426);
   EXPECT_LE(found.design_rejects, found.design_most);
+}
+
+// The design leaves the certificate a chance of 99 %. Of 20 certificates fewer than 18 hold with a probability of 1e-3.
+TEST(OverrunningClutch, IsCertifiedWithOtherSeedsToo) {
+  const FunctionStudy study = clutch_study(148'000);
+  Study confirming = *study.run().confirming;
+  int holds = 0;
+  for (int other = 0; other < 20; ++other) {
+    ++confirming.seed;
+    const auto repeated = run_study(confirming, study.model, PoseSet(1, {0.5}), {.threads = 2});
+    if (repeated->verdicts->yield->decision == YieldVerdict::Decision::kept) ++holds;
+  }
+  EXPECT_GE(holds, 18);
 }
 
 TEST(OverrunningClutch, AnyPartMadeCoarserAloneBreaksTheYield) {
