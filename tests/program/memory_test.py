@@ -30,9 +30,6 @@ STUDIES = {
     + 'factors = "all"\nsamples = 2\n',
     "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1500, kind="monte-carlo")
     + 'draws = "per machine"\nfactors = "all"\nsamples = 2000\nlimits.position = "0.1 mm"\n',
-    "allocation": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=10000, kind="allocation")
-    + 'factors = "all"\nsamples = 60\nyield = 0.9\nsigmas = 3\nlimits.position = "0.3 mm"\n'
-    + '[[analysis.parts]]\nfactors = "linear"\neach = true\n[[analysis.parts]]\nfactors = "angular"\neach = true\n',
 }
 
 
