@@ -376,6 +376,7 @@ class Example {
   /// Three parts under one limit, that of the second response, in two stages; certified.
   AllocationResult allocation() {
     study.analysis.kind = &kAllocationStudy;
+    study.analysis.asked = AllocationOptions();
     study.analysis.draws = Draws::per_machine;
     study.analysis.limits = {{1, 3e-5}};
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
