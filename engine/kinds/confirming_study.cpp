@@ -1,5 +1,6 @@
 #include "engine/kinds/confirming_study.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/base/text.h"
@@ -9,9 +10,17 @@
 #include "engine/study/study_file.h"
 
 namespace poesy {
+namespace {
+
+/// The kind that tries machines.
+const StudyKind& kind_with_yields() {
+  return (*std::ranges::find_if(kinds(), [](const Kind* kind) { return kind->study.ask_yield != nullptr; }))->study;
+}
+
+}  // namespace
 
 Study as_confirming_study(Study study, const std::string& stem) {
-  study.analysis.kind = &confirming_kind();
+  study.analysis.kind = &kind_with_yields();
   study.analysis.asked.reset();
   study.mechanism.compared.reset();
   const bool along_file = study.poses.trajectory && !study.poses.trajectory->file.empty();

@@ -57,8 +57,6 @@ const Kind& kind_of(const StoredResult& result) {
   return *kind;
 }
 
-const StudyKind& confirming_kind() { return kMonteCarloKind.study; }
-
 std::string_view replayable_kinds() { return "sensitivity, Monte Carlo or evaluate"; }
 
 std::string kinds_that_rank() {

@@ -23,9 +23,6 @@ const Kind& kind_of(const Study& study);
 /// The kind of a result. Precondition: there is such a kind.
 const Kind& kind_of(const StoredResult& result);
 
-/// The kind of study that confirms what another one found: errors drawn together, as they scatter.
-const StudyKind& confirming_kind();
-
 /// "'NAME'" of the kinds that rank errors, for messages.
 std::string kinds_that_rank();
 

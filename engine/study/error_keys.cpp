@@ -72,7 +72,7 @@ KeyValue<Parameters> shift_value() {
     parameters.shift = value.quantity(parameters.dimension);
     if (parameters.shift >= 0.0) return;
     value.fail("is '" + printable(value.text()) + "', below zero",
-               "write it without the sign, for the mean is off to either side as often");
+               "it must be at least 0, because the mean is off to either side as often");
   };
   return {.type = "quantity", .bounds = "at least 0", .read = read};
 }

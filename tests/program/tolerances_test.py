@@ -47,6 +47,7 @@ class Tolerances(ProgramTest):
         printed = self.succeeds("tolerances", self.result(), "--response", RESPONSE, "-d", "out")
         self.assertIn("epsilon_1_1_z = 1 deg", printed)
         self.assertNotIn("test with", printed)
+        self.assertNotIn("kind allocation", printed)
         table = self.table("out")
         self.assertEqual({name: (row["kind"], row["limb"], row["unit"]) for name, row in table.items()},
                          {"delta_1_1_y": ("linear", "1", "m"), "epsilon_1_4_z": ("angular", "1", "rad"),
@@ -180,6 +181,8 @@ class Tolerances(ProgramTest):
         self.assertIn("poesy run r_tolerances/confirm_equal_effect.toml -o r_tolerances/confirm_equal_effect.h5", printed)
         self.assertRegex(printed, r"errors were not in this study, and count as perfect here")
         self.assertIn("root mean square of gap over all poses", " ".join(printed.split()))
+        self.assertIn("without costs, bounds or a yield. A study of kind allocation finds the tolerances of a drawing, with a "
+                      "certificate: poesy template MODEL allocation", " ".join(printed.split()))
         self.assertIn("root mean square", (self.folder / "r_tolerances/confirm_equal_effect.toml").read_text())
         self.assertEqual(set(self.table("r_tolerances")), {"delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"})
 

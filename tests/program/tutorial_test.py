@@ -59,7 +59,7 @@ class Tutorial(ProgramTest):
         for block, shown in commands:
             output = self.run_block(block)
             self.assertIsNone(first_not_printed(shown, output), f"{block}\n{output}")
-        for name in ("linear-delta.toml", "study.toml"):
+        for name in ("linear-delta.toml", "study.toml", "allocation.toml"):
             self.assertEqual((self.work / name).read_bytes(), (TUTORIAL / name).read_bytes(), name)
         with h5py.File(self.work / "precise.h5") as file:
             self.assertIn("convergence", file)
@@ -70,8 +70,19 @@ class Tutorial(ProgramTest):
             mean, std = (file[f"monte_carlo/overall_{what}"][at] for what in ("mean", "std"))
         self.assertLess(math.hypot(mean, std), 5e-5)
         self.assertGreater(math.hypot(mean, std), 0.98 * 5e-5)
+        self.assert_drawing(self.work / "allocation.h5", self.work / "allocation_certificate.h5")
         self.assertGreater((self.work / "ranked.svg").stat().st_size, 5000)
         self.assertTrue((self.work / "tables/local_tip_position.csv").is_file())
+
+    def assert_drawing(self, drawing, repeated):
+        """That the tolerances are certified, and the certificate's study finds as many rejects with them."""
+        with h5py.File(drawing) as file:
+            self.assertEqual(len(file["allocation/part"]), 11)
+            certificate = file["allocation/certificate"]
+            self.assertEqual(certificate["decision"].asstr()[()], "kept")
+            rejects = certificate["rejects"][()]
+        with h5py.File(repeated) as file:
+            self.assertEqual(file["yield/rejects"][()], rejects)
 
     def test_a_command_that_fails_is_found(self):
         (first, shown), (second, nothing) = blocks(

@@ -162,6 +162,7 @@ std::optional<TolerancePoint> ToleranceProgramme::coarser(const TolerancePoint& 
                                                           double factor) const {
   const std::vector<Process>& list = processes_[part];
   const double from = point.tolerance[part];
+  if (from == 0.0) return std::nullopt;
   TolerancePoint next = point;
   const Process& now = list[point.process[part]];
   if (now.hi > from) {

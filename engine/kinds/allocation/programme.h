@@ -57,7 +57,7 @@ class ToleranceProgramme {
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest ones.
   /// The next coarser tolerance of one part: `factor` times as large, or the next value that can be had; none where
-  /// its process allows none.
+  /// its process allows none, and for a tolerance of 0.
   std::optional<TolerancePoint> coarser(const TolerancePoint& point, std::size_t part, double factor) const;
   /// Whether tolerances are as large as a part allows, and in which way.
   AtBound at_bound(std::size_t part, double tolerance, std::size_t process) const;

@@ -119,8 +119,9 @@ void add_curves(const ToleranceSearch& search, const AllocationOptions& asked, A
   std::ranges::sort(loads, std::ranges::greater());
   for (const double yield : kYields) {
     if (loads.size() < trials_without_failure(yield, asked.confidence)) continue;
-    const double load = loads[allowed_rejects(yield, asked.confidence, loads.size()).design];
-    if (!(load > 0.0) || std::isinf(load)) continue;
+    const std::uint64_t rejects = allowed_rejects(yield, asked.confidence, loads.size()).design;
+    const double load = loads[rejects];
+    if (rejects == 0 || !(load > 0.0) || std::isinf(load)) continue;  // too few machines to tell
     found.curve_yield.push_back(yield);
     found.curve_yield_cost.push_back(scale * search.cost_at(search.share() / load, 1.0));
   }

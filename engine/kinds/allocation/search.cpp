@@ -37,8 +37,8 @@ constexpr std::size_t kFirstOf = 8;
 constexpr double kFar = 0.1;
 /// So many machines of largest load, at the most, tell the direction of the gradient.
 constexpr std::size_t kMostOfGradient = 3000;
-/// A part counts at least so much in it, by its score: less is noise.
-constexpr double kLeastWeight = 0.02;
+/// A score is no noise from so many of its standard deviations on.
+constexpr double kSureScore = 3.0;
 constexpr std::size_t kMostFits = 6;
 constexpr std::size_t kMostGradients = 3;
 /// How far one step by the gradient may go, and what it must save.
@@ -271,16 +271,31 @@ bool ToleranceSearch::meet_yield() {
   return true;
 }
 
-/// One limit in place of all: what each part adds to the machines of largest load, by its score x^2 - 1 among them.
-ToleranceLimits ToleranceSearch::gradient_limits() const {
+/// [N] What each part's tolerance takes of the limits, at their prices: the shares that root mean squares give it.
+std::vector<double> ToleranceSearch::shares_by_price() const {
+  std::vector<double> shares(programme_.size(), 0.0);
+  for (std::size_t l = 0; l < limits_.count(); ++l) {
+    const double price = chosen_.multiplier[l];
+    if (price == 0.0) continue;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      shares[i] += price * limits_.row(l)[i] * found_.tolerance[i] * found_.tolerance[i];
+    }
+  }
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) share = sum > 0.0 ? share / sum : 1.0 / static_cast<double>(shares.size());
+  return shares;
+}
+
+/// [N] Sums of the errors' scores x^2 - 1 over the machines of largest load, and how many these are.
+ToleranceSearch::Scores ToleranceSearch::scores() const {
   const std::size_t wanted =
       std::min(near_.machines.size(),
                std::max<std::size_t>(allowed_.design, std::min<std::size_t>(kMostOfGradient, trial_.load.size() / 30)));
   const double least = deciding_load(near_.trial.load, wanted);
   const Plan plan(programme_.at(found_.tolerance), run_.poses);
-  std::vector<double> score(plan.factors().size(), 0.0);
+  std::vector<double> of_error(plan.factors().size(), 0.0);
   std::vector<double> draws(plan.factors().size());
-  double count = 0.0;
+  Scores found;
   for (std::size_t k = 0; k < near_.machines.size(); ++k) {
     if (near_.trial.load[k] <= least) continue;
     for (std::size_t p = 0; p < draws.size(); ++p) {
@@ -289,23 +304,35 @@ ToleranceLimits ToleranceSearch::gradient_limits() const {
     plan.transform(draws, 1);
     for (std::size_t p = 0; p < draws.size(); ++p) {
       const double x = draws[p] / plan.distributions()[p].standard_deviation();
-      score[p] += x * x - 1.0;
+      of_error[p] += x * x - 1.0;
     }
-    count += 1.0;
+    found.machines += 1.0;
   }
+  for (std::size_t i = 0; i < programme_.size(); ++i) {
+    double sum = 0.0;
+    for (const std::size_t p : programme_.errors(i)) sum += of_error[p];
+    found.of_part.push_back(sum);
+  }
+  return found;
+}
+
+/// One limit in place of all: what each part adds to the machines of largest load, by its score among them; where that
+/// is noise, by the share that root mean squares give it.
+ToleranceLimits ToleranceSearch::gradient_limits() const {
+  const Scores found = scores();
+  const std::vector<double> shares = shares_by_price();
+  double all = 0.0;
+  for (const double score : found.of_part) all += std::max(0.0, score);
   ToleranceLimits direction{
-      .stacking = Stacking::root_sum_square, .parts = programme_.size(), .effects = {}, .room = {}};
-  double sum = 0.0;
+      .stacking = Stacking::root_sum_square, .parts = programme_.size(), .effects = {}, .room = {1.0}};
   for (std::size_t i = 0; i < programme_.size(); ++i) {
-    double of_part = 0.0;
-    for (const std::size_t p : programme_.errors(i)) of_part += score[p];
-    direction.effects.push_back(std::max(of_part, kLeastWeight * count));
-    sum += direction.effects.back();
+    const double noise = std::sqrt(2.0 * found.machines * static_cast<double>(programme_.errors(i).size()));
+    const bool is_known = found.of_part[i] > kSureScore * noise;
+    const double size = found_.tolerance[i] * found_.tolerance[i];
+    const double weight = (is_known ? found.of_part[i] : all * shares[i]) / all;
+    direction.effects.push_back(size > 0.0 ? weight / size : 0.0);
   }
-  for (std::size_t i = 0; i < programme_.size(); ++i) {
-    direction.effects[i] /= sum * found_.tolerance[i] * found_.tolerance[i];
-  }
-  direction.room = {1.0};
+  direction.room.front() = direction.need(0, found_.tolerance);
   return direction;
 }
 

@@ -75,6 +75,15 @@ class ToleranceSearch {
   std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
   std::optional<Tried> try_near(const TolerancePoint& point) const;
   bool lower_to_least();
+
+  /// Scores of errors among the machines of largest load.
+  struct Scores {
+    std::vector<double> of_part;  ///< [N] sums over its errors and the machines
+    double machines = 0.0;        ///< of largest load
+  };
+
+  std::vector<double> shares_by_price() const;
+  Scores scores() const;
   ToleranceLimits gradient_limits() const;
   std::optional<bool> fit_gradient(ToleranceLimits direction);
 

@@ -167,6 +167,10 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
       "sigma that the study sets to lengths and to angles");
   notes.emplace_back(
       "an error without effect on its own has its equal tolerance, because it may act together with others");
+  notes.emplace_back(
+      "a quick look: standard deviations under a limit on one root mean square, without costs, bounds or a yield. A "
+      "study of kind allocation finds the tolerances of a drawing, with a certificate: poesy template MODEL "
+      "allocation");
 }
 
 /// How much the limit may be exceeded although the study was made at small errors.

@@ -84,7 +84,7 @@ TEST(Calibrated, IsRefusedByOtherKindsAndOtherModels) {
     test::expect_input_error([&] { study_of_text(text.text, "study.toml", catalog, StudyUse::run); },
                              {"study.toml", text.line, text.column}, words);
   };
-  refused("kind = \"sensitivity\"\ncalibrated = ^true\n", kCatalog, {"analysis.calibrated does not belong"});
+  refused("kind = \"sensitivity\"\n^calibrated = true\n", kCatalog, {"analysis.calibrated does not belong"});
   refused("kind = \"monte-carlo\"\ncalibrated = ^\"yes\"\n", kCatalog, {"analysis.calibrated", "true or false"});
   refused("kind = \"monte-carlo\"\ncalibrated = ^true\n", test::fake_catalog(),
           {"analysis.calibrated is true, but model \"fake\" has no actuated directions apart", "leave it out"});

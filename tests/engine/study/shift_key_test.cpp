@@ -37,7 +37,7 @@ TEST(Shift, IsReadForEveryShapeAndComesBack) {
   EXPECT_EQ(study.errors.by_factor[1].shift(), 0.0);
   EXPECT_EQ(study.errors.by_factor[2].shift(), 0.7e-3);
   const std::string text = resolved_text(study);
-  EXPECT_NE(text.find("sigma = \"0.001 m\", shift = \"0.0001 m\" }"), std::string::npos) << text;
+  EXPECT_NE(text.find("sigma = \"0.001 m\", shift = \"1e-04 m\" }"), std::string::npos) << text;
   EXPECT_EQ(text.find("shift = \"0 "), std::string::npos) << text;
   const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
   EXPECT_EQ(again.errors.by_factor, study.errors.by_factor);
@@ -47,10 +47,10 @@ TEST(Shift, IsReadForEveryShapeAndComesBack) {
 
 TEST(Shift, IsRefusedWhereItMakesNoSense) {
   expect_refused("linear = { distribution = \"normal\", sigma = \"1 mm\", shift = ^\"-0.1 mm\" }\n",
-                 {"errors.linear.shift is '-0.1 mm', below zero", "without the sign"});
+                 {"errors.linear.shift is '-0.1 mm', below zero", "at least 0"});
   expect_refused("linear = { distribution = \"normal\", sigma = \"1 mm\", shift = ^\"1 deg\" }\n",
                  {"errors.linear.shift", "must be a length"});
-  expect_refused("linear = { distribution = \"measured\", values = [], shift = ^\"1 mm\" }\n",
+  expect_refused("linear = { distribution = \"measured\", values = [], ^shift = \"1 mm\" }\n",
                  {"errors.linear.shift does not belong", "measured"});
   expect_refused(
       "override = { delta_1 = { distribution = \"uniform\", half_width = \"1 mm\", shift = \"1 um\" } }\n"

@@ -20,8 +20,18 @@
 namespace poesy {
 namespace {
 
-/// The fake mechanism as if its platform had points.
-class FakeByPlatform final : public test::FakeModel {
+/// The fake mechanism as if it could be calibrated, which makes no difference.
+class CalibratedFake : public test::FakeModel {
+ public:
+  using FakeModel::FakeModel;
+
+  std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
+    return evaluator(options);
+  }
+};
+
+/// The same as if its platform had points.
+class FakeByPlatform final : public CalibratedFake {
  public:
   std::vector<PlatformPoint> metric_points() const override { return {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}; }
 };
@@ -36,6 +46,8 @@ Catalog catalog() {
     entry.file = path;
     return entry;
   };
+  two.front().description.separation = SeparationDescription{"of no interest", {}};
+  two.front().build = [](auto geometry, auto) { return std::make_unique<CalibratedFake>(geometry[0]); };
   two.front().description.fidelities = {"exact", "first-order"};
   CatalogEntry by_platform = two.front();
   by_platform.description.metric = "platform";
@@ -56,9 +68,9 @@ model = "fake"
 geometry = { arm = "50 mm" }
 fidelity = "exact"
 [errors]
-linear = { distribution = "normal", sigma = "2 mm" }
-angular = { distribution = "truncated-normal", sigma = "1 deg", half_width = "2 deg" }
-override = { delta_1 = { distribution = "uniform", half_width = "1 mm" }, delta_2 = { distribution = "triangular", half_width = "1 mm" } }
+linear = { distribution = "normal", sigma = "2 mm", shift = "1 mm" }
+angular = { distribution = "truncated-normal", sigma = "1 deg", half_width = "2 deg", shift = "1 deg" }
+override = { delta_1 = { distribution = "uniform", half_width = "1 mm", shift = "1 mm" }, delta_2 = { distribution = "triangular", half_width = "1 mm", shift = "1 mm" } }
 [solver]
 metric = "published"
 method = "newton"
@@ -106,7 +118,8 @@ std::vector<std::string> studies() {
       by_platform + "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"sensitivity\"\n",
       both + "[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n[analysis]\nlinearity = 0.02\n",
       head + "[poses]\nselect = \"grid\"\ncount = { z = 2, beta = 3, gamma = 2 }\n" + box +
-          "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\ndraws = \"per machine\"\nconf_level = "
+          "[analysis]\nkind = \"monte-carlo\"\nfactors = \"all\"\ndraws = \"per machine\"\ncalibrated = "
+          "true\nconf_level = "
           "0.95\nquantiles = [0.1, 0.2]\n" +
           background + "samples = { min = 500, max = 5000, relative_error = 0.1, conf_level = 0.95 }\n",
       head +
@@ -358,7 +371,7 @@ struct Outside {
 
 TEST(StudyKeys, HaveTheBoundsThatTheyName) {
   const std::array known{
-      Outside{"at least 0", {"-1"}, "it must be at least 0"},
+      Outside{"at least 0", {"-1", "\"-1 mm\"", "\"-1 deg\""}, "it must be at least 0"},
       Outside{"at least 1", {"0"}, "it must be at least 1"},
       Outside{"at least 2", {"1"}, "it must be at least 2"},
       Outside{"greater than 0",

@@ -129,7 +129,8 @@ TEST(Calibrated, RemovesWhatTheCarriagesCanMove) {
 TEST(Calibrated, IsTheMechanismWithItsCarriagesMoved) {
   const auto first_order = published("first-order");
   const auto exact = published("exact");
-  for (const std::vector<double>& pose : random_poses(5, 23)) {
+  double largest = 0.0;
+  for (const std::vector<double>& pose : random_poses(20, 23)) {
     const Errors errors = all_errors(1e-3, 24);
     const Solved uncorrected = solve(*first_order, pose, errors);
     const Eigen::Vector3d dq = best_carriages(pose, displacement_of(uncorrected));
@@ -147,8 +148,9 @@ TEST(Calibrated, IsTheMechanismWithItsCarriagesMoved) {
     const double whole = difference(1.0);
     EXPECT_LE(whole, 1e-3);
     EXPECT_NEAR(whole / difference(0.5), 4.0, 0.4);
-    RecordProperty("second_order", std::to_string(whole));
+    largest = std::max(largest, whole);
   }
+  RecordProperty("second_order_um", std::to_string(1e6 * largest));
 }
 
 TEST(Calibrated, IsLinearToFirstOrder) {
@@ -259,6 +261,7 @@ TEST(CalibratedStudy, HasAYieldNoLower) {
   const std::string limits = "limits = { tip_position = \"0.5 mm\", rotation = \"1 mrad\" }\n";
   const double plain = yield_of(study_of("3-prs", limits));
   const double corrected = yield_of(study_of("3-prs", "calibrated = true\n" + limits));
+  RecordProperty("yields", std::to_string(plain) + " " + std::to_string(corrected));
   EXPECT_GE(corrected, plain);
   EXPECT_GT(corrected, plain + 0.1) << plain;
   EXPECT_EQ(yield_of(study_of("3-prs", "calibrated = false\n" + limits)), plain);

@@ -64,6 +64,18 @@ bool says(const Table& table, std::string_view words) {
                              [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
+TEST(ToleranceTable, OfALimitSaysWhatItLeavesOut) {
+  ResponseTolerances found = example();
+  EXPECT_FALSE(says(tolerance_table(result(), found), "kind allocation"));
+  found.limit =
+      LimitTolerances{.limit = 1e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
+  const Table table = tolerance_table(result(), found);
+  EXPECT_TRUE(
+      says(table, "standard deviations under a limit on one root mean square, without costs, bounds or a yield"));
+  EXPECT_TRUE(says(table, "A study of kind allocation finds the tolerances of a drawing, with a certificate"));
+  EXPECT_TRUE(says(table, "poesy template MODEL allocation"));
+}
+
 TEST(ToleranceTable, SaysByHowMuchALimitMayBeExceeded) {
   StoredResult stored = result();
   ResponseTolerances found = example();
