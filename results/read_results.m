@@ -9,8 +9,8 @@ function result = read_results(source, response, figure_file)
 %   read_results(source, 'angular_deformation')                          to another response
 %   result = read_results(source, 'linear_deformation', 'ranked.svg')    writes the figure to a file
 %
-% result.kind is 'sensitivity', 'monte-carlo', 'evaluate', 'identification' or 'coupling'. Of a sensitivity study with P
-% errors and R responses result also has
+% result.kind is 'sensitivity', 'monte-carlo', 'evaluate', 'identification', 'coupling' or 'allocation'. Of a sensitivity
+% study with P errors and R responses result also has
 %   factors, factor_units            {P x 1}  names and SI units of the errors
 %   responses, response_units        {R x 1}
 %   sigma                            [P x 1]  standard deviation of each error, SI
@@ -109,7 +109,7 @@ end
 % The kind of the result that a folder's tables belong to: by a table that no other kind has.
 function kind = kind_of(folder)
   marks = {'global.csv', 'sensitivity'; 'overall.csv', 'monte-carlo'; 'evaluate.csv', 'evaluate'; ...
-           'identification.csv', 'identification'; 'coupling.csv', 'coupling'};
+           'identification.csv', 'identification'; 'coupling.csv', 'coupling'; 'allocation.csv', 'allocation'};
   there = cellfun(@(name) exist(fullfile(folder, name), 'file') == 2, marks(:, 1));
   if sum(there) ~= 1
     error('read_results:tables', ['%s: has the tables of %d kinds of results; give the folder that ' ...

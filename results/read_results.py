@@ -53,7 +53,7 @@ class Result:
     """A result of any kind. Each group of the file is a Dataset: axes have names, variables a unit; numbers are SI."""
 
     path: str
-    kind: str  # "sensitivity", "identification", "monte-carlo", "coupling" or "evaluate"
+    kind: str  # as in the study: "sensitivity", "monte-carlo", "allocation", ...
     model: str
     title: str
     groups: dict[str, xarray.Dataset]

@@ -176,7 +176,9 @@ std::string write_beside(const Job& job, Study confirming) {
   const std::string stem = result.stem().string() + "_certificate";
   name_files_beside(confirming, stem);
   write_files_beside(folder, confirming, job.poses.poses);
-  return write_confirming_study(folder, stem, confirming, "repeats the certificate of " + result.filename().string());
+  const std::string comment = "repeats the certificate of " + result.filename().string();
+  const std::filesystem::path written = write_confirming_study(folder, stem, confirming, comment);
+  return written.lexically_normal().string();
 }
 
 }  // namespace

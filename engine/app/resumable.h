@@ -105,6 +105,9 @@ class ResumableRun {
     }
   }
 
+  /// The study has no result, and no run of it will have one: removes the checkpoints, which lead nowhere.
+  void discard() { files_.remove(); }
+
   /// The result could not be written: keeps the last state if that is possible, and says what to do.
   void rescue() {
     try {

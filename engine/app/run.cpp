@@ -99,6 +99,9 @@ std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool qui
     return run_to_file(job);
   } catch (const BytesError& error) {
     resumable.refuse_state(error);
+  } catch (const InputError&) {
+    resumable.discard();
+    throw;
   } catch (const FileError&) {
     resumable.rescue();
     throw;

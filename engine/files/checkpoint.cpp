@@ -93,7 +93,7 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
   rest.max_not_converged = 1.0;  // judges the run when it is done
   // Likewise, but that machines are counted under them.
   if (study.analysis.draws == Draws::per_pose) rest.analysis.limits.clear();
-  rest.analysis.samples = 0;
+  if (!study.analysis.kind->decides_by_samples) rest.analysis.samples = 0;
   return {.poesy_version = poesy_version(),
           .git_commit = git_commit(),
           .model = study.model().name,

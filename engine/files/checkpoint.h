@@ -24,8 +24,8 @@ struct CheckpointIdentity {
   std::string model;          ///< its name
   std::uint64_t seed = 0;     ///< of the draws
   std::uint64_t samples = 0;  ///< that the study sets; a run may have more than its checkpoint
-  /// The resolved study, without title, seed, samples, max_not_converged and, unless errors are drawn per machine,
-  /// limits; and the mechanism's file.
+  /// The resolved study, without title, seed, samples (but of a kind that decides by them), max_not_converged and,
+  /// unless errors are drawn per machine, limits; and the mechanism's file.
   std::string study;
   std::string poses;       ///< SHA-256 of the poses, hexadecimal
   std::string shard = {};  ///< "2/5"; empty for the whole study

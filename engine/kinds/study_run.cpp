@@ -23,9 +23,9 @@ void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
   const auto most_shards = kind_of(study).run.most_shards;
   if (most_shards == nullptr) {
     throw InputError({},
-                     "--shard divides no " + std::string(study.analysis.kind->name) +
+                     "--shard divides no study of kind " + std::string(study.analysis.kind->name) +
                          ", each step of which needs all poses of the one before",
-                     "run it whole, for it is small, or with mpirun");
+                     "run it whole, or with mpirun");
   }
   if (study.analysis.adaptive) {
     throw InputError(

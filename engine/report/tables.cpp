@@ -148,7 +148,7 @@ std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& res
 void keep_first(std::size_t most, std::span<Table> tables) {
   for (Table& table : tables) {
     if (!table.ranked || table.rows.size() <= most) continue;
-    table.notes.push_back(fmt::format("{} of {} errors shown", most, table.rows.size()));
+    table.notes.push_back(fmt::format("{} of {} rows shown", most, table.rows.size()));
     table.rows.resize(most);
   }
 }

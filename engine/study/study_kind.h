@@ -76,7 +76,8 @@ struct StudyKind {
   std::span<const std::string_view> keys;  ///< of [analysis], in the order of its templates
   Varies varies = Varies::none;            ///< which factors vary at once
   bool compares_fidelities = false;        ///< whether it may solve at two fidelities
-  std::string_view usual_factors = {};     ///< the set taken where a study names none; "all" for a model without it
+  bool decides_by_samples = false;      ///< what it solves depends on all samples: no run goes on from one with fewer
+  std::string_view usual_factors = {};  ///< the set taken where a study names none; "all" for a model without it
   std::string_view usual_background = {};  ///< the set that templates hold, for models that have it
   std::string_view overrides = {};         ///< "a case sets": where a held error may have another value
   /// Of [analysis], those that it alone has; one with the name of a shared key takes that key's place.

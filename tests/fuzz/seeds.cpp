@@ -126,6 +126,8 @@ void write_results(const std::string& folder) {
   test::Example().write_monte_carlo(folder + "/monte_carlo");
   test::Example().write_machines(folder + "/machines");
   test::Example().write_sobol(folder + "/sobol");
+  test::Example of_tolerances;
+  of_tolerances.write_allocation(folder + "/allocation", of_tolerances.allocation());
   test::Example().write_coupling(folder + "/coupling");
   write_convergence_seed(folder + "/convergence");
   write_shard_seed(folder + "/shard");

@@ -46,7 +46,8 @@ end
 % What tells the kinds apart: kind, an axis of its own, and the table or the group with its numbers.
 function list = kinds()
   list = {'monte_carlo', 'monte-carlo'; 'evaluate', 'evaluate'; 'paired', 'evaluate'; 'cases', 'evaluate'; ...
-          'identification', 'identification'; 'coupling', 'coupling'};
+          'identification', 'identification'; 'coupling', 'coupling'; ...
+          'allocation', 'allocation'};
 end
 
 % Every table of every kind: names, units and numbers are those of its text.

@@ -51,7 +51,7 @@ def check_xarray(path, file):
                 assert name in opened.variables, f"xarray does not see /{group}/{name}"
             if group in ("sensitivity", "sensitivity/history", "solver", "evaluate", "errors", "monte_carlo", "coupling",
                          "sobol", "sobol/aggregated", "sobol/vector", "monte_carlo/main_effect", "machines/largest", "machines/rms", "yield",
-                         "limits"):
+                         "allocation", "allocation/stages", "allocation/curve", "allocation/certificate", "limits"):
                 for dimension in opened.dims:
                     assert dimension in opened.coords, f"/{group} shows no names for {dimension}"
 

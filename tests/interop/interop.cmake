@@ -27,7 +27,7 @@ endfunction()
 
 set(scripts ${CMAKE_CURRENT_SOURCE_DIR}/interop)
 set(octave ${scripts}/octave ${POESY_OCTAVE} --no-init-file --quiet)
-foreach(kind sensitivity evaluate paired monte_carlo machines sobol coupling cases identification)
+foreach(kind sensitivity evaluate paired monte_carlo machines sobol allocation coupling cases identification)
   poesy_interop_test(h5dump_${kind} ${POESY_H5DUMP} ${examples}/${kind}.h5)
   poesy_interop_test(python_structure_${kind} ${POESY_PYTHON} ${scripts}/check_structure.py ${examples}/${kind}.h5)
   poesy_interop_test(python_tables_${kind} ${POESY_PYTHON} ${scripts}/check_tables.py ${examples}/${kind})

@@ -49,7 +49,8 @@ def script(*arguments):
 class Examples(unittest.TestCase):
     def test_every_kind_is_read_with_names_and_units(self):
         kinds = {"sensitivity": ("sensitivity", "global"), "monte_carlo": ("monte_carlo", "mean"),
-                 "coupling": ("coupling", "effect"), "evaluate": ("evaluate", "linear_deformation")}
+                 "coupling": ("coupling", "effect"), "allocation": ("allocation", "tolerance"),
+                 "evaluate": ("evaluate", "linear_deformation")}
         for kind, (group, variable) in kinds.items():
             with self.subTest(kind), h5py.File(EXAMPLES / f"{kind}.h5") as file:
                 result = read_results.read_result(EXAMPLES / f"{kind}.h5")

@@ -22,9 +22,11 @@ int main(int argc, char** argv) try {
   poesy::test::Example().write_cases(folder + "/cases.h5");
   poesy::test::Example().write_machines(folder + "/machines.h5");
   poesy::test::Example().write_sobol(folder + "/sobol.h5");
+  poesy::test::Example of_tolerances;
+  of_tolerances.write_allocation(folder + "/allocation.h5", of_tolerances.allocation());
   poesy::test::Example().write_identification(folder + "/identification.h5");
-  for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/machines", "/sobol", "/coupling",
-                           "/cases", "/identification"}) {
+  for (const char* name : {"/sensitivity", "/evaluate", "/paired", "/monte_carlo", "/machines", "/sobol", "/allocation",
+                           "/coupling", "/cases", "/identification"}) {
     poesy::export_tables(folder + name + ".h5", folder + name);
   }
   return 0;

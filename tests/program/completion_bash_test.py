@@ -62,6 +62,7 @@ class Bash(ProgramTest):
         self.assertEqual(self.offers("template", ""), {"2upr-rpu", "3-prs", "xy-3-prs"})
         self.assertEqual(self.offers("models", "2"), {"2upr-rpu"})
         self.assertEqual(self.offers("template", "3-prs", "mo"), {"monte-carlo"})
+        self.assertEqual(self.offers("template", "3-prs", "a"), {"allocation"})
         self.assertEqual(self.offers("completion", ""), {"bash", "zsh"})
         self.assertLessEqual({"linear_deformation", "angular_deformation", "theta_x", "tip_position"},
                              self.offers("tolerances", "r.h5", "--response", ""))

@@ -12,7 +12,7 @@ import tempfile
 import time
 
 from poesy_program import PROGRAM, main
-from resumption import CASES, MONTE_CARLO, SENSITIVITY, ResumptionTest
+from resumption import ALLOCATION, CASES, MONTE_CARLO, SENSITIVITY, ResumptionTest
 
 IN_NAMESPACE = "POESY_IN_MOUNT_NAMESPACE"
 NAMESPACE = ["unshare", "--mount", *(["--map-root-user"] if os.geteuid() != 0 else [])]
@@ -23,6 +23,7 @@ MISSING = re.compile(r"cannot be written \(No space left on device; needs (\d+) 
 # A second or so: time for checkpoints.
 LONG_SENSITIVITY = SENSITIVITY.replace("12300", "40300")
 LONG_MONTE_CARLO = MONTE_CARLO.replace("12300", "40300")
+LONG_ALLOCATION = ALLOCATION.replace("30000", "120000")
 LONG_CASES = CASES.replace("count = 4000", "count = 12000")
 AN_OLDER_RESULT = "an older result"
 
@@ -123,6 +124,9 @@ class FullDisk(ResumptionTest):
 
     def test_checkpoint_of_a_monte_carlo_study_does_not_fit(self):
         self.checkpoint_does_not_fit(LONG_MONTE_CARLO)
+
+    def test_checkpoint_of_tolerances_does_not_fit(self):
+        self.checkpoint_does_not_fit(LONG_ALLOCATION)
 
     def test_checkpoint_of_cases_does_not_fit(self):
         self.checkpoint_does_not_fit(LONG_CASES)

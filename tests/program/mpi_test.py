@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 
 from poesy_program import PROGRAM, main
-from resumption import CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO, SENSITIVITY, SOBOL, ResumptionTest
+from resumption import ALLOCATION, CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO, SENSITIVITY, SOBOL, ResumptionTest
 
 MPIRUN = shutil.which("mpirun")
 HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
@@ -22,6 +22,7 @@ SMALLER = {
     "monte-carlo": MONTE_CARLO,
     "machines": MACHINES,
     "sobol": SOBOL,
+    "allocation": ALLOCATION,
     "evaluate": CASES.replace("count = 4000", "count = 300"),
     "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
     "coupling": COUPLING.replace("count = 20000", "count = 2000"),

@@ -51,6 +51,24 @@ kind = "sobol"
 factors = "deforming"
 samples = 2100
 """
+ALLOCATION = HEAD + """\
+[poses]
+count = 3
+[analysis]
+kind = "allocation"
+factors = "deforming"
+samples = 30000
+limits.linear_deformation = "0.5 mm"
+yield = 0.99
+sigmas = 3
+[[analysis.parts]]
+factors = "linear"
+each = true
+cost = { law = "reciprocal", b = 1, unit = "mm" }
+[[analysis.parts]]
+factors = "angular"
+cost = { law = "reciprocal", b = 1, unit = "deg" }
+"""
 CASES = HEAD + """\
 [poses]
 count = 4000
@@ -84,7 +102,7 @@ errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
 analysis = { kind = "sensitivity", samples = 12300 }
 """
 STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "sobol": SOBOL,
-           "evaluate": CASES, "identification": IDENTIFICATION,
+           "allocation": ALLOCATION, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
 
 

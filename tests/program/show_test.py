@@ -88,8 +88,8 @@ class Show(ProgramTest):
 
     def test_top(self):
         self.assertEqual(self.errors("--top", 2), self.errors()[:2])
-        self.assertIn("2 of 3 errors shown", self.succeeds("show", "out.h5", "--top", 2))
-        self.assertNotIn("errors shown", self.succeeds("show", "out.h5", "--top", 3))
+        self.assertIn("2 of 3 rows shown", self.succeeds("show", "out.h5", "--top", 2))
+        self.assertNotIn("rows shown", self.succeeds("show", "out.h5", "--top", 3))
         self.assertEqual(self.errors("--sort", "name", "--top", 1), sorted(self.errors())[:1])
 
     def test_json_has_the_values_and_the_texts(self):

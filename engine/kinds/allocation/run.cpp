@@ -201,11 +201,14 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
   const std::size_t rows = study.analysis.limits.size() * poses.size();
   const std::size_t loads = plan->samples() * sizeof(double);
   const std::size_t squares = 3 * rows * errors * sizeof(double);
-  const std::size_t numbers = 2 * study.model().responses.size() * poses.size() * sizeof(double);
+  // Use and multiplier of each limit; the pose with its condition number.
+  const std::size_t of_pose = 2 * study.model().responses.size() + study.model().pose_coordinates.size() + 1;
+  const std::size_t numbers = poses.size() * of_pose * sizeof(double);
+  const std::size_t file = numbers + poses.size() * kSolverColumns;
   return {.solves = fmt::format("about {:.0f} x {} x {} machines and {:.2g} for the effects of {}: {:.2g} solves",
                                 kTrials, counted_things(poses.size(), "poses"), plan->samples(), effects,
                                 counted_things(errors, "errors"), machines + effects),
-          .memory = {4 * loads + squares, 4 * loads + squares, numbers, numbers},
+          .memory = {4 * loads + 2 * squares, 4 * loads + 3 * squares, numbers, file},
           .shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model),
                                                  (machines + effects) / static_cast<double>(plan->solves()))},
           .by_one = {},

@@ -110,6 +110,16 @@ bool ToleranceSearch::choose(const Reach& reach) {
   return true;
 }
 
+/// The same by the least share between these with which they can be kept, to a thousandth.
+bool ToleranceSearch::choose_by_least_share(double low, double high, const Reach& reach) {
+  while (high > 1.001 * low) {
+    share_ = std::sqrt(low * high);
+    (choose(reach) ? high : low) = share_;
+  }
+  share_ = high;
+  return choose(reach);
+}
+
 /// by_programme: whether the last programme chose the tolerances.
 void ToleranceSearch::add_stage(std::string name, bool by_programme, std::uint64_t machines, std::uint64_t rejects) {
   stages_.push_back(
@@ -127,10 +137,7 @@ bool ToleranceSearch::linearise() {
   if (!choose({})) {
     const ChoiceOfTolerances whole = programme_.choose(programme_.limits(squares_, measured_, 1.0), {});
     if (const auto* broken = std::get_if<CannotBeMet>(&whole)) refuse(*broken);
-    for (double low = share_, high = 1.0; high > 1.001 * low || !choose({});) {
-      share_ = high > 1.001 * low ? std::sqrt(low * high) : high;
-      (choose({}) ? high : low) = share_;
-    }
+    choose_by_least_share(share_, 1.0, {});
   }
   add_stage("linear", true, 0, 0);
   // An error that does nothing alone may act among others, and is as large as usual until this is known.
@@ -193,11 +200,17 @@ bool ToleranceSearch::lower_to_least() {
 }
 
 /// Scales the limits on root mean squares by this load of the machine that decides, and chooses tolerances by them.
-/// Nothing where there are none, or they stay as they are.
+/// Where none keep limits that are so much smaller, because the other errors alone do not, by limits as small as can be
+/// kept. Nothing where there are none, or they stay as they are.
 bool ToleranceSearch::rescale(double load) {
   const TolerancePoint before = found_;
+  const double share = share_;
+  const Reach reach{before.tolerance, kGrowth};
   share_ /= std::clamp(load * (1.0 + 0.25 * kFine), 0.25, 4.0);
-  return choose({before.tolerance, kGrowth}) && (load > 1.0 || found_.tolerance != before.tolerance);
+  if (choose(reach)) return load > 1.0 || found_.tolerance != before.tolerance;
+  if (load > 1.0 && choose_by_least_share(share_, share, reach)) return found_.tolerance != before.tolerance;
+  found_ = before;
+  return false;
 }
 
 /// Comes near the yield with some of the machines, and measures effects again where tolerances have changed much.

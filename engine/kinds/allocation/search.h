@@ -54,6 +54,7 @@ class ToleranceSearch {
  private:
   bool measure(std::span<const double> tolerance, std::size_t draws);
   bool choose(const Reach& reach);
+  bool choose_by_least_share(double low, double high, const Reach& reach);
   bool linearise();
   bool settle_effects();
   bool rescale(double load);

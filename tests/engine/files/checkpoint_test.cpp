@@ -177,6 +177,17 @@ TEST(CheckpointIdentity, LeavesLimitsOpenButNotTheirShare) {
   EXPECT_FALSE(identity_of(example.study, example.poses.poses) == at_99);
 }
 
+TEST(CheckpointIdentity, HoldsTheSamplesThatAStudyDecidesBy) {
+  for (const StudyKind* kind : study_kinds().all) {
+    Example example;
+    example.study.analysis.kind = kind;
+    const CheckpointIdentity fewer = identity_of(example.study, example.poses.poses);
+    ++example.study.analysis.samples;
+    const CheckpointIdentity more = identity_of(example.study, example.poses.poses);
+    EXPECT_EQ(more.study != fewer.study, kind == &kAllocationStudy) << kind->name;
+  }
+}
+
 TEST_F(Files, KeepTwoGenerations) {
   CheckpointFiles files(result_);
   EXPECT_FALSE(files.exist());

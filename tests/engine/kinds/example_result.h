@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
-#include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/evaluate/cases.h"
@@ -374,10 +373,10 @@ class Example {
     result.failed_samples = 1;
     return result;
   }
-  /// Three parts under one limit, that of the second response, in two stages; certified. The study is one of machines,
-  /// which has all that such a result says of its study.
+  /// Three parts under one limit, that of the second response, in two stages; certified.
   AllocationResult allocation() {
-    study.analysis.kind = &kMonteCarloStudy;
+    study.analysis.kind = &kAllocationStudy;
+    study.analysis.asked = AllocationOptions();
     study.analysis.draws = Draws::per_machine;
     study.analysis.limits = {{1, 3e-5}};
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -435,7 +434,7 @@ class Example {
     return result;
   }
   void write_allocation(const std::string& path, const AllocationResult& result) const {
-    poesy::write_result(path, "allocation", kAllocationFile, study, poses, result, facts);
+    poesy::write_result(path, study, poses, result, facts);
   }
   void write_monte_carlo(const std::string& path) {
     const MonteCarloResult result = monte_carlo();

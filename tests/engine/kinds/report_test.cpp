@@ -213,6 +213,8 @@ TEST_F(HtmlReport, OfEveryKindIsWhole) {
   check_page(report(stored()));
   example.write_monte_carlo(path);
   check_page(report(stored()));
+  example.write_allocation(path, example.allocation());
+  check_page(report(stored()));
 }
 
 TEST_F(HtmlReport, OfAnIdentificationIsWhole) {
@@ -716,6 +718,9 @@ TEST_F(HtmlReport, OfTwoResultsOfEveryKindIsWhole) {
   check_page(report(stored(), stored()));
   const ReportedResult coupling = stored();
   example.write_monte_carlo(path);
+  check_page(report(stored(), stored()));
+  EXPECT_THROW(report(stored(), coupling), InputError);
+  example.write_allocation(path, example.allocation());
   check_page(report(stored(), stored()));
   EXPECT_THROW(report(stored(), coupling), InputError);
 }

@@ -143,7 +143,7 @@ TEST(StudyOfAnyKind, KeepsFactorsAndSamplesOfAnother) {
 
 TEST(StudyKinds, HaveNames) {
   EXPECT_EQ(names(study_kinds()), (std::vector<std::string_view>{"sensitivity", "identification", "evaluate",
-                                                                 "monte-carlo", "sobol", "coupling"}));
+                                                                 "monte-carlo", "sobol", "allocation", "coupling"}));
   EXPECT_EQ(find(study_kinds(), "monte-carlo"), &kMonteCarloStudy);
   EXPECT_EQ(find(study_kinds(), "monte_carlo"), nullptr);
 }

@@ -1,4 +1,5 @@
 #include "engine/kinds/study_run.h"
+#include "engine/kinds/allocation/result.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/sensitivity/result.h"
@@ -67,6 +68,7 @@ TEST(CheckShard, RefusesAStudyThatNeedsAllPosesAtOnce) {
   adaptive.analysis.adaptive = AdaptiveSamples{1000, 0.05};
   EXPECT_THROW(check_shard({0, 2}, adaptive, 3), InputError);
   EXPECT_THROW(check_shard({0, 2}, study_of(&kIdentificationStudy, 200), 3), InputError);
+  EXPECT_THROW(check_shard({0, 2}, study_of(&kAllocationStudy, 200), 3), InputError);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include "engine/base/error.h"
 #include "engine/files/h5.h"
-#include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/stats/proportion.h"
 #include "tests/engine/kinds/example_result.h"
@@ -43,9 +42,7 @@ class AllocationFile : public testing::Test {
 
   void write() const { example_.write_allocation(path_, written_); }
 
-  StoredResult stored() const {
-    return read_result(path_, [](std::string_view name) { return name == "allocation" ? &kAllocationFile : nullptr; });
-  }
+  StoredResult stored() const { return read_result(path_); }
 
   /// What reading says of the file after one of its objects was replaced by another; empty: it was read.
   std::string problem_with(const std::string& replaced, const std::string& by) const {
@@ -65,7 +62,7 @@ class AllocationFile : public testing::Test {
   /// A text file of the exported tables.
   std::string csv(const std::string& name) const {
     const std::string tables = folder_.file("tables");
-    export_tables(stored(), kAllocationFile, tables);
+    export_tables(stored(), tables);
     return test::read_bytes(tables + "/" + name + ".csv");
   }
 

@@ -27,7 +27,7 @@ class AllocationReport : public testing::Test {
     const std::string path = folder.file("r.h5");
     test::Example example;
     example.write_allocation(path, example.allocation());
-    result = read_result(path, [](std::string_view) { return &kAllocationFile; });
+    result = read_result(path);
   }
 
   AllocationResult& found() { return found_in<AllocationResult>(result); }

@@ -136,7 +136,7 @@ TEST(KeepFirst, SaysHowManyThereAre) {
   std::vector<Table> tables = result_tables(ranked_result(), "x");
   keep_first(2, tables);
   EXPECT_EQ(tables[0].rows.size(), 2U);
-  EXPECT_EQ(tables[0].notes.back(), "2 of 4 errors shown");
+  EXPECT_EQ(tables[0].notes.back(), "2 of 4 rows shown");
   std::vector<Table> all = result_tables(ranked_result(), "x");
   const std::string before = text_of(all, kUnlimitedWidth);
   keep_first(4, all);
