@@ -41,7 +41,7 @@ struct StatedCost {
 /// One way to make a part: a process with the tolerances that it holds.
 struct StatedProcess {
   std::string name;                                     ///< for people: "turning"
-  StatedCost cost;                                      ///< over its range
+  StatedCost cost = {};                                 ///< over its range
   double lo = 0.0;                                      ///< least tolerance, SI
   double hi = std::numeric_limits<double>::infinity();  ///< largest one
 };
@@ -61,7 +61,7 @@ struct AllocatedPart {
   double sigmas = 3.0;               ///< T = shift T + sigmas x standard deviation
   double shift = 0.0;                ///< the mean is off by this share of T, as often up as down; 0 <= shift < 1
   Choice choice = Choice::range;     ///< which of the following counts
-  StatedCost cost;                   ///< of all but processes
+  StatedCost cost = {};              ///< of all but processes
   double lo = 0.0;                   ///< of range; of fixed the value itself. SI
   double hi =
       std::numeric_limits<double>::infinity();  ///< of range; infinity: what the part allows (Model::error_bound)
