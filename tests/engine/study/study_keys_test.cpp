@@ -175,8 +175,9 @@ std::vector<std::string> studies() {
           "\"1 deg\" }, bounds = [\"1 deg\", \"2 deg\"] }, { factors = [\"delta_2\"], sigmas = 3, cost = { law = "
           "\"reciprocal-power\", a = 1, b = 2, k = 2, unit = \"mm\" }, values = [\"1 mm\"] }]\n",
       head +
-          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\ncpk = 1\nlimits = { "
-          "angular_deformation = \"1 deg\" }\nparts = [{ factors = \"linear\", each = true, identical_limbs = [1, "
+          "[poses]\nselect = \"interior\"\ncount = 3\n[analysis]\nkind = \"allocation\"\ncpk = 1\ncalibrated = true\n"
+          "limits = { angular_deformation = \"1 deg\" }\nparts = [{ factors = \"linear\", each = true, identical_limbs "
+          "= [1, "
           "2], grades = [\"IT7\"], nominal_size = \"50 mm\" }, { factors = \"angular\", tolerance = \"1 deg\" }]\n"};
 }
 
