@@ -169,11 +169,14 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const
 
 namespace {
 
+/// RESULT_certificate.
+std::string stem_beside(const std::filesystem::path& result) { return result.stem().string() + "_certificate"; }
+
 /// Writes it beside the result: RESULT_certificate.toml. Gives its path.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
-  const std::string stem = result.stem().string() + "_certificate";
+  const std::string stem = stem_beside(result);
   name_files_beside(confirming, stem);
   write_files_beside(folder, confirming, job.poses.poses);
   const std::string comment = "repeats the certificate of " + result.filename().string();
@@ -182,6 +185,15 @@ std::string write_beside(const Job& job, Study confirming) {
 }
 
 }  // namespace
+
+void check_path_beside(const std::string& result, const std::string& study_path) {
+  const std::filesystem::path path(result);
+  const std::filesystem::path beside = path.parent_path() / (stem_beside(path) + ".toml");
+  std::error_code ignored;  // a path that cannot be looked at is none of these
+  if (!std::filesystem::equivalent(beside, study_path, ignored)) return;
+  throw InputError({study_path}, "would be replaced by the study that confirms the result, " + beside.string(),
+                   "give the result another name (-o)");
+}
 
 std::optional<RunOutcome> run_to_file(const Job& job) {
   const std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);

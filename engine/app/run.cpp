@@ -16,6 +16,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/result_file.h"
+#include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/ranks/team.h"
@@ -156,6 +157,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const Study study = study_of(options);
   const std::string path = options.result.empty() ? default_result(options) : options.result;
   check_result_path(path, std::span(&options.study, 1));
+  if (kind_of(study).run.confirms) check_path_beside(path, options.study);
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);

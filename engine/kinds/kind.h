@@ -56,6 +56,7 @@ struct RunKind {
   Outlook (*outlook)(const Study&, const Model&, const PoseSet&);
   /// Into how many shards a study at so many poses divides at the most; null: its steps need all poses.
   std::size_t (*most_shards)(const Study&, std::size_t poses);
+  bool confirms = false;  ///< whether it writes a study beside the result that confirms it
 };
 
 /// A study divides at its poses.

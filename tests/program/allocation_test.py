@@ -271,6 +271,11 @@ class Allocation(ResumptionTest):
         self.refused(SMALL.replace('limits.linear_deformation = "0.5 mm"\n', ""), "'limits' is missing")
         self.refused(SMALL.replace("samples = 2500", "samples = { max = 1000, relative_error = 0.1 }"),
                      "a certificate needs a number of machines that is fixed before")
+        self.write("out_certificate.toml", SMALL)
+        done = self.poesy("run", "out_certificate.toml", "-o", "out.h5", "--quiet")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("would be replaced by the study that confirms the result", done.stderr.decode())
+        (self.folder / "out_certificate.toml").unlink()
         self.refused(SMALL, "divides no study of kind allocation", "run it whole, or with mpirun", options=("--shard", "1/2"))
 
 

@@ -36,6 +36,7 @@ struct Reach {
   double growth = std::numeric_limits<double>::infinity();  ///< at most times these
 };
 
+/// What a programme gives: tolerances, or why there are none.
 using ChoiceOfTolerances = std::variant<ChosenTolerances, CannotBeMet, WithoutEnd>;
 
 /// The parts of a study as an optimiser sees them.

@@ -144,7 +144,7 @@ AllocationResult result_of(const StudyRun& run, const ToleranceSearch& search, c
   found.aim = asked.aim;
   found.calibrated = study.mechanism.calibrated;
   found.total_cost = search.found().cost;
-  found.lower_bound = search.chosen().lower_bound;
+  found.lower_bound = search.chosen().lower_bound;  // NaN where nothing but the lowest tolerances was left
   found.gap = search.chosen().cost - search.chosen().lower_bound;
   found.wanted_yield = asked.yield;
   found.confidence = asked.confidence;
@@ -218,7 +218,7 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
 }  // namespace
 
 constinit const Kind kAllocationKind{.study = kAllocationStudy,
-                                     .run = {run_study_of_kind, allocation_outlook, nullptr},
+                                     .run = {run_study_of_kind, allocation_outlook, nullptr, true},
                                      .file = kAllocationFile,
                                      .report = kAllocationReport};
 

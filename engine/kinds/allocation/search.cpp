@@ -120,8 +120,8 @@ bool ToleranceSearch::choose_by_least_share(double low, double high, const Reach
   return choose(reach);
 }
 
-/// by_programme: whether the last programme chose the tolerances.
-void ToleranceSearch::add_stage(std::string name, bool by_programme, std::uint64_t machines, std::uint64_t rejects) {
+void ToleranceSearch::add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects) {
+  const bool by_programme = found_.tolerance == chosen_.tolerance;
   stages_.push_back(
       {std::move(name), found_.cost, by_programme ? chosen_.lower_bound : kNaN, share_, machines, rejects});
   stage_tolerance_.insert(stage_tolerance_.end(), found_.tolerance.begin(), found_.tolerance.end());
@@ -139,7 +139,7 @@ bool ToleranceSearch::linearise() {
     if (const auto* broken = std::get_if<CannotBeMet>(&whole)) refuse(*broken);
     choose_by_least_share(share_, 1.0, {});
   }
-  add_stage("linear", true, 0, 0);
+  add_stage("linear", 0, 0);
   // An error that does nothing alone may act among others, and is as large as usual until this is known.
   for (std::size_t i = 0; i < programme_.size(); ++i) {
     bool acts = false;
@@ -161,7 +161,7 @@ bool ToleranceSearch::settle_effects() {
     const bool cost_stays = !(std::abs(found_.cost - before.cost) > kSettled * std::abs(found_.cost));
     if (cost_stays && largest_ratio(found_.tolerance, before.tolerance) < 1.0 + 10.0 * kSettled) break;
   }
-  add_stage("effects among the others", true, 0, 0);
+  add_stage("effects among the others", 0, 0);
   return true;
 }
 
@@ -196,6 +196,8 @@ bool ToleranceSearch::lower_to_least() {
   if (!trial) return false;
   trial_ = *std::move(trial);
   if (trial_.rejects() > allowed_.design) refuse_lowest();
+  chosen_ = {found_, kNaN, {}};  // by no programme
+  add_stage("the lowest tolerances", trial_.load.size(), trial_.rejects());
   return true;
 }
 
@@ -221,7 +223,7 @@ bool ToleranceSearch::come_near() {
     const Plan plan = Plan(study, run_.poses).with_samples(machines);
     const auto first = try_machines(plan, run_.model, study.analysis.limits, run_.options);
     if (!first) return false;
-    if (trial == 0) add_stage("tried on machines", true, machines, first->rejects());
+    if (trial == 0) add_stage("tried on machines", machines, first->rejects());
     const double load = deciding_load(first->load, allowed_.design / kFirstOf);
     if (std::abs(std::log(load)) < kFar) break;
     const ChosenTolerances before = chosen_;
@@ -267,7 +269,7 @@ bool ToleranceSearch::meet_yield() {
   auto near = try_near(found_);
   if (!near) return false;
   near_ = *std::move(near);
-  add_stage("scaled to the yield", true, trial_.load.size(), near_.trial.rejects());
+  add_stage("scaled to the yield", trial_.load.size(), near_.trial.rejects());
   return true;
 }
 
@@ -366,7 +368,7 @@ bool ToleranceSearch::improve_by_gradient() {
     if (!*fitted) break;
     better = true;
   }
-  if (better) add_stage("by the gradient of the yield", false, trial_.load.size(), near_.trial.rejects());
+  if (better) add_stage("by the gradient of the yield", trial_.load.size(), near_.trial.rejects());
   return true;
 }
 
@@ -417,7 +419,7 @@ bool ToleranceSearch::confirm() {
     found_ = programme_.at_most(tighter);
     if (found_.tolerance == before.tolerance) refuse_lowest();
   }
-  add_stage("all machines", false, trial_.load.size(), trial_.rejects());
+  add_stage("all machines", trial_.load.size(), trial_.rejects());
   auto near = try_near(found_);
   if (!near) return false;
   near_ = *std::move(near);

@@ -87,7 +87,7 @@ class ToleranceSearch {
   ToleranceLimits gradient_limits() const;
   std::optional<bool> fit_gradient(ToleranceLimits direction);
 
-  void add_stage(std::string name, bool by_programme, std::uint64_t machines, std::uint64_t rejects);
+  void add_stage(std::string name, std::uint64_t machines, std::uint64_t rejects);
   std::string row_text(std::size_t row) const;
   [[noreturn]] void refuse(const CannotBeMet& broken) const;
   [[noreturn]] void refuse_lowest() const;

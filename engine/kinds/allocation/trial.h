@@ -39,8 +39,8 @@ std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::spa
 
 /// Errors of these positions in a plan that are all so many times as large: a tolerance that is changed.
 struct Variation {
-  std::vector<std::size_t> errors;
-  double factor;
+  std::vector<std::size_t> errors;  ///< positions among the plan's factors
+  double factor;                    ///< > 0
 };
 
 /// Loads [V x n] of the listed machines with one variation after the other. Otherwise as try_machines.

@@ -226,7 +226,7 @@ TEST_P(OfMechanism, CorrectionsLeaveTheResidual) {
 }
 
 /// Calibrated responses are what is left of each error, by the exact solver and to first order.
-TEST_P(OfMechanism, CalibratedResponsesAreTheResidual) {
+TEST_P(OfMechanism, CalibrationLeavesTheResidual) {
   std::mt19937_64 engine(8);
   constexpr double kStep = 1e-6;
   for (const std::size_t fidelity : {0u, 1u}) {

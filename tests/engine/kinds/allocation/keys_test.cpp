@@ -126,7 +126,7 @@ TEST(StudyOfTolerances, AsksForTheLeastCostWhereThereAreCosts) {
   EXPECT_EQ(options_of(study_of(kLimits + kSigmas + kOnePart + "processes = [{ " + cost + " }]")).aim, Aim::least_cost);
 }
 
-TEST(StudyOfTolerances, TakesSoManyMachinesThatEnoughAreExpectedToFail) {
+TEST(StudyOfTolerances, TakesMachinesUntilEnoughFail) {
   const auto samples = [](const std::string& yield) {
     return study_of(kLimits + kSigmas + "yield = " + yield + "\n" + kOnePart).analysis.samples;
   };
@@ -515,7 +515,7 @@ INSTANTIATE_TEST_SUITE_P(
                  block("factors = ^[\"*_1\"]"),
                  {"has the length 'delta_1' and the angle 'epsilon_1', but a part has one tolerance",
                   "factors = \"linear\""}},
-        BadStudy{"OneCostForLengthsAndAngles",
+        BadStudy{"OneCostForBoth",
                  block("factors = ^\"all\"\neach = true\ncost = { law = \"reciprocal\", b = 1, unit = \"mm\" }"),
                  {"the angle 'epsilon_1', and 'cost' cannot hold for both", "factors = \"angular\""}},
         BadStudy{"Measured",

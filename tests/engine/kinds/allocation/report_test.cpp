@@ -101,7 +101,7 @@ TEST_F(AllocationReport, SaysFirstWhetherItIsCertified) {
             "confidence (360 of 148 000 fresh machines rejected, 1 was allowed)");
 }
 
-TEST_F(AllocationReport, HasTheYieldOnceAsAMonteCarloStudyHasIt) {
+TEST_F(AllocationReport, HasTheYieldAsAMonteCarloStudy) {
   EXPECT_EQ(names(tables()),
             (Texts{"yield", "drawing", "allocation_limits", "stages", "cost_of_yield", "cost_of_limits"}));
   const Table yield = table("yield");

@@ -103,7 +103,7 @@ TEST(OverrunningClutch, HasTheLeastCostOfTheLiterature) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.stage_tolerance[i], best[i], 1e-6) << i;
 }
 
-TEST(OverrunningClutch, HasTheLeastCostOfOneProcessEachWithoutBounds) {
+TEST(OverrunningClutch, HasTheLeastCostWithoutBounds) {
   const AllocationResult found = clutch_study(2000, {3, 2, 1, 3}).find();
   EXPECT_NEAR(found.stages.front().cost, 24.42989011, 3e-6);
   const std::vector<double> best{.17859228, .17069998, .13191761, .18931314};
@@ -209,7 +209,7 @@ TEST(ToleranceSearch, GivesAStudyThatRepeatsItsCertificate) {
   EXPECT_EQ(repeated->verdicts->yield->decision, YieldVerdict::Decision::kept);
 }
 
-TEST(ToleranceSearch, GivesPartsOfEqualEffectEqualSharesOfTheMeanSquare) {
+TEST(ToleranceSearch, GivesEqualEffectEqualShares) {
   FunctionStudy study = weighted_sum_study(20'000);
   study.asked().aim = Aim::equal_effect;
   const AllocationResult found = study.find();
@@ -220,7 +220,7 @@ TEST(ToleranceSearch, GivesPartsOfEqualEffectEqualSharesOfTheMeanSquare) {
   EXPECT_TRUE(found.certified());
 }
 
-TEST(ToleranceSearch, TakesTheLargestCommonFactorOfGivenErrors) {
+TEST(ToleranceSearch, TakesTheLargestCommonFactor) {
   FunctionStudy study = weighted_sum_study(20'000);
   study.asked().aim = Aim::common_factor;
   study.study.errors.by_factor[1] = Distribution::normal(0.15);
@@ -318,7 +318,7 @@ MeanSquares squares_of(std::size_t errors, ErrorFunction function, std::size_t d
   return *mean_squares(plan, study.model, study.study.analysis.limits, draws, {.threads = 2});
 }
 
-TEST(MeanSquaresOf, LinearFunctionsAreExactForAnyNumberOfErrors) {
+TEST(MeanSquaresOf, LinearFunctionsAreExact) {
   constexpr std::size_t kErrors = 400;
   const auto function = [](std::span<const double> x, double place, std::span<double> y) {
     y[0] = 0.01;

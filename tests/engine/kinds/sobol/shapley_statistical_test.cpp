@@ -13,7 +13,7 @@ namespace {
 class ShapleyIntervals : public ::testing::TestWithParam<std::size_t> {};
 
 // 1.5 points off the level are allowed, and 3.3 standard errors of what is measured: alpha is 0.1 % for each of nine.
-TEST_P(ShapleyIntervals, HaveTheEffectAsOftenAsTheySay) {
+TEST_P(ShapleyIntervals, HoldTheEffectAsTheySay) {
   constexpr int kRepetitions = 1000;
   const double allowed = 0.015 + 3.3 * std::sqrt(0.95 * 0.05 / kRepetitions);
   for (const ShapleyFunction& function : shapley_functions()) {
