@@ -65,10 +65,10 @@ struct AllocatedPart {
   double lo = 0.0;                   ///< of range; of fixed the value itself. SI
   double hi =
       std::numeric_limits<double>::infinity();  ///< of range; infinity: what the part allows (Model::error_bound)
-  std::vector<double> values;                   ///< of values, ascending
-  std::vector<ItGrade> grades;                  ///< of grades, from the finest one
+  std::vector<double> values = {};              ///< of values, ascending
+  std::vector<ItGrade> grades = {};             ///< of grades, from the finest one
   double nominal_size = 0.0;                    ///< of grades, m
-  std::vector<StatedProcess> processes;         ///< of processes
+  std::vector<StatedProcess> processes = {};    ///< of processes
 };
 
 /// What tolerances are for, in a study of tolerances.
