@@ -45,8 +45,7 @@ TEST(Outlook, CountsTheTrialsOfMachinesOfAStudyOfTolerances) {
   asked_of<AllocationOptions>(study.analysis).parts = {{.name = "both", .factors = study.analysis.factors}};
   const Prepared prepared(study);
   const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
-  EXPECT_EQ(expected.solves,
-            "about 5 x 3 poses x 4000 machines and 7e+03 for the effects of 2 errors: 6.7e+04 solves");
+  EXPECT_EQ(expected.solves, "about 5 x 3 poses x 4000 machines and 7e+03 for the effects of 2 errors: 6.7e+04 solves");
   EXPECT_EQ(expected.least, 1.0);
   EXPECT_GT(expected.memory.peak(), 4 * 4000 * sizeof(double));
   const std::vector<double> shares = first_pieces(expected.shared);

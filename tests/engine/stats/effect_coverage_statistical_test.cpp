@@ -82,7 +82,7 @@ TEST(YieldGradientInterval, CoversWithNineRejectsOrMore) {
   EXPECT_NEAR(share(0.3, 5000, 104), 0.95, 0.01);
 }
 
-TEST(YieldGradientInterval, OfOtherErrorsCoversWithTenRejects) {
+TEST(YieldGradientInterval, OfOtherErrorsCovers) {
   const auto share = [](const test::YieldCase& yield, std::size_t machines, std::uint64_t seed) {
     return gradient_coverage(yield, machines, kRepetitions, seed).share();
   };
