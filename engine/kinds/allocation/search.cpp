@@ -26,6 +26,8 @@ constexpr double kSettled = 1e-3;
 /// Loads of the machines that decide are as near to 1 as this.
 constexpr double kFine = 2e-3;
 constexpr std::size_t kMostTrials = 12;
+/// The same where nothing is left to improve.
+constexpr double kExact = 1e-5;
 /// Machines below this share of the load that decides do not come to decide while tolerances change a little.
 constexpr double kNear = 0.75;
 /// How much coarser a part is made to see what it does, and how near to 1 loads are that tell it.
@@ -372,6 +374,27 @@ bool ToleranceSearch::improve_by_gradient() {
   return true;
 }
 
+/// Makes all tolerances coarser by one factor, as far as the design allows: after this it allows none to be coarser.
+bool ToleranceSearch::use_up() {
+  const TolerancePoint before = found_;
+  double factor = 1.0;
+  double load = deciding_load(near_.trial.load, allowed_.design);
+  for (std::size_t trial = 0; trial < kMostFits && !(load <= 1.0 && load >= 1.0 - kExact); ++trial) {
+    factor *= (1.0 - 0.5 * kExact) / load;
+    std::vector<double> wanted = before.tolerance;
+    for (double& tolerance : wanted) tolerance *= factor;
+    const TolerancePoint coarser = programme_.at_most(wanted);
+    if (coarser.tolerance == found_.tolerance) break;
+    auto near = try_near(coarser);
+    if (!near) return false;
+    load = deciding_load(near->trial.load, allowed_.design);
+    if (load > 1.0 || coarser.cost > found_.cost) continue;
+    found_ = coarser;
+    near_ = *std::move(near);
+  }
+  return true;
+}
+
 /// Finds what each part would do if it alone were coarser. Counts of rejects would drown a small part in noise, so the
 /// rejects to come are as many as machines have loads near 1, per load, times what the part adds to these loads.
 bool ToleranceSearch::try_coarser() {
@@ -429,7 +452,7 @@ bool ToleranceSearch::confirm() {
 bool ToleranceSearch::find() {
   if (!linearise() || !settle_effects() || !meet_yield()) return false;
   if (near_.machines.empty()) return true;  // the lowest tolerances: nothing is left to choose
-  return improve_by_gradient() && confirm() && try_coarser();
+  return improve_by_gradient() && use_up() && confirm() && try_coarser();
 }
 
 double ToleranceSearch::cost_at(double share, double wider) const {

@@ -61,6 +61,7 @@ class ToleranceSearch {
   bool come_near();
   bool meet_yield();
   bool improve_by_gradient();
+  bool use_up();
   bool confirm();
   bool try_coarser();
 

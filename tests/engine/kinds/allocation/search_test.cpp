@@ -186,6 +186,14 @@ TEST(ToleranceSearch, SharesALinearLimitAsTheClosedForm) {
   EXPECT_NEAR(std::sqrt(found_square), 1.0 / z, 0.01 / z);
 }
 
+// So that not even a part of little effect can be coarser alone.
+TEST(ToleranceSearch, LeavesNoRejectUnused) {
+  const AllocationResult found = weighted_sum_study().find();
+  EXPECT_EQ(found.design_rejects, found.design_most);
+  const double most = 1.0 - static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
+  for (std::size_t i = 0; i < found.parts(); ++i) EXPECT_LT(found.coarser_yield[i], most) << found.part_names[i];
+}
+
 TEST(ToleranceSearch, FindsTheSameOnAnyNumberOfThreads) {
   const FunctionStudy study = weighted_sum_study(20'000);
   const AllocationResult one = study.find(1);
