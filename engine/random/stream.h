@@ -15,7 +15,7 @@ enum class Purpose : std::uint64_t {
   scrambled_sobol = 3,
   latin_hypercube = 4,
   second_error_samples = 5,  ///< independent of error_samples, of the same errors
-  certificate_seed = 6       ///< of a study that tries fresh machines
+  seed_of_others = 6         ///< seeds of sets of machines that a study tries besides its own
 };
 
 /// The address of a run of draws: one factor at one pose. The sample index completes it.

@@ -133,11 +133,7 @@ const Group<Stored> kCertificate{
       "it; undecided: neither"},
      {"design_machines", &Stored::design_machines, {}, "1", "Machines with which the tolerances were found"},
      {"design_rejects", &Stored::design_rejects, {}, "1", "Of them, rejects at these tolerances"},
-     {"design_most",
-      &Stored::design_most,
-      {},
-      "1",
-      "As many of them were allowed, so that the certificate will probably hold"}}};
+     {"design_most", &Stored::design_most, {}, "1", "With so many of them the certificate will probably hold"}}};
 
 constexpr const char* kCertificateStudy = "/allocation/certificate_study";
 

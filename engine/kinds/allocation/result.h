@@ -141,7 +141,7 @@ struct AllocationResult {
   std::vector<double> stage_tolerance;  ///< [stages x N] T at the end of each
   std::uint64_t design_machines = 0;    ///< with which the tolerances were found
   std::uint64_t design_rejects = 0;     ///< of them
-  std::uint64_t design_most = 0;        ///< as many were allowed, so that the certificate will probably hold
+  std::uint64_t design_most = 0;        ///< with so many of them the certificate will probably hold
 
   std::uint64_t certificate_seed = 0;  ///< of the fresh machines
   std::uint64_t certificate_most = 0;  ///< rejects with which the certificate would hold

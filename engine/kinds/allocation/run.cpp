@@ -11,7 +11,6 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/search.h"
 #include "engine/kinds/confirming_study.h"
-#include "engine/random/stream.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/stats/proportion.h"
 #include "engine/study/study_file.h"
@@ -26,9 +25,8 @@ constexpr std::array kFactors{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5,
 /// The study that tries fresh machines with these tolerances.
 Study certificate_study(const ToleranceProgramme& programme, const TolerancePoint& found, const Study& study) {
   const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
-  const StreamAddress address{study.seed, Purpose::certificate_seed, FactorIndex(0), PoseIndex(0)};
   Study fresh = as_confirming_study(programme.at(found.tolerance), "certificate");
-  fresh.seed = random_bits(address, SampleIndex(0)) >> 1U;  // a study file holds signed numbers
+  fresh.seed = seed_of_others(study, SampleIndex(0));
   fresh.analysis.kind->ask_yield(fresh, asked.yield);
   fresh.analysis.conf_level = asked.confidence;
   return fresh;
@@ -115,7 +113,7 @@ void add_curves(const ToleranceSearch& search, const AllocationOptions& asked, A
   if (std::isnan(search.found().cost)) return;
   const double cost_here = search.cost_at(search.share(), 1.0);
   const double scale = search.found().cost / cost_here;
-  std::vector<double> loads = search.trial().load;
+  std::vector<double> loads(search.loads().begin(), search.loads().end());
   std::ranges::sort(loads, std::ranges::greater());
   for (const double yield : kYields) {
     if (loads.size() < trials_without_failure(yield, asked.confidence)) continue;
@@ -150,8 +148,8 @@ AllocationResult result_of(const StudyRun& run, const ToleranceSearch& search, c
   found.confidence = asked.confidence;
   found.stages = search.stages();
   found.stage_tolerance = search.stage_tolerance();
-  found.design_machines = search.trial().load.size();
-  found.design_rejects = search.trial().rejects();
+  found.design_machines = search.loads().size();
+  found.design_rejects = search.rejects();
   found.design_most = search.allowed().design;
   found.certificate_seed = certificate.seed;
   found.certificate_most = search.allowed().certificate;

@@ -83,11 +83,17 @@ AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t ma
   return {low, static_cast<std::uint64_t>(root * root)};
 }
 
+std::uint64_t seed_of_others(const Study& study, SampleIndex set) {
+  const StreamAddress address{study.seed, Purpose::seed_of_others, FactorIndex(0), PoseIndex(0)};
+  return random_bits(address, set) >> 1U;  // a study file holds signed numbers
+}
+
 ToleranceSearch::ToleranceSearch(const StudyRun& run)
     : run_(run),
       asked_(asked_of<AllocationOptions>(run.study.analysis)),
       programme_(run.study, run.model),
       allowed_(allowed_rejects(asked_.yield, asked_.confidence, run.study.analysis.samples)),
+      seed_(run.study.seed),
       share_(1.0 / normal_bound(asked_.yield)),
       coarser_yield_(programme_.size(), kNaN) {}
 
@@ -167,14 +173,20 @@ bool ToleranceSearch::settle_effects() {
   return true;
 }
 
+Study ToleranceSearch::tried_at(std::span<const double> tolerance) const {
+  Study study = programme_.at(tolerance);
+  study.seed = seed_;
+  return study;
+}
+
 std::optional<Trial> ToleranceSearch::try_all() const {
-  const Study study = programme_.at(found_.tolerance);
+  const Study study = tried_at(found_.tolerance);
   return try_machines(Plan(study, run_.poses), run_.model, study.analysis.limits, run_.options);
 }
 
 std::optional<ToleranceSearch::Tried> ToleranceSearch::try_some(const TolerancePoint& point,
                                                                 std::vector<std::uint32_t> machines) const {
-  const Study study = programme_.at(point.tolerance);
+  const Study study = tried_at(point.tolerance);
   auto trial = try_machines(Plan(study, run_.poses), run_.model, study.analysis.limits, machines, run_.options);
   if (!trial) return std::nullopt;
   return Tried{std::move(machines), *std::move(trial)};
@@ -221,7 +233,7 @@ bool ToleranceSearch::rescale(double load) {
 bool ToleranceSearch::come_near() {
   const std::size_t machines = std::max<std::size_t>(trial_machines() / kFirstOf, 1);
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
-    const Study study = programme_.at(found_.tolerance);
+    const Study study = tried_at(found_.tolerance);
     const Plan plan = Plan(study, run_.poses).with_samples(machines);
     const auto first = try_machines(plan, run_.model, study.analysis.limits, run_.options);
     if (!first) return false;
@@ -296,7 +308,7 @@ ToleranceSearch::Scores ToleranceSearch::scores() const {
       std::min(near_.machines.size(),
                std::max<std::size_t>(allowed_.design, std::min<std::size_t>(kMostOfGradient, trial_.load.size() / 30)));
   const double least = deciding_load(near_.trial.load, wanted);
-  const Plan plan(programme_.at(found_.tolerance), run_.poses);
+  const Plan plan(tried_at(found_.tolerance), run_.poses);
   std::vector<double> of_error(plan.factors().size(), 0.0);
   std::vector<double> draws(plan.factors().size());
   Scores found;
@@ -374,27 +386,6 @@ bool ToleranceSearch::improve_by_gradient() {
   return true;
 }
 
-/// Makes all tolerances coarser by one factor, as far as the design allows: after this it allows none to be coarser.
-bool ToleranceSearch::use_up() {
-  const TolerancePoint before = found_;
-  double factor = 1.0;
-  double load = deciding_load(near_.trial.load, allowed_.design);
-  for (std::size_t trial = 0; trial < kMostFits && !(load <= 1.0 && load >= 1.0 - kExact); ++trial) {
-    factor *= (1.0 - 0.5 * kExact) / load;
-    std::vector<double> wanted = before.tolerance;
-    for (double& tolerance : wanted) tolerance *= factor;
-    const TolerancePoint coarser = programme_.at_most(wanted);
-    if (coarser.tolerance == found_.tolerance) break;
-    auto near = try_near(coarser);
-    if (!near) return false;
-    load = deciding_load(near->trial.load, allowed_.design);
-    if (load > 1.0 || coarser.cost > found_.cost) continue;
-    found_ = coarser;
-    near_ = *std::move(near);
-  }
-  return true;
-}
-
 /// Finds what each part would do if it alone were coarser. Counts of rejects would drown a small part in noise, so the
 /// rejects to come are as many as machines have loads near 1, per load, times what the part adds to these loads.
 bool ToleranceSearch::try_coarser() {
@@ -414,7 +405,7 @@ bool ToleranceSearch::try_coarser() {
     variations.push_back({{errors.begin(), errors.end()}, next->tolerance[i] / found_.tolerance[i]});
     parts.push_back(i);
   }
-  const Study study = programme_.at(found_.tolerance);
+  const Study study = tried_at(found_.tolerance);
   const auto loads =
       try_variations(Plan(study, run_.poses), run_.model, study.analysis.limits, machines, variations, run_.options);
   if (!loads) return false;
@@ -428,31 +419,60 @@ bool ToleranceSearch::try_coarser() {
   return true;
 }
 
-/// Tries all machines at what was found; tightens all tolerances where machines decide that were left out.
-bool ToleranceSearch::confirm() {
+/// Takes all tolerances times one factor, so that the machines near the limit use up what the design allows: after
+/// this it allows none to be coarser. Where not even the lowest tolerances hold among them, which held among others, it
+/// leaves all as they are: the certificate decides. Precondition: near_ was tried at found_.
+bool ToleranceSearch::scale_near() {
+  const TolerancePoint before = found_;
+  const Tried near_before = near_;
+  double factor = 1.0;
+  double load = deciding_load(near_.trial.load, allowed_.design);
+  bool holds = load <= 1.0;
+  for (std::size_t trial = 0; trial < kMostTrials && !(holds && load <= 1.0 && load >= 1.0 - kExact); ++trial) {
+    factor *= (1.0 - 0.5 * kExact) / std::clamp(load, 0.5, 2.0);
+    std::vector<double> wanted = before.tolerance;
+    for (double& tolerance : wanted) tolerance *= factor;
+    const TolerancePoint next = programme_.at_most(wanted);
+    if (next.tolerance == found_.tolerance) break;
+    auto near = try_near(next);
+    if (!near) return false;
+    load = deciding_load(near->trial.load, allowed_.design);
+    if (holds && (load > 1.0 || next.cost > found_.cost)) continue;
+    holds = load <= 1.0;
+    found_ = next;
+    near_ = *std::move(near);
+  }
+  if (holds) return true;
+  found_ = before;
+  near_ = near_before;
+  return true;
+}
+
+/// Scales all tolerances once more, to machines that nothing chose by: those by which the shares of the parts were
+/// chosen make them look better than they are.
+bool ToleranceSearch::scale_to_others() {
+  seed_ = seed_of_others(run_.study, SampleIndex(1));
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
+    const std::vector<double> at = found_.tolerance;
     auto all = try_all();
     if (!all) return false;
     trial_ = *std::move(all);
-    const double load = deciding_load(trial_.load, allowed_.design);
-    if (load <= 1.0) break;
-    std::vector<double> tighter = found_.tolerance;
-    for (double& tolerance : tighter) tolerance /= std::min(load * (1.0 + 0.25 * kFine), 2.0);
-    const TolerancePoint before = found_;
-    found_ = programme_.at_most(tighter);
-    if (found_.tolerance == before.tolerance) refuse_lowest();
+    auto near = try_near(found_);
+    if (!near) return false;
+    near_ = *std::move(near);
+    if (!scale_near()) return false;
+    const double moved = largest_ratio(found_.tolerance, at);
+    for (std::size_t k = 0; k < near_.machines.size(); ++k) trial_.load[near_.machines[k]] = near_.trial.load[k];
+    if (moved < 1.0 + kFar) break;
   }
-  add_stage("all machines", trial_.load.size(), trial_.rejects());
-  auto near = try_near(found_);
-  if (!near) return false;
-  near_ = *std::move(near);
+  add_stage("scaled to other machines", trial_.load.size(), trial_.rejects());
   return true;
 }
 
 bool ToleranceSearch::find() {
   if (!linearise() || !settle_effects() || !meet_yield()) return false;
   if (near_.machines.empty()) return true;  // the lowest tolerances: nothing is left to choose
-  return improve_by_gradient() && use_up() && confirm() && try_coarser();
+  return improve_by_gradient() && scale_to_others() && try_coarser();
 }
 
 double ToleranceSearch::cost_at(double share, double wider) const {

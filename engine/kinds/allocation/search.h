@@ -26,6 +26,10 @@ struct AllowedRejects {
 /// certificate allows; both numbers of rejects are taken as normal. Precondition: machines >= trials_without_failure().
 AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines);
 
+/// The seed of a set of machines that no other part of the study draws: set 0 is the certificate's, set 1 that of the
+/// last scaling.
+std::uint64_t seed_of_others(const Study& study, SampleIndex set);
+
 /// Looks for the tolerances of a study, in stages; each stage is a run of its own, from its checkpoint on. What a stage
 /// decides follows from the study alone.
 class ToleranceSearch {
@@ -42,7 +46,9 @@ class ToleranceSearch {
   const std::vector<double>& stage_tolerance() const { return stage_tolerance_; }  ///< [stages x N].
   const std::vector<AllocationStage>& stages() const { return stages_; }           ///< The way to them.
   const AllowedRejects& allowed() const { return allowed_; }                       ///< With so many machines.
-  const Trial& trial() const { return trial_; }                                ///< The design's machines at found().
+  /// [n] Loads of the design's machines at found(); below kNear of the limit as they were before the last scaling.
+  std::span<const double> loads() const { return trial_.load; }
+  std::uint64_t rejects() const { return trial_.rejects(); }                   ///< Of these machines.
   const std::vector<double>& coarser_yield() const { return coarser_yield_; }  ///< [N] as AllocationResult has it.
   /// The last programme under limits on root mean squares, for what its prices say.
   const ToleranceLimits& limits() const { return limits_; }
@@ -61,8 +67,8 @@ class ToleranceSearch {
   bool come_near();
   bool meet_yield();
   bool improve_by_gradient();
-  bool use_up();
-  bool confirm();
+  bool scale_near();
+  bool scale_to_others();
   bool try_coarser();
 
   /// Machines of the design that were tried at some tolerances.
@@ -72,6 +78,7 @@ class ToleranceSearch {
   };
 
   std::size_t trial_machines() const { return run_.study.analysis.samples; }
+  Study tried_at(std::span<const double> tolerance) const;
   std::optional<Trial> try_all() const;
   std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
   std::optional<Tried> try_near(const TolerancePoint& point) const;
@@ -98,6 +105,7 @@ class ToleranceSearch {
   const AllocationOptions& asked_;
   ToleranceProgramme programme_;
   AllowedRejects allowed_;
+  std::uint64_t seed_;                 ///< of the machines that are tried
   double share_;                       ///< of a limit, for root mean squares
   MeanSquares squares_;                ///< at measured_
   std::vector<double> measured_;       ///< [N] tolerances at which squares_ hold

@@ -227,10 +227,10 @@ Table stages_table(const Result& found) {
               .notes = {"rms over limit: the limit on a root mean square over the limit on a value; rejects: of the "
                         "machines that were tried at these tolerances"}};
   if (found.design_machines > 0) {
-    table.notes.push_back(fmt::format(
-        "at the end {} of the design's {} are rejects; {} were allowed, so that the certificate will probably hold",
-        count_text(found.design_rejects), counted(found.design_machines, "machine", "machines"),
-        count_text(found.design_most)));
+    table.notes.push_back(
+        fmt::format("at the end {} of the design's {} are rejects; with up to {} the certificate will probably hold",
+                    count_text(found.design_rejects), counted(found.design_machines, "machine", "machines"),
+                    count_text(found.design_most)));
   }
   if (has_costs(found)) table.notes.emplace_back("gap: cost above what no tolerances of this step's problem go below");
   fill(table, positions(found.stages.size()), columns);

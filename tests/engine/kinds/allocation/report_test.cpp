@@ -157,8 +157,8 @@ TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
             "scaled to the yield    10  0.005    0.3       20 000       48\n"
             "rms over limit: the limit on a root mean square over the limit on a value; rejects: of the machines\n"
             "that were tried at these tolerances\n"
-            "at the end 48 of the design's 20 000 machines are rejects; 49 were allowed, so that the certificate\n"
-            "will probably hold\n"
+            "at the end 48 of the design's 20 000 machines are rejects; with up to 49 the certificate will\n"
+            "probably hold\n"
             "gap: cost above what no tolerances of this step's problem go below\n");
   EXPECT_EQ(text_of(table("cost_of_yield"), kUnlimitedWidth),
             "What another yield would cost\n"
