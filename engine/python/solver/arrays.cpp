@@ -46,7 +46,7 @@ void check_aligned(const py::array& array, const std::string& name, std::size_t 
   const bool c = has_order(array, py::array::c_style);
   const char* order = c ? "C order" : has_order(array, py::array::f_style) ? "Fortran order" : "no contiguous order";
   throw py::value_error(
-      fmt::format("{} has shape {} in {}, but {} is needed", name, text_of(shape_of(array)), order, wanted));
+      fmt::format("{} has shape {} in {}; needed: {}", name, text_of(shape_of(array)), order, wanted));
 }
 
 /// Throws ValueError unless this is its shape, and its order.
@@ -54,7 +54,7 @@ void check_shape(const py::array& array, const std::string& name, const Shape& s
                  const std::string& meaning = "") {
   if (shape_of(array) == shape && has_order(array, order)) return;
   refuse_shape(array, name,
-               fmt::format("shape {} in {}{}", text_of(shape),
+               fmt::format("{} in {}{}", text_of(shape),
                            order == py::array::c_style ? "C order" : "Fortran order", meaning));
 }
 
@@ -83,8 +83,8 @@ ErrorArray error_array(const py::object& given, std::size_t errors) {
     return {array.data(), shape[0], Layout::columns};
   }
   refuse_shape(array, "errors",
-               fmt::format("({}, B) in C order, a row for each error, or (B, {}) in Fortran order, which is the same "
-                           "memory, or ({},) for one sample",
+               fmt::format("({}, B) in C order, a row for each error, (B, {}) in Fortran order, which is the same "
+                           "memory, or ({},), one sample",
                            errors, errors, errors));
 }
 
@@ -92,7 +92,7 @@ ErrorArray shared_error_array(const py::object& given, std::size_t errors) {
   const ErrorArray array = error_array(given, errors);
   if (array.layout != Layout::columns) return array;
   refuse_shape(py::reinterpret_borrow<py::array>(given), "errors",
-               fmt::format("({}, B) in C order, a row for each error, or ({},) for one sample", errors, errors));
+               fmt::format("({}, B) in C order, a row for each error, or ({},), one sample", errors, errors));
 }
 
 const double* paired_error_array(const py::object& given, std::size_t poses, std::size_t errors) {
@@ -149,7 +149,7 @@ std::vector<double> pose_numbers(const py::object& given, std::size_t axes, cons
   for (const PoseCoordinate& coordinate : model.pose_coordinates) {
     names.push_back(fmt::format("{} ({})", coordinate.name, si_unit(coordinate.dimension)));
   }
-  throw py::value_error(fmt::format("{} has shape {}, but ({}{}{}) is needed: {}", name, text_of(shape),
+  throw py::value_error(fmt::format("{} has shape {}; needed: ({}{}{}): {}", name, text_of(shape),
                                     axes == 2 ? "M, " : "", names.size(), axes == 1 ? "," : "",
                                     fmt::join(names, ", ")));
 }
