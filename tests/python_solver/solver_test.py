@@ -388,6 +388,10 @@ class Refusals(unittest.TestCase):
 
 
 class Description(unittest.TestCase):
+    def test_it_has_the_programs_version(self):
+        said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
+        self.assertIn(poesy_solver.__version__, said)
+
     def test_type_hints_name_what_there_is(self):
         stub = pathlib.Path(poesy_solver.__file__).with_name("poesy_solver.pyi").read_text(encoding="utf-8")
         compile(stub, "poesy_solver.pyi", "exec")

@@ -6,10 +6,10 @@ namespace poesy::python {
 inline constexpr char kModuleText[] = R"(What errors do to a mechanism, solved on NumPy arrays where they stand.
 
     import numpy as np, poesy_solver
-    e = poesy_solver.Evaluator("2upr-rpu")
-    at_home = e.at([-0.24, 0.0, 0.0])                     # z in m, beta and gamma in rad
+    e = poesy_solver.Evaluator("robot.toml")
+    at_pose = e.at([0.1, 0.0, 0.6])                # the numbers of e.pose_coordinates, m and rad
     errors = np.random.normal(0.0, 1e-4, (len(e.errors), 1000))
-    gap, angular, linear = at_home(errors)                # each (1000,), in m, rad, m
+    responses = at_pose(errors)                    # (len(e.responses), 1000)
 
 All numbers are in SI: metres and radians, of poses, errors and responses. Arrays of errors and responses are
 factor-major: errors (P, B), a row for each error and a column for each sample, responses (R, B). They are float64,
@@ -31,10 +31,10 @@ Threads may call one evaluator at the same time; each call has working memory of
 inline constexpr char kInitText[] =
     R"(Evaluator(mechanism, *, metric="platform", fidelity="exact", factors="all", calibrated=False)
 
-mechanism   a name of the catalog ("2upr-rpu"; `poesy models` lists them), or a mechanism's file: a path object, or a
-            text that ends in ".toml" or holds a "/".
+mechanism   a name of the catalog (`poesy models` lists them), or a mechanism's file: a path object, or a text that
+            ends in ".toml" or holds a "/".
 metric      "platform" or "published": how mismatch of angle is weighed against mismatch of position. "platform" is
-            passed over where nothing is weighed. (A study file without the key takes "published" for the 2upr-rpu.)
+            passed over where nothing is weighed. (A study file without the key may take "published".)
 fidelity    "exact", or "first-order" where the mechanism has it.
 factors     the errors that are given, in the order of the rows of an array: a factor set, "all", or a list of names.
             The others are zero.
