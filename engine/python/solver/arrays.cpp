@@ -53,9 +53,9 @@ void check_aligned(const py::array& array, const std::string& name, std::size_t 
 void check_shape(const py::array& array, const std::string& name, const Shape& shape, int order,
                  const std::string& meaning = "") {
   if (shape_of(array) == shape && has_order(array, order)) return;
-  refuse_shape(array, name,
-               fmt::format("{} in {}{}", text_of(shape),
-                           order == py::array::c_style ? "C order" : "Fortran order", meaning));
+  refuse_shape(
+      array, name,
+      fmt::format("{} in {}{}", text_of(shape), order == py::array::c_style ? "C order" : "Fortran order", meaning));
 }
 
 void check_writeable(const py::array& array, const std::string& name) {
