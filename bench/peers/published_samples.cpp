@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <span>
 #include <stdexcept>
 
 #include "bench/published_study.h"
@@ -68,15 +70,35 @@ void write_samples(const std::filesystem::path& folder, const Study& study, std:
   }
 }
 
+/// What solver_bench's all_errors solves at 0.1 mm and 0.1 deg, as plain numbers: the poses [158 x 3], and blocks
+/// [8 x 71 x 1000], of which the n-th is for pose 31 n mod 158.
+void write_all_errors(const std::filesystem::path& folder) {
+  const Study study = bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  const PoseSet poses = select_poses(study.poses, *build_model(study.mechanism)).poses;
+  const auto append = [&](const char* name, std::span<const double> numbers) {
+    std::ofstream(folder / name, std::ios::binary | std::ios::app)
+        .write(reinterpret_cast<const char*>(numbers.data()), static_cast<std::streamsize>(numbers.size_bytes()));
+  };
+  for (std::size_t m = 0; m < poses.size(); ++m) append("poses.f64", poses[PoseIndex(m)]);
+  for (std::size_t n = 0; n < 8; ++n) {
+    append("all_errors.f64", bench::samples_of_all_errors(study, 0.1, PoseIndex(n), bench::kPublishedSamples));
+  }
+}
+
 }  // namespace
 
 /// published_samples FOLDER CELLS SAMPLES: part of the published study as CSV, for solvers written in other languages.
+/// published_samples FOLDER: the blocks of all errors that solver_bench solves, for the module for Python.
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    fmt::print(stderr, "usage: published_samples FOLDER CELLS SAMPLES (of each cell, at most 1000)\n");
+  if (argc != 4 && argc != 2) {
+    fmt::print(stderr, "usage: published_samples FOLDER [CELLS SAMPLES (of each cell, at most 1000)]\n");
     return 2;
   }
   const std::filesystem::path folder = argv[1];
+  if (argc == 2) {
+    write_all_errors(folder);
+    return 0;
+  }
   const auto samples = static_cast<std::size_t>(std::strtoull(argv[3], nullptr, 10));
   Study study = bench::published_study(bench::kPublishedPoses, samples);
   study.solver.method = SolverOptions::Method::gauss_newton;

@@ -18,7 +18,7 @@ std::string sentence(const std::string& place, std::string_view problem, std::st
 
 std::string to_string(const Place& place) {
   std::string text = place.file;
-  if (place.line == 0) return text;
+  if (text.empty() || place.line == 0) return text;
   text += ":" + std::to_string(place.line);
   if (place.column != 0) text += ":" + std::to_string(place.column);
   return text;

@@ -14,7 +14,7 @@ struct Place {
   std::size_t column = 0;  ///< counts from 1, in bytes; 0 where there is none
 };
 
-/// "FILE", "FILE:LINE" or "FILE:LINE:COL", as much as is known; empty for an empty place.
+/// "FILE", "FILE:LINE" or "FILE:LINE:COL", as much as is known; empty where there is no file.
 std::string to_string(const Place& place);
 
 /// The user's command line, study or data is wrong. Ends the program with exit code 2.

@@ -34,7 +34,7 @@ set_tests_properties(architecture.include_table architecture.include_table_finds
 # Every public header compiles alone, with nothing but what the exported targets offer: one source a header.
 file(GLOB_RECURSE public_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine/*.h
      ${PROJECT_SOURCE_DIR}/models/*.h)
-list(FILTER public_headers EXCLUDE REGEX ^engine/app/)
+list(FILTER public_headers EXCLUDE REGEX "^engine/(app|python)/")
 foreach(header IN LISTS public_headers)
   string(MAKE_C_IDENTIFIER ${header} name)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)

@@ -36,6 +36,7 @@ LIBRARIES = {
     "fmt": ("fmt/*",),
     "xsimd": ("xsimd/*",),
     "nlohmann-json": ("nlohmann/*",),
+    "pybind11": ("pybind11/*",),
     "sanitizers": ("sanitizer/*",),
     "intrinsics": ("*intrin.h", "arm_neon.h"),
     "GoogleTest": ("gtest/*", "gmock/*"),
