@@ -53,6 +53,18 @@ class Finished:
     code: int
     output: str = ""
     messages: list[str] = field(default_factory=list)
+    unnamed: str | None = None  # see start
+
+    def take(self, line: str, stacklevel: int) -> None:
+        """Keeps a line that the program said, or warns of it."""
+        words = line.removeprefix(_BEGINNING)
+        warns = line.startswith(_WARNING)
+        words = words.removeprefix(_WARNING.removeprefix(_BEGINNING)) if warns else words
+        words = words.removeprefix(f"{self.unnamed}: ") if self.unnamed else words
+        if warns:
+            warnings.warn(words, PoesyWarning, stacklevel=stacklevel + 1)
+        elif words:
+            self.messages.append(words)
 
 
 def find() -> str:
@@ -92,15 +104,18 @@ def start(
     arguments: Sequence[str | os.PathLike[str]],
     folder: Path | None = None,
     on_progress: Callable[[Progress], object] | None = None,
+    unnamed: str | None = None,
 ) -> Finished:
     """Runs the program to its end. Its warnings become `PoesyWarning`.
+
+    unnamed: a file that the user does not know, so that no message begins with it.
 
     Ctrl-C, and an exception in `on_progress`, stop the program as one Ctrl-C on a terminal does, wait for it, and go on as
     exceptions; a second Ctrl-C ends it at once. The program is in a process group of its own, so that it gets one signal
     and not two.
     """
     command = [find(), *(os.fspath(word) for word in arguments)]
-    done = Finished(code=0)
+    done = Finished(code=0, unnamed=unnamed)
     with tempfile.TemporaryFile() as printed:
         try:
             process = subprocess.Popen(
@@ -130,17 +145,10 @@ def _follow(process: subprocess.Popen[str], done: Finished, on_progress: Callabl
         line = line.rstrip("\n")
         progress = _PROGRESS.match(line)
         if progress is None:
-            _take(line, done)
+            done.take(line, stacklevel=4)  # that of run() and evaluate()
         elif on_progress is not None:
             on_progress(Progress(float(progress["percent"]) / 100.0, int(progress["stage"] or 1), line))
     process.wait()
-
-
-def _take(line: str, done: Finished) -> None:
-    if line.startswith(_WARNING):
-        warnings.warn(line.removeprefix(_WARNING), PoesyWarning, stacklevel=6)
-    elif line:
-        done.messages.append(line.removeprefix(_BEGINNING))
 
 
 def _stop(process: subprocess.Popen[str], done: Finished) -> None:
@@ -152,7 +160,7 @@ def _stop(process: subprocess.Popen[str], done: Finished) -> None:
         raise
     for line in said.splitlines():
         if not _PROGRESS.match(line):
-            done.messages.append(line.removeprefix(_BEGINNING))
+            done.take(line, stacklevel=4)
 
 
 def exception_of(done: Finished) -> Error:

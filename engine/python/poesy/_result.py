@@ -65,6 +65,10 @@ class Result:
                 axis: dict(zip(_h5.texts(file, names), _h5.texts(file, units)))
                 for axis, (names, units) in _UNITS.items() if names in file and units in file
             }  # fmt: skip
+            self._descriptions = {
+                axis: dict(zip(_h5.texts(file, f"{axis}s/name"), _h5.texts(file, f"{axis}s/description")))
+                for axis in ("response", "factor") if f"{axis}s/description" in file
+            }  # fmt: skip
             self.verdict = verdict(file)
         self.study: dict[str, Any] = tomllib.loads(self._study_text)
 
@@ -112,7 +116,7 @@ class Result:
         if group not in self._groups:
             with _h5.opened(self.path) as file:
                 self._groups[group] = _h5.dataset_of(file[group], self._units)
-        return self._groups[group].copy()
+        return self._groups[group].copy(deep=True)
 
     def units(self, axis: str) -> dict[str, str]:
         """SI units by name. axis: "response", "factor" (errors) or "part"."""
@@ -120,11 +124,7 @@ class Result:
 
     def description(self, axis: str, name: str) -> str:
         """A response or an error in words: which limb, joint and axis. axis: "response" or "factor"."""
-        group = self.to_xarray(_UNITS[axis][0].partition("/")[0])
-        if "description" not in group:
-            return ""
-        found = [str(words) for one, words in zip(group["name"].values, group["description"].values) if one == name]
-        return found[0] if found else ""
+        return self._descriptions.get(axis, {}).get(name, "")
 
     def response(self, name: str | None = None) -> str:
         """The response of this name, or the one that the program ranks by: of those that the mechanism puts first, the

@@ -77,7 +77,8 @@ def run(
         else:
             path = Path(study)
         result_path = Path(output) if output is not None else Path(folder or ".") / "study.h5"
-        done = _program.start(_arguments(path, result_path, threads, seed, progress, resume), on_progress=_listener(progress))
+        words = _arguments(path, result_path, threads, seed, progress, resume)
+        done = _program.start(words, on_progress=_listener(progress), unnamed=str(path) if text else None)
         result = _result_of(done, result_path)
     except (Interrupted, KeyboardInterrupt):
         raise
