@@ -173,7 +173,8 @@ class Mechanisms(FolderTest):
         folder = kept.path.parent
         self.assertEqual(kept.path.name, "rps3.toml")
         self.assertTrue(folder.exists())
-        self.assertIn("<svg", kept._repr_svg_())
+        self.assertRegex(kept._repr_html_(), '^<img alt="rps3: 3-RPS, [^"]*" src="data:image/svg.xml;base64,[^"]*">$')
+        self.assertIsNone(poesy.mechanism("3-prs")._repr_html_())
         self.assertTrue(kept.picture("rps3.svg").exists())
         del kept
         self.assertFalse(folder.exists())

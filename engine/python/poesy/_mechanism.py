@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import html
 import os
 import re
 import shutil
@@ -106,11 +108,14 @@ class Mechanism:
             raise NotInResult(f"{self.name} is built in; pictures are made of mechanisms from files")
         return self.path
 
-    def _repr_svg_(self) -> str | None:
+    def _repr_html_(self) -> str | None:
+        """The picture as an image of its own, because pages that are made of notebooks leave out SVG in other forms."""
         if self.path is None:
             return None
         with tempfile.TemporaryDirectory() as folder:
-            return self.picture(Path(folder) / "picture.svg").read_text(encoding="utf-8")
+            drawn = base64.b64encode(self.picture(Path(folder) / "picture.svg").read_bytes()).decode()
+        words = html.escape(f"{self.name}: {self.title}, four views of its joints at home")
+        return f'<img alt="{words}" src="data:image/svg+xml;base64,{drawn}">'
 
 
 def mechanism(

@@ -249,6 +249,8 @@ def _sensitivity(result: Result, response: str | None) -> Ranking:
             )  # fmt: skip
         )
     in_units = dict.fromkeys(("effect", "effect_low", "effect_high"), effect_unit.name)
+    if len(set(units)) == 1:
+        in_units |= dict.fromkeys(("index", "index_low", "index_high"), f"{effect_unit.name}/{shown(str(units[0])).name}")
     return Ranking(f"Effect of each error on {response} at the size the study gives it", "effect", "error", tuple(rows), in_units)
 
 
