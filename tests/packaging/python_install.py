@@ -33,11 +33,13 @@ def run(command, **options):
 
 def install(python, folder):
     """Makes the environment V in the folder and installs a copy of the package; gives V's Python, or None."""
-    shutil.copytree(ROOT / "engine" / "python", folder / "python", ignore=shutil.ignore_patterns("build", "*.egg-info", "__pycache__"))
+    left_out = shutil.ignore_patterns("build", "*.egg-info", "__pycache__")
+    shutil.copytree(ROOT / "engine" / "python", folder / "python", ignore=left_out)
     python_there = folder / "V" / "bin" / "python"
+    pip = [python_there, "-m", "pip", "--disable-pip-version-check", "install", "--no-index"]
     commands = (
         [python, "-m", "venv", "--system-site-packages", folder / "V"],
-        [python_there, "-m", "pip", "--disable-pip-version-check", "install", "--no-index", "--no-build-isolation", "--no-deps", folder / "python"],
+        [*pip, "--no-build-isolation", "--no-deps", folder / "python"],
     )
     return python_there if all(run(command, cwd=folder) == 0 for command in commands) else None
 
@@ -55,7 +57,8 @@ def main():
         if python is None or run([python, "-c", LOOK], cwd=folder, env=environment) != 0:
             return 1
         code = run([python, "-B", NOTEBOOK, folder / "python" / "tutorial.ipynb"], cwd=folder, env=environment)
-    print({0: "installed, and the notebook runs", NOT_RUN: "installed; the notebook was not run"}.get(code, "the notebook fails"))
+    words = {0: "installed, and the notebook runs", NOT_RUN: "installed; the notebook was not run"}
+    print(words.get(code, "the notebook fails"))
     return code
 
 

@@ -36,8 +36,10 @@ def executed(path):
         (kernel / "kernel.json").write_text(json.dumps({"argv": argv, "display_name": "this", "language": "python"}))
         os.environ["JUPYTER_PATH"] = folder
         os.environ.setdefault("IPYTHONDIR", folder)
+        os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # else the kernel complains of Python's own modules
         os.environ.pop("MPLBACKEND", None)  # figures inline
-        nbclient.NotebookClient(notebook, timeout=300, kernel_name="this", resources={"metadata": {"path": folder}}).execute()
+        resources = {"metadata": {"path": folder}}
+        nbclient.NotebookClient(notebook, timeout=300, kernel_name="this", resources=resources).execute()
     return notebook
 
 

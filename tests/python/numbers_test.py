@@ -67,7 +67,6 @@ class Numbers(FolderTest):
     def test_salib(self):
         for name in ("sobol", "sobol of groups"):
             found = result(name)
-            found.path.with_suffix("")
             poesy._program.call("export", found.path, "-d", "tables")
             for response in found.units("response"):
                 indices = found.to_salib(response)
@@ -100,7 +99,8 @@ class Numbers(FolderTest):
         for name in ("monte-carlo", "machines"):
             found = result(name)
             rows = shown(found)["first_order"]["rows"]
-            self.check(found.ranking()[: len(rows)], rows, {"name": "error", "S1": "S1_gap", "S1_low": "S1_ci_low_gap", "S1_high": "S1_ci_high_gap"})
+            columns = {"name": "error", "S1": "S1_gap", "S1_low": "S1_ci_low_gap", "S1_high": "S1_ci_high_gap"}
+            self.check(found.ranking()[: len(rows)], rows, columns)
 
     def test_allocation(self):
         found = result("allocation")

@@ -10,13 +10,18 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["POESY_PROGRAM"]
 os.environ["POESY"] = PROGRAM
 os.environ.setdefault("MPLBACKEND", "agg")
-sys.path.insert(0, str(ROOT / "engine" / "python"))
+os.environ["PYTHONPATH"] = str(ROOT / "engine" / "python")  # for processes that a test starts
+sys.path.insert(0, os.environ["PYTHONPATH"])
 
 import poesy  # noqa: E402
 
 NOT_RUN = 77
-ERRORS = {"linear": {"distribution": "normal", "sigma": "0.05 mm"}, "angular": {"distribution": "normal", "sigma": "0.02 deg"}}
+ERRORS = {
+    "linear": {"distribution": "normal", "sigma": "0.05 mm"},
+    "angular": {"distribution": "normal", "sigma": "0.02 deg"},
+}
 PLATFORM = {"metric": "platform"}
+HOPELESS = {"method": "gauss-newton", "max_iterations": 1, "not_converged": "fail"}  # a solver that solves nothing
 
 
 def study(analysis, model="2upr-rpu", poses=4, **more):

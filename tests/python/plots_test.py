@@ -27,9 +27,11 @@ class Plots(unittest.TestCase):
                 ranked = found.ranking()[:7]
                 self.assertEqual(axes.get_xlabel(), label)
                 self.assertEqual([text.get_text() for text in axes.get_yticklabels()], [row.name for row in ranked])
-                np.testing.assert_array_equal([bar.get_width() for bar in axes.patches], [getattr(row, ranked.value) for row in ranked])
+                widths = [bar.get_width() for bar in axes.patches]
+                np.testing.assert_array_equal(widths, [getattr(row, ranked.value) for row in ranked])
                 self.assertTrue(axes.yaxis_inverted())
-        self.assertEqual(result("sensitivity").plot.ranking("angular_deformation").get_xlabel(), "effect on angular_deformation [deg]")
+        label = result("sensitivity").plot.ranking("angular_deformation").get_xlabel()
+        self.assertEqual(label, "effect on angular_deformation [deg]")
 
     def test_intervals_of_the_ranking(self):
         found = result("sensitivity")
@@ -53,7 +55,8 @@ class Plots(unittest.TestCase):
         sigma = np.deg2rad(0.02)
         np.testing.assert_allclose(self.values(axes), group["local"].values * sigma * 1e3, rtol=1e-12)
         poses = found.to_xarray("poses")
-        np.testing.assert_allclose(axes.collections[0].get_offsets(), np.stack([poses["z"] * 1e3, np.rad2deg(poses["beta"])], axis=1))
+        expected = np.stack([poses["z"] * 1e3, np.rad2deg(poses["beta"])], axis=1)
+        np.testing.assert_allclose(axes.collections[0].get_offsets(), expected)
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("z [mm]", "beta [deg]"))
         self.assertEqual(axes.figure.axes[-1].get_ylabel(), "effect of epsilon_1_1_x on gap [mm]")
         other = found.plot.field(x="beta", y="gamma")
@@ -108,7 +111,8 @@ class Plots(unittest.TestCase):
         self.assertEqual(axes.get_xlabel(), "good machines [%]")
         self.assertIn("asked: 90 %", [text.get_text() for text in axes.get_legend().get_texts()])
         certificate = result("allocation").plot.yields()
-        np.testing.assert_allclose(certificate.lines[0].get_xdata(), 100 * result("allocation").to_xarray("allocation/certificate")["yield"])
+        group = result("allocation").to_xarray("allocation/certificate")
+        np.testing.assert_allclose(certificate.lines[0].get_xdata(), 100 * group["yield"])
 
     def test_what_a_kind_does_not_have(self):
         cases = {

@@ -13,7 +13,7 @@ import warnings
 from pathlib import Path
 from unittest import mock
 
-from package import PROGRAM, ROOT, STUDIES, FolderTest, main, poesy, result, study
+from package import HOPELESS, PROGRAM, ROOT, STUDIES, FolderTest, main, poesy, result, study
 
 RPS3 = (ROOT / "tests" / "data" / "mechanisms" / "rps3.toml").read_text()
 LONG = study({"kind": "sensitivity", "samples": 10**8}, poses=50)
@@ -66,7 +66,7 @@ class Runs(FolderTest):
         self.assertEqual(result("sensitivity").messages, ())
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            found = poesy.run(study({"kind": "sensitivity", "samples": 50}, solver={"method": "gauss-newton", "max_iterations": 1, "not_converged": "fail"}))
+            found = poesy.run(study({"kind": "sensitivity", "samples": 50}, solver=HOPELESS))
         self.assertTrue(any("did not converge" in str(one.message) and one.category is poesy.PoesyWarning for one in caught))
         self.assertEqual(found.kind, "sensitivity")
 
@@ -118,8 +118,8 @@ class Errors(FolderTest):
         self.assertLessEqual(set(Path(os.environ.get("TMPDIR", "/tmp")).glob("poesy-*")), before)
 
     def test_all_are_errors_of_the_package(self):
-        for kind in (poesy.StudyError, poesy.FileError, poesy.DamagedFile, poesy.Interrupted, poesy.InternalError, poesy.ProgramNotFound, poesy.NotInResult):
-            self.assertTrue(issubclass(kind, poesy.Error))
+        for name in ("StudyError", "FileError", "DamagedFile", "Interrupted", "InternalError", "ProgramNotFound", "NotInResult"):
+            self.assertTrue(issubclass(getattr(poesy, name), poesy.Error))
 
 
 class Programs(FolderTest):
@@ -169,7 +169,10 @@ class Programs(FolderTest):
             poesy.run("study.toml")
 
     def test_progress(self):
-        lines = ["12.5 % done, 7.21 M solves/s, 0 not converged, 4 s left", "stage 2: 50.0 % done, 720 solves/s, 3 not converged (0.1 %), 1 min left"]
+        lines = [
+            "12.5 % done, 7.21 M solves/s, 0 not converged, 4 s left",
+            "stage 2: 50.0 % done, 720 solves/s, 3 not converged (0.1 %), 1 min left",
+        ]
         said = "".join(f"echo '{line}' >&2; " for line in lines)
         poesy.program = self.fake(f"{said} echo 'poesy: warning: take care' >&2; cp {result('sensitivity').path} $4")
         heard = []
@@ -246,7 +249,8 @@ class Interruption(FolderTest):
 
     def test_a_callback_that_fails_stops_the_program(self):
         fake = self.folder / "poesy"
-        fake.write_text("#!/bin/sh\ntrap 'echo poesy: stopped >&2; exit 4' INT\necho '1.0 % done, x' >&2\nsleep 60 >&- 2>&- & wait $!\n")
+        ends = "trap 'echo poesy: stopped >&2; exit 4' INT"
+        fake.write_text(f"#!/bin/sh\n{ends}\necho '1.0 % done, x' >&2\nsleep 60 >&- 2>&- & wait $!\n")
         fake.chmod(0o755)
         self.addCleanup(setattr, poesy, "program", None)
         poesy.program = fake

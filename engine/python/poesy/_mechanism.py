@@ -21,7 +21,9 @@ _VECTOR = rf"\(({_NUMBER}), ({_NUMBER}), ({_NUMBER})\)"
 _FRAME = re.compile(rf"  (?P<name>\S+) +(?P<joint>\S+)(?: +(?P<type>\S.*?))? +{_VECTOR} +{_VECTOR} +{_VECTOR}")
 _COORDINATE = re.compile(rf"  (\S+) +({_NUMBER}) to ({_NUMBER}) +(\S+) (.*)")
 _NAMED = re.compile(r"  (\S+) +(\S+) (.*)")
-_RESPONSES = re.compile(r'responses(?: by \[solver\] metric = "(?P<metric>[^"]*)")?(?P<usual>, which a study without the key has)?')
+_RESPONSES = re.compile(
+    r'responses(?: by \[solver\] metric = "(?P<metric>[^"]*)")?(?P<usual>, which a study without the key has)?'
+)
 
 
 class Coordinate(NamedTuple):
@@ -81,7 +83,7 @@ class Mechanism:
         self.text = text
         self.name, _, self.title = text.splitlines()[0].partition(": ")
         sections = dict(_sections(text))
-        self.coordinates = tuple(_coordinate(line) for line in sections.get("pose coordinates and default workspace", ()) if _COORDINATE.fullmatch(line))
+        self.coordinates = _coordinates(sections.get("pose coordinates and default workspace", []))
         self.errors = _named(sections.get("error factors", []))
         self.frames = tuple(_frames(sections.get("joints and frames at home, in the base frame", [])))
         self.responses, self.responses_by_metric = _responses(sections)
@@ -206,12 +208,13 @@ def _named(lines: list[str]) -> tuple[Named, ...]:
     return tuple(Named(*match.groups()) for match in matches if match)
 
 
-def _coordinate(line: str) -> Coordinate:
-    match = _COORDINATE.fullmatch(line)
-    assert match is not None
-    name, lower, upper, unit, description = match.groups()
-    scale = 1e-3 if unit == "mm" else 1.0
-    return Coordinate(name, float(lower) * scale, float(upper) * scale, "m" if unit == "mm" else unit, description.strip())
+def _coordinates(lines: list[str]) -> tuple[Coordinate, ...]:
+    found = []
+    for match in filter(None, map(_COORDINATE.fullmatch, lines)):
+        name, lower, upper, unit, description = match.groups()
+        scale, si_unit = (1e-3, "m") if unit == "mm" else (1.0, unit)
+        found.append(Coordinate(name, float(lower) * scale, float(upper) * scale, si_unit, description.strip()))
+    return tuple(found)
 
 
 def _responses(sections: Mapping[str, list[str]]) -> tuple[tuple[Named, ...], dict[str, tuple[Named, ...]]]:

@@ -121,7 +121,9 @@ class Plots:
         axes.figure.colorbar(drawn, ax=axes, label=labelled(shown_field.label, shown_field.unit))
         return axes
 
-    def main_effects(self, response: str | None = None, errors: str | Sequence[str] | None = None, *, ax: Axes | None = None) -> Axes:
+    def main_effects(
+        self, response: str | None = None, errors: str | Sequence[str] | None = None, *, ax: Axes | None = None
+    ) -> Axes:
         """The mean of a response while one error is known and all others vary, with its interval as a band.
 
         Of kind monte-carlo.
@@ -153,7 +155,8 @@ class Plots:
             curve = group.sel(factor=name)
             over = group["error"].sel(factor=name).values / scale
             line = axes.plot(over, curve["mean"].values / unit.si, label=name)[0]
-            axes.fill_between(over, curve["ci_low"].values / unit.si, curve["ci_high"].values / unit.si, alpha=0.2, color=line.get_color())
+            low, high = curve["ci_low"].values / unit.si, curve["ci_high"].values / unit.si
+            axes.fill_between(over, low, high, alpha=0.2, color=line.get_color())
         alone = len(wanted) == 1
         axes.set_xlabel(labelled(wanted[0], error_unit.name) if alone else "error [standard deviations]")
         axes.set_ylabel(labelled(f"mean of {response}", unit.name))
@@ -229,7 +232,8 @@ class Plots:
             return _allocation_field(result, response)
         if result.kind not in fields:
             known = ", ".join([*fields, "monte-carlo", "allocation"])
-            raise NotInResult(f"{result.path}: a result of kind {result.kind} has no values over poses to draw; kinds that have: {known}")
+            lacks = f"a result of kind {result.kind} has no values over poses to draw"
+            raise NotInResult(f"{result.path}: {lacks}; kinds that have: {known}")
         return fields[result.kind](result, result.response(response), of)
 
 
@@ -257,7 +261,8 @@ def _monte_carlo_field(result: Result, response: str | None, quantity: str) -> _
         raise NotInResult(f"{result.path}: quantity is {quantity!r}; it is one of {', '.join(quantities)}")
     name = result.response(response)
     unit = Unit(*result.response_unit(name))
-    return _Field(result.to_xarray("monte_carlo")[quantity].sel(response=name).values / unit.si, f"{quantity} of {name}", unit.name)
+    found = result.to_xarray("monte_carlo")[quantity].sel(response=name)
+    return _Field(found.values / unit.si, f"{quantity} of {name}", unit.name)
 
 
 def _evaluate_field(result: Result, response: str, of: str | None) -> _Field:

@@ -251,7 +251,8 @@ def _sensitivity(result: Result, response: str | None) -> Ranking:
     in_units = dict.fromkeys(("effect", "effect_low", "effect_high"), effect_unit.name)
     if len(set(units)) == 1:
         in_units |= dict.fromkeys(("index", "index_low", "index_high"), f"{effect_unit.name}/{shown(str(units[0])).name}")
-    return Ranking(f"Effect of each error on {response} at the size the study gives it", "effect", "error", tuple(rows), in_units)
+    title = f"Effect of each error on {response} at the size the study gives it"
+    return Ranking(title, "effect", "error", tuple(rows), in_units)
 
 
 def _sobol(result: Result, response: str | None) -> Ranking:
@@ -276,7 +277,8 @@ def _monte_carlo(result: Result, response: str | None) -> Ranking:
     response = result.response(response)
     group = result.to_xarray("monte_carlo")
     if "S1" not in group:
-        raise NotInResult(f"{result.path}: an older poesy ({result.attrs.get('poesy_version')}) wrote it, without S1; run it again")
+        writer = f"an older poesy ({result.attrs.get('poesy_version')})"
+        raise NotInResult(f"{result.path}: {writer} wrote it, without S1; run it again")
     found = group.sel(response=response)
     alone = _with_ends(found, "S1")
     names = [str(name) for name in found["factor"].values]
@@ -284,7 +286,8 @@ def _monte_carlo(result: Result, response: str | None) -> Ranking:
         MonteCarloRow(rank, names[p], *alone[p], result.description("factor", names[p]))
         for rank, p in enumerate(_in_order([value for value, _, _ in alone]), start=1)
     )
-    return Ranking(f"First-order indices: the part of the variance of {response} that an error makes alone", "S1", "error", rows)
+    title = f"First-order indices: the part of the variance of {response} that an error makes alone"
+    return Ranking(title, "S1", "error", rows)
 
 
 def _allocation(result: Result, response: str | None) -> Ranking:
@@ -300,8 +303,12 @@ def _allocation(result: Result, response: str | None) -> Ranking:
         tolerance, sigma, cost, share, mean_square = (
             float(part[name]) for name in ("tolerance", "sigma", "cost", "share", "mean_square_share")
         )
-        name, members = str(part["part"].values), str(part["members"].values)
-        rows.append(AllocationRow(rank, name, tolerance / unit.si, unit.name, sigma / unit.si, cost, share, mean_square, members))
+        rows.append(
+            AllocationRow(
+                rank, str(part["part"].values), tolerance / unit.si, unit.name, sigma / unit.si, cost, share, mean_square,
+                str(part["members"].values),
+            )  # fmt: skip
+        )
     title = f"Tolerances of {len(rows)} parts, {result.verdict}"
     return Ranking(title, "cost" if has_costs else by, "part", tuple(rows))
 
@@ -335,7 +342,8 @@ _KINDS: dict[str, Callable[[Result, str | None], Ranking]] = {
 def to_salib(result: Result, response: str | None) -> dict[str, Any]:
     """See `Result.to_salib`."""
     if result.kind != "sobol":
-        raise NotInResult(f"{result.path}: a result of kind {result.kind} has no Sobol' indices of SALib's form; kind sobol has")
+        lacks = f"a result of kind {result.kind} has no Sobol' indices of SALib's form"
+        raise NotInResult(f"{result.path}: {lacks}; kind sobol has")
     found = result.to_xarray("sobol/aggregated").sel(response=result.response(response))
     axis = "group" if "group" in found.dims else "factor"
     indices: dict[str, Any] = {"names": [str(name) for name in found[axis].values]}

@@ -184,7 +184,10 @@ class Result:
         return to_salib(self, response)
 
     def show(self, *options: str) -> str:
-        """The tables of ``poesy show``, with its options: ``print(result.show("--top", "5"))``. Raises as the program does."""
+        """The tables of ``poesy show``, with its options: ``print(result.show("--top", "5"))``.
+
+        Raises as the program does.
+        """
         return _program.call("show", self.path.absolute(), *options)
 
     def report(self, path: str | os.PathLike[str]) -> Path:

@@ -125,7 +125,8 @@ def _listener(progress: Callable[[Progress], object] | bool | None) -> Callable[
 
 def _result_of(done: _program.Finished, path: Path) -> Result:
     if done.code == _program.TOO_MANY_NOT_CONVERGED:
-        warnings.warn(done.messages[-1] if done.messages else "too many samples did not converge", PoesyWarning, stacklevel=3)
+        words = done.messages[-1] if done.messages else "too many samples did not converge"
+        warnings.warn(words, PoesyWarning, stacklevel=3)
     elif done.code not in (_program.DONE, _program.LIMIT_NOT_KEPT):
         raise _program.exception_of(done)
     return Result(path, tuple(done.messages))

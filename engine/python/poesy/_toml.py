@@ -33,7 +33,7 @@ def dumps(table: Mapping[str, Any]) -> str:
 
 
 def plain(value: Any, path: tuple[str, ...] = ()) -> Any:
-    """The same with ``dict``, ``list``, ``str``, ``int``, ``float`` and ``bool`` alone. Raises `StudyError` as `dumps` does."""
+    """The same with ``dict``, ``list``, ``str``, ``int``, ``float`` and ``bool`` alone. Raises as `dumps` does."""
     if isinstance(value, (bool, str, int, float)) and not isinstance(value, np.generic):
         return value
     if isinstance(value, Mapping):

@@ -7,11 +7,9 @@ from typing import Any
 
 import h5py
 
-from ._h5 import text
-
 
 def verdict(file: h5py.File) -> str | None:
-    """"kept", "not kept" or "undecided" where the study has limits; "certified" or "not certified" for tolerances; else None."""
+    """What `Result.verdict` says."""
     if "allocation" in file:
         return "certified" if file["allocation"].attrs["certified"] == 1 else "not certified"
     if "limits" not in file:
@@ -21,11 +19,6 @@ def verdict(file: h5py.File) -> str | None:
         asked = float(limits.attrs.get("yield", 0.0))
         return _of_yield(file["yield"], asked) if asked > 0.0 else None
     return "kept" if bool(limits["passed"][...].all()) else "not kept"
-
-
-def decision(file: h5py.File) -> str:
-    """Of a result of kind allocation: "kept", "not_kept" or "undecided", what the machines of the certificate show."""
-    return text(file, "allocation/certificate/decision")
 
 
 def _of_yield(found: Any, asked: float) -> str:
