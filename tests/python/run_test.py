@@ -247,6 +247,22 @@ class Interruption(FolderTest):
         resumed = poesy.run(asked, output="part.h5", resume=True)
         self.assertEqual(resumed.attrs["content_sha256"], whole.attrs["content_sha256"])
 
+    def test_progress_of_a_long_run(self):
+        """The program's own line, after five seconds. The callback stops the run."""
+        heard = []
+
+        def listen(progress):
+            heard.append(progress)
+            raise RuntimeError("enough")
+
+        with self.assertRaisesRegex(RuntimeError, "enough") as raised:
+            poesy.run(LONG, output="out.h5", progress=listen)
+        self.assertEqual(len(heard), 1)
+        self.assertTrue(0.0 <= heard[0].share < 0.5 and heard[0].stage == 1, heard)
+        self.assertRegex(str(heard[0]), r"^[\d.]+ % done, .* solves/s, \d+ not converged.*, .* left$")
+        self.assertTrue(Path("out.h5.part").exists())
+        self.assertIn("--resume", raised.exception.__notes__[0])
+
     def test_a_callback_that_fails_stops_the_program(self):
         fake = self.folder / "poesy"
         ends = "trap 'echo poesy: stopped >&2; exit 4' INT"
