@@ -10,7 +10,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from package import STUDIES, FolderTest, poesy, result
+from package import ROOT, STUDIES, FolderTest, poesy, result
 
 from poesy import _verdict
 
@@ -61,6 +61,15 @@ class Files(unittest.TestCase):
         for name in STUDIES:
             found = self.check(result(name).path)
             self.assertEqual(found.study["analysis"]["kind"], found.kind)
+
+    def test_a_file_of_an_older_version(self):
+        found = self.check(ROOT / "tests" / "data" / "monte_carlo_0_1.h5")
+        with self.assertRaisesRegex(poesy.NotInResult, "an older poesy wrote it; run the study again"):
+            found.ranking()
+        with self.assertRaisesRegex(poesy.NotInResult, "since 0.2"):
+            found.plot.main_effects()
+        axes = found.plot.field()
+        self.assertRegex(axes.figure.axes[-1].get_ylabel(), "^mean of linear_deformation")
 
     def test_axes_have_names_and_units(self):
         found = result("sensitivity").to_xarray("sensitivity")

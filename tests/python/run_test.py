@@ -213,7 +213,7 @@ except KeyboardInterrupt as error:
 class Interruption(FolderTest):
     def interrupted(self, asked, *, to_group):
         """Ctrl-C in a terminal goes to the whole group of processes in the foreground."""
-        environment = os.environ | {"PYTHONPATH": str(ROOT / "engine" / "python")}
+        environment = os.environ | {"TMPDIR": str(self.folder)}  # where the study's file is kept
         command = [sys.executable, "-B", "-c", INTERRUPTED, json.dumps(asked), str(self.folder / "out.h5")]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True) as run:
             time.sleep(2.5)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from ._result import Result
 
+_QUANTITIES = ("rms", "mean", "std", "min", "max")
 _BAR, _LINE = "#7da7d9", "#1f3b5c"
 _INTERVALS = {
     "effect": ("effect_low", "effect_high", "effect on {response}"),
@@ -136,7 +137,8 @@ class Plots:
         """
         result = self._result
         if "monte_carlo/main_effect" not in result.groups:
-            raise NotInResult(f"{result.path}: a result of kind {result.kind} has no main effects; kind monte-carlo has")
+            lacks = f"this result of kind {result.kind} has no main effects"
+            raise NotInResult(f"{result.path}: {lacks}; kind monte-carlo has, since 0.2")
         response = result.response(response)
         group = result.to_xarray("monte_carlo/main_effect").sel(response=response)
         factors = result.to_xarray("factors")
@@ -227,7 +229,7 @@ class Plots:
             "coupling": _coupling_field,
         }
         if result.kind == "monte-carlo":
-            return _monte_carlo_field(result, response, quantity or "rms")
+            return _monte_carlo_field(result, response, quantity)
         if result.kind == "allocation":
             return _allocation_field(result, response)
         if result.kind not in fields:
@@ -255,14 +257,15 @@ def _sobol_field(result: Result, response: str, of: str | None) -> _Field:
     return _Field(found["ST"].values, f"ST of {name} on {response}", "")
 
 
-def _monte_carlo_field(result: Result, response: str | None, quantity: str) -> _Field:
-    quantities = ("rms", "mean", "std", "min", "max")
-    if quantity not in quantities:
-        raise NotInResult(f"{result.path}: quantity is {quantity!r}; it is one of {', '.join(quantities)}")
+def _monte_carlo_field(result: Result, response: str | None, quantity: str | None) -> _Field:
     name = result.response(response)
     unit = Unit(*result.response_unit(name))
-    found = result.to_xarray("monte_carlo")[quantity].sel(response=name)
-    return _Field(found.values / unit.si, f"{quantity} of {name}", unit.name)
+    group = result.to_xarray("monte_carlo").sel(response=name)
+    there = [one for one in _QUANTITIES if one in group]  # files of version 0.1 have no rms
+    quantity = quantity or there[0]
+    if quantity not in there:
+        raise NotInResult(f"{result.path}: quantity is {quantity!r}; it is one of {', '.join(there)}")
+    return _Field(group[quantity].values / unit.si, f"{quantity} of {name}", unit.name)
 
 
 def _evaluate_field(result: Result, response: str, of: str | None) -> _Field:

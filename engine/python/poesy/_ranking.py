@@ -277,8 +277,7 @@ def _monte_carlo(result: Result, response: str | None) -> Ranking:
     response = result.response(response)
     group = result.to_xarray("monte_carlo")
     if "S1" not in group:
-        writer = f"an older poesy ({result.attrs.get('poesy_version')})"
-        raise NotInResult(f"{result.path}: {writer} wrote it, without S1; run it again")
+        raise NotInResult(f"{result.path}: has no S1, because an older poesy wrote it; run the study again")
     found = group.sel(response=response)
     alone = _with_ends(found, "S1")
     names = [str(name) for name in found["factor"].values]
