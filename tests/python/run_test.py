@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 import warnings
@@ -112,10 +113,9 @@ class Errors(FolderTest):
             poesy.run(STUDIES["sensitivity"], output="nowhere/a.h5")
 
     def test_nothing_is_left_of_a_study_that_is_refused(self):
-        before = set(Path(os.environ.get("TMPDIR", "/tmp")).glob("poesy-*"))
-        with self.assertRaises(poesy.StudyError):
+        with mock.patch.object(tempfile, "tempdir", str(self.folder)), self.assertRaises(poesy.StudyError):
             poesy.run({"mechanism": {"model": "absent"}})
-        self.assertLessEqual(set(Path(os.environ.get("TMPDIR", "/tmp")).glob("poesy-*")), before)
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_all_are_errors_of_the_package(self):
         for name in ("StudyError", "FileError", "DamagedFile", "Interrupted", "InternalError", "ProgramNotFound", "NotInResult"):
