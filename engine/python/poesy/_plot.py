@@ -1,0 +1,330 @@
+"""Pictures of a result in matplotlib, in the units in which people read it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _ranking
+from ._errors import NotInResult
+from ._units import Unit, labelled, shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ._result import Result
+
+_QUANTITIES = ("rms", "mean", "std", "min", "max")
+_BAR, _LINE = "#7da7d9", "#1f3b5c"
+_INTERVALS = {
+    "effect": ("effect_low", "effect_high", "effect on {response}"),
+    "ST": ("ST_low", "ST_high", "ST, share of the variance of {response}"),
+    "S1": ("S1_low", "S1_high", "S1, share of the variance of {response}"),
+    "cost": (None, None, "cost"),
+    "mean_square_share": (None, None, "share of the mean square"),
+    "share": (None, None, "share of the poses where the error deforms alone"),
+}
+
+
+@dataclass(frozen=True)
+class _Field:
+    """A value at each pose, in `unit`."""
+
+    values: Any  # [M]
+    label: str
+    unit: str
+
+
+class Plots:
+    """Pictures of one result. Each method draws into `ax`, or into a new figure, and gives the Axes.
+
+    What the result does not have raises `NotInResult`, which says which kinds do.
+    """
+
+    def __init__(self, result: Result) -> None:
+        self._result = result
+
+    def ranking(self, response: str | None = None, *, top: int = 20, ax: Axes | None = None) -> Axes:
+        """Bars of what `Result.ranking` ranks, the first on top, with intervals where there are some.
+
+        Parameters
+        ----------
+        response
+            By which to rank; default: the one of `poesy show`.
+        top
+            How many rows at the most.
+        """
+        ranked = self._result.ranking(response)[:top]
+        low, high, words = _INTERVALS[ranked.value]
+        values = np.array([getattr(row, ranked.value) for row in ranked])
+        at = np.arange(len(values))
+        axes = _axes(ax, 1.4 + 0.27 * len(values))
+        axes.barh(at, values, color=_BAR)
+        if low is not None and high is not None:
+            axes.hlines(at, [getattr(row, low) for row in ranked], [getattr(row, high) for row in ranked], color=_LINE)
+        axes.set_yticks(at, [row.name for row in ranked])
+        axes.invert_yaxis()
+        axes.margins(y=0.01)
+        label = words.format(response="" if "{" not in words else self._result.response(response))
+        axes.set_xlabel(labelled(label, ranked.units.get(ranked.value, "")))
+        axes.set_title(_title(self._result))
+        return axes
+
+    def field(
+        self,
+        response: str | None = None,
+        of: str | None = None,
+        *,
+        quantity: str | None = None,
+        x: str | None = None,
+        y: str | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """A value at each pose as colour over two pose coordinates; over time as a line for a trajectory.
+
+        ==============  ============================================================  ==============================
+        kind            what is drawn                                                 `of`
+        ==============  ============================================================  ==============================
+        sensitivity     effect of an error: its local index x sigma                   the error; default: the first
+        sobol           total index ST of an error or group                           likewise
+        monte-carlo     `quantity`: "rms" (default), "mean", "std", "min", "max"
+        evaluate        the response; default: the largest magnitude of all rows      the case, or number of the row
+        coupling        effect of sources, at the largest size                        the sources; default: all
+        allocation      root mean square over what the limit allows it, predicted
+        ==============  ============================================================  ==============================
+
+        Parameters
+        ----------
+        response
+            Default: the one of `poesy show`; of an allocation the first with a limit.
+        x, y
+            Pose coordinates; default: the first two that differ between poses. Poses lie in more dimensions than two,
+            so points may hide each other. With `x` alone, values over that coordinate.
+        """
+        shown_field = self._field(response, of, quantity)
+        poses = self._result.to_xarray("poses")
+        names: list[str | None] = [x, y] if x is not None else [*self._coordinates()]
+        chosen = [_coordinate(self._result, poses, name) for name in names if name is not None]
+        axes = _axes(ax, 4.2)
+        axes.set_title(_title(self._result))
+        axes.set_xlabel(chosen[0].label)
+        if len(chosen) == 1:
+            order = np.argsort(chosen[0].values, kind="stable")
+            style = "-" if names[0] == "time" else "o"
+            axes.plot(chosen[0].values[order], shown_field.values[order], style, color=_LINE)
+            axes.set_ylabel(labelled(shown_field.label, shown_field.unit))
+            return axes
+        drawn = axes.scatter(chosen[0].values, chosen[1].values, c=shown_field.values, cmap="viridis", s=40)
+        axes.set_ylabel(chosen[1].label)
+        axes.figure.colorbar(drawn, ax=axes, label=labelled(shown_field.label, shown_field.unit))
+        return axes
+
+    def main_effects(
+        self, response: str | None = None, errors: str | Sequence[str] | None = None, *, ax: Axes | None = None
+    ) -> Axes:
+        """The mean of a response while one error is known and all others vary, with its interval as a band.
+
+        Of kind monte-carlo.
+
+        Parameters
+        ----------
+        errors
+            One error, drawn over its value; or several, drawn over their values in standard deviations. Default: the four
+            with the largest S1.
+        """
+        result = self._result
+        if "monte_carlo/main_effect" not in result.groups:
+            lacks = f"this result of kind {result.kind} has no main effects"
+            raise NotInResult(f"{result.path}: {lacks}; kind monte-carlo has, since 0.2")
+        response = result.response(response)
+        group = result.to_xarray("monte_carlo/main_effect").sel(response=response)
+        factors = result.to_xarray("factors")
+        names = [str(name) for name in factors["name"].values]
+        if errors is None:
+            errors = [row.name for row in result.ranking(response)[:4]]
+        wanted = [errors] if isinstance(errors, str) else list(errors)
+        for name in wanted:
+            if name not in names:
+                raise NotInResult(f"{result.path}: there is no error '{name}'; ranking() lists those that vary")
+        unit = Unit(*result.response_unit(response))
+        axes = _axes(ax, 4.2)
+        for name in wanted:
+            at, error_unit = names.index(name), shown(result.units("factor")[name])
+            scale = error_unit.si if len(wanted) == 1 else float(factors["sigma"].values[at])
+            curve = group.sel(factor=name)
+            over = group["error"].sel(factor=name).values / scale
+            line = axes.plot(over, curve["mean"].values / unit.si, label=name)[0]
+            low, high = curve["ci_low"].values / unit.si, curve["ci_high"].values / unit.si
+            axes.fill_between(over, low, high, alpha=0.2, color=line.get_color())
+        alone = len(wanted) == 1
+        axes.set_xlabel(labelled(wanted[0], error_unit.name) if alone else "error [standard deviations]")
+        axes.set_ylabel(labelled(f"mean of {response}", unit.name))
+        if not alone:
+            axes.legend()
+        axes.set_title(_title(result))
+        return axes
+
+    def yields(self, *, ax: Axes | None = None) -> Axes:
+        """The share of the machines that are good, with its interval: within all limits, then within each alone.
+
+        Of kind monte-carlo with draws per machine and limits, and of kind allocation, whose machines are those of the
+        certificate. A dotted line is the yield that the study asks for.
+        """
+        names, shares = self._shares()
+        axes = _axes(ax, 1.4 + 0.4 * len(names))
+        at = np.arange(len(names))
+        value, low, high = (100.0 * np.array(shares).T)
+        axes.errorbar(value, at, xerr=[value - low, high - value], fmt="o", color=_LINE, capsize=3)
+        axes.set_yticks(at, names)
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        asked = self._asked()
+        if asked is not None:
+            axes.axvline(100.0 * asked, linestyle=":", color="black", label=f"asked: {100.0 * asked:g} %")
+            axes.legend()
+        axes.set_xlabel("good machines [%]")
+        axes.set_title(_title(self._result))
+        return axes
+
+    def _asked(self) -> float | None:
+        asked = self._result.study.get("analysis", {}).get("yield")
+        return float(asked) if asked else None
+
+    def _shares(self) -> tuple[list[str], list[list[float]]]:
+        result = self._result
+        if result.kind == "allocation":
+            found = result.to_xarray("allocation/certificate")
+            return ["all limits"], [[float(found[name]) for name in ("yield", "ci_low", "ci_high")]]
+        if "yield" not in result.groups:
+            raise NotInResult(
+                f"{result.path}: this result of kind {result.kind} has no yield; a study of kind monte-carlo with "
+                'draws = "per machine" and [analysis.limits] has, and one of kind allocation'
+            )
+        found = result.to_xarray("yield")
+        names, shares = ["all limits"], [[float(found[name]) for name in ("value", "ci_low", "ci_high")]]
+        for response in found["response"].values:
+            alone = found.sel(response=response)
+            if not np.isnan(float(alone["by_response"])):
+                names.append(str(response))
+                shares.append([float(alone[f"by_response{end}"]) for end in ("", "_ci_low", "_ci_high")])
+        return names, shares
+
+    def _coordinates(self) -> list[str]:
+        """Time, or the first two pose coordinates that differ between poses; one where only one does."""
+        poses = self._result.to_xarray("poses")
+        if "time" in poses:
+            return ["time"]
+        listed = poses.attrs["coordinates"]
+        names = [listed] if isinstance(listed, str) else list(listed)
+        return [name for name in names if np.ptp(poses[name].values) > 0.0][:2] or names[:1]
+
+    def _field(self, response: str | None, of: str | None, quantity: str | None) -> _Field:
+        result = self._result
+        fields = {
+            "sensitivity": _sensitivity_field,
+            "sobol": _sobol_field,
+            "evaluate": _evaluate_field,
+            "coupling": _coupling_field,
+        }
+        if result.kind == "monte-carlo":
+            return _monte_carlo_field(result, response, quantity)
+        if result.kind == "allocation":
+            return _allocation_field(result, response)
+        if result.kind not in fields:
+            known = ", ".join([*fields, "monte-carlo", "allocation"])
+            lacks = f"a result of kind {result.kind} has no values over poses to draw"
+            raise NotInResult(f"{result.path}: {lacks}; kinds that have: {known}")
+        return fields[result.kind](result, result.response(response), of)
+
+
+def _sensitivity_field(result: Result, response: str, of: str | None) -> _Field:
+    error = of or result.ranking(response)[0].name
+    group = result.to_xarray("sensitivity").sel(response=response)
+    found = _selected(result, group, "factor", error)
+    sigma = float(result.to_xarray("factors")["sigma"].values[list(group["factor"].values).index(error)])
+    rounding = float(found["rounding"]) / sigma if "rounding" in found else 0.0
+    unit = Unit(*result.response_unit(response))
+    local = [_ranking.told_from_rounding(float(value), rounding) for value in found["local"].values]
+    return _Field(np.array(local) * sigma / unit.si, f"effect of {error} on {response}", unit.name)
+
+
+def _sobol_field(result: Result, response: str, of: str | None) -> _Field:
+    name = of or result.ranking(response)[0].name
+    group = result.to_xarray("sobol").sel(response=response)
+    found = _selected(result, group, "group" if "group" in group.dims else "factor", name)
+    return _Field(found["ST"].values, f"ST of {name} on {response}", "")
+
+
+def _monte_carlo_field(result: Result, response: str | None, quantity: str | None) -> _Field:
+    name = result.response(response)
+    unit = Unit(*result.response_unit(name))
+    group = result.to_xarray("monte_carlo").sel(response=name)
+    there = [one for one in _QUANTITIES if one in group]  # files of version 0.1 have no rms
+    quantity = quantity or there[0]
+    if quantity not in there:
+        raise NotInResult(f"{result.path}: quantity is {quantity!r}; it is one of {', '.join(there)}")
+    return _Field(group[quantity].values / unit.si, f"{quantity} of {name}", unit.name)
+
+
+def _evaluate_field(result: Result, response: str, of: str | None) -> _Field:
+    unit = Unit(*result.response_unit(response))
+    found = result.to_xarray("evaluate")[response]
+    rows = next(axis for axis in found.dims if axis != "pose")
+    if of is None:
+        return _Field(np.abs(found.transpose("pose", rows).values).max(axis=1) / unit.si, f"largest {response}", unit.name)
+    names = [str(name) for name in found[rows].values]
+    if str(of) not in names:
+        raise NotInResult(f"{result.path}: there is no {rows} '{of}'; it has {', '.join(names[:20])}")
+    return _Field(found.isel({rows: names.index(str(of))}).values / unit.si, f"{response} of {rows} {of}", unit.name)
+
+
+def _coupling_field(result: Result, response: str, of: str | None) -> _Field:
+    unit = Unit(*result.response_unit(response))
+    found = result.to_xarray("coupling")["effect"].sel(response=response).isel(size=-1)
+    subset = of or str(found["subset"].values[-1])
+    chosen = _selected(result, found, "subset", subset)
+    return _Field(chosen.values / unit.si, f"effect of {subset} on {response} at {chosen['size'].values}", unit.name)
+
+
+def _allocation_field(result: Result, response: str | None) -> _Field:
+    found = result.to_xarray("allocation")
+    limited = [str(name) for name, limit in zip(found["response"].values, found["limit"].values) if not np.isnan(limit)]
+    name = limited[0] if response is None else result.response(response)
+    if name not in limited:
+        raise NotInResult(f"{result.path}: {name} has no limit in this study; {', '.join(limited)} has")
+    return _Field(100.0 * found["limit_use"].sel(response=name).values, f"rms of {name} over what its limit allows", "%")
+
+
+def _selected(result: Result, data: Any, axis: str, name: str) -> Any:
+    known = [str(one) for one in data[axis].values]
+    if name not in known:
+        raise NotInResult(f"{result.path}: there is no {axis} '{name}'; it has {', '.join(known)}")
+    return data.sel({axis: name})
+
+
+@dataclass(frozen=True)
+class _Coordinate:
+    values: Any  # [M]
+    label: str
+
+
+def _coordinate(result: Result, poses: Any, name: str) -> _Coordinate:
+    if name not in poses or poses[name].dims != ("pose",):
+        known = [str(one) for one in poses.data_vars if poses[one].dims == ("pose",)]
+        raise NotInResult(f"{result.path}: poses have no coordinate '{name}'; they have {', '.join(known)}")
+    unit = shown(poses[name].attrs["unit"])
+    return _Coordinate(poses[name].values / unit.si, labelled(name, unit.name))
+
+
+def _axes(ax: Axes | None, height: float) -> Axes:
+    if ax is not None:
+        return ax
+    from matplotlib import pyplot  # here, so that the package serves without a screen and without matplotlib
+
+    return pyplot.subplots(figsize=(7.0, height), layout="constrained")[1]
+
+
+def _title(result: Result) -> str:
+    return result.title or f"{result.kind} of {result.model}"

@@ -1,0 +1,57 @@
+"""Writes a study that is a dict as a file, so that it means the same as the file would in the current folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from . import _toml
+from ._mechanism import Mechanism
+
+STUDY_NAME = "study.toml"
+
+
+def write_study(study: Mapping[str, Any], folder: Path) -> tuple[Path, str]:
+    """Writes STUDY_NAME into the folder; gives its path and text.
+
+    Files that the study names, by keys ``file``, are relative to the study's folder, and are meant relative to the current
+    one. They are linked into the folder by the same name, so that the resolved study, which is part of the result and its
+    hash, has that name too and not one of a temporary folder. ``format`` and ``version`` may be left out.
+    """
+    table = _linked({"format": "poesy-study", "version": 1, **study}, folder)
+    text = _toml.dumps(table)
+    path = folder / STUDY_NAME
+    path.write_text(text, encoding="utf-8")
+    return path, text
+
+
+def _linked(value: Any, folder: Path) -> Any:
+    if isinstance(value, Mechanism):
+        return value.table() if value.path is None else {"file": _link(value.path.name, value.path, folder)}
+    if isinstance(value, Mapping):
+        return {key: _file(inner, folder) if key == "file" else _linked(inner, folder) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_linked(inner, folder) for inner in value]
+    return value
+
+
+def _file(named: Any, folder: Path) -> Any:
+    if isinstance(named, Mechanism) and named.path is not None:
+        return _link(named.path.name, named.path, folder)
+    if not isinstance(named, (str, os.PathLike)):
+        return _linked(named, folder)
+    return _link(os.fspath(named), Path(named), folder)
+
+
+def _link(name: str, target: Path, folder: Path) -> str:
+    """The name by which the study finds the file: its own, unless that leads out of the folder or is taken."""
+    target = target.absolute()
+    link = folder / name
+    if Path(name).is_absolute() or ".." in Path(name).parts or name == STUDY_NAME or not target.exists():
+        return str(target)
+    if not link.is_symlink():
+        link.parent.mkdir(parents=True, exist_ok=True)
+        link.symlink_to(target)
+    return name if Path(os.readlink(link)) == target else str(target)

@@ -1,0 +1,168 @@
+"""Rankings, Sobol' indices for SALib and verdicts are the program's: `poesy show --json`, `poesy export`."""
+
+import csv
+import json
+import math
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+from package import FolderTest, main, poesy, result, study
+
+
+def shown(found, *options):
+    """The tables of `poesy show --json` by name, their rows as dicts."""
+    return {table["name"]: table for table in json.loads(found.show("--json", *options))["tables"]}
+
+
+class Numbers(FolderTest):
+    def check(self, ranked, rows, columns):
+        """columns: field of a row of the ranking -> column of the program, or a function of its row."""
+        self.assertEqual(len(ranked), len(rows))
+        for own, row in zip(ranked, rows):
+            for field, column in columns.items():
+                value, expected = getattr(own, field), column(row) if callable(column) else row[column]
+                if value == 0.0 and expected is not None:
+                    self.assertLess(abs(expected), 1e-9)  # the program prints 0 for what is no more than rounding
+                elif expected is None:
+                    self.assertTrue(math.isnan(value), (own.name, field))
+                elif isinstance(expected, str):
+                    self.assertEqual(value, expected)
+                else:
+                    self.assertLessEqual(abs(value - expected), 1e-14 * abs(expected), (own.name, field, value, expected))
+
+    def test_sensitivity(self):
+        for name in ("sensitivity", "sensitivity of the 3-prs"):
+            found = result(name)
+            for response in (None, "angular_deformation" if name == "sensitivity" else "rotation"):
+                table = shown(found, *(("--response", response) if response else ()))["ranked"]
+                ranked = found.ranking(response)
+                self.assertEqual(ranked.title, table["caption"])
+                units = {column["name"]: column["unit"] for column in table["columns"]}
+                self.assertEqual(ranked.units["effect"], units["effect"])
+                same = ("rank", "effect", "index", "index_low", "index_high", "sigma", "unit")
+                self.check(ranked, table["rows"], {"name": "error"} | {field: field for field in same})
+                self.assertEqual(ranked[0].index_unit, f"{units['effect']}/{ranked[0].unit}")
+                for row in ranked:
+                    self.assertTrue(row.effect_low <= row.effect <= row.effect_high or math.isnan(row.effect))
+
+    def test_descriptions(self):
+        found = result("sensitivity")
+        known = {one["name"]: one["description"] for one in json.loads(found.show("--json"))["errors"]}
+        self.assertEqual({row.name: row.description for row in found.ranking()}, known)
+
+    def test_sobol(self):
+        for name in ("sobol", "sobol of groups"):
+            found = result(name)
+            what = "group" if name == "sobol of groups" else "error"
+            for response in found.units("response"):
+                rows = shown(found, "--response", response)[f"sobol_{response}"]["rows"]
+                if what == "group":  # the program ranks by the Shapley effect where there is one
+                    rows = sorted(rows, key=lambda row: -row["ST"])
+                ranked = found.ranking(response)
+                self.assertEqual(ranked.what, what)
+                self.check(ranked, rows, {"name": what} | {f: f for f in ("S1", "S1_low", "S1_high", "ST", "ST_low", "ST_high")})
+
+    def test_salib(self):
+        for name in ("sobol", "sobol of groups"):
+            found = result(name)
+            poesy._program.call("export", found.path, "-d", "tables")
+            for response in found.units("response"):
+                indices = found.to_salib(response)
+                with open(f"tables/sobol_{response}.csv", newline="") as file:
+                    rows = list(csv.DictReader(file))
+                self.assertEqual(indices["names"], [next(iter(row.values())) for row in rows])
+                for column in ("S1", "S1_conf", "ST", "ST_conf"):
+                    np.testing.assert_allclose(indices[column], [float(row[column]) for row in rows], rtol=1e-14)
+            self.assertEqual("S2" in indices, name == "sobol of groups")
+            Path("tables").rename(f"tables of {name}")
+
+    def test_salib_pairs(self):
+        found = result("sobol of groups")
+        poesy._program.call("export", found.path, "-d", "tables")
+        indices = found.to_salib("gap")
+        pairs = {}
+        for i, first in enumerate(indices["names"]):
+            for j, second in enumerate(indices["names"]):
+                self.assertEqual(bool(np.isnan(indices["S2"][i, j])), j <= i)
+                if j > i:
+                    pairs[f"{first} & {second}"] = (indices["S2"][i, j], indices["S2_conf"][i, j])
+        with open("tables/sobol_pairs_gap.csv", newline="") as file:
+            for row in csv.DictReader(file):
+                value, half = pairs.pop(row["pair"])
+                self.assertEqual(value, float(row["S2"]))
+                self.assertAlmostEqual(half, (float(row["S2_ci_high"]) - float(row["S2_ci_low"])) / 2, places=14)
+        self.assertEqual(pairs, {})
+
+    def test_monte_carlo(self):
+        for name in ("monte-carlo", "machines"):
+            found = result(name)
+            rows = shown(found)["first_order"]["rows"]
+            columns = {"name": "error", "S1": "S1_gap", "S1_low": "S1_ci_low_gap", "S1_high": "S1_ci_high_gap"}
+            self.check(found.ranking()[: len(rows)], rows, columns)
+
+    def test_allocation(self):
+        found = result("allocation")
+        table = shown(found)["drawing"]
+        columns = {"name": "part", "members": "errors"} | {field: field for field in ("cost", "tolerance", "sigma", "unit")}
+        self.check(found.ranking(), table["rows"], columns | {"share": lambda row: row["share"] / 100.0})
+        self.assertEqual(sum(row.cost for row in found.ranking()) > 0.0, True)
+
+    def test_identification(self):
+        found = result("identification")
+        table = shown(found)["identification"]
+        rows = {row["error"]: row for row in table["rows"]}
+        ranked = found.ranking()
+        self.assertEqual(ranked.title, table["caption"])
+        self.assertEqual({row.name: row.verdict for row in ranked}, {name: row["verdict"] for name, row in rows.items()})
+        for row in ranked:
+            self.assertEqual(row.share * 4, rows[row.name]["deforming_poses_1"])
+        order = ["deforms alone", "deforms in a coupling", "absorbed"]
+        self.assertEqual([row.verdict for row in ranked], sorted((row.verdict for row in ranked), key=order.index))
+
+    def test_verdicts(self):
+        words = {"PASS": "kept", "FAIL": "not kept", "UNDECIDED": "undecided"}
+
+        def verdict(asked):
+            analysis = {"kind": "monte-carlo", "draws": "per machine", "samples": 1000, "yield": asked, "conf_level": 0.9}
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", poesy.PoesyWarning)
+                found = poesy.run(study(analysis | {"limits": {"gap": "0.07 mm"}}, poses=2))
+            caption = shown(found)["yield"]["caption"]
+            self.assertEqual(found.verdict, words[caption.partition(":")[0]], caption)
+            return found.verdict, float(found.to_xarray("yield")["value"])
+
+        _, value = verdict(0.5)
+        self.assertTrue(0.1 < value < 0.9, value)
+        offsets = {-0.08: "kept", 0.0: "undecided", 0.08: "not kept"}
+        self.assertEqual({offset: verdict(value + offset)[0] for offset in offsets}, offsets)
+        for step in range(-6, 7):
+            verdict(value + 0.005 * step)
+
+
+class Tables(unittest.TestCase):
+    def test_rows_have_names(self):
+        ranked = result("sensitivity").ranking()
+        self.assertEqual(ranked[0].rank, 1)
+        self.assertEqual(len(ranked[:5]), 5)
+        self.assertEqual([row.name for row in ranked], ranked.to_dict()["name"])
+        self.assertEqual(len({len(column) for column in ranked.to_dict().values()}), 1)
+        self.assertEqual(ranked[-1], list(ranked)[-1])
+
+    def test_print(self):
+        ranked = result("sensitivity").ranking()
+        lines = repr(ranked).splitlines()
+        self.assertIn("effect [mm]", lines[1])
+        self.assertTrue(lines[2].split()[1] == ranked[0].name)
+        self.assertEqual(lines[-1], f"... and {len(ranked) - 20} more")
+        self.assertIn("<caption>Effect of each error on gap", ranked._repr_html_())
+        self.assertNotIn("more", repr(ranked[:3]))
+        self.assertEqual(repr(ranked[:0]), ranked.title + "\n")
+
+    def test_result_says_what_it_is(self):
+        self.assertRegex(repr(result("allocation")), r"<poesy allocation result of 2upr-rpu, certified: .*\.h5>")
+
+
+if __name__ == "__main__":
+    main()
