@@ -51,6 +51,14 @@ void ToleranceSearch::refuse_lowest() const {
       "widen a limit, ask for a smaller yield, or lower the bounds of parts");
 }
 
+void ToleranceSearch::refuse_unbounded() const {
+  throw InputError({},
+                   fmt::format("no tolerances were found with which {} % of the machines are within the limits: of the "
+                               "finest that were tried, {} of {} machines are not within them, and {} may be",
+                               100.0 * asked_.yield, trial_.rejects(), trial_.load.size(), allowed_.design),
+                   "widen a limit, give the parts bounds, or leave out poses where machines cannot be solved");
+}
+
 void ToleranceSearch::refuse_endless(const WithoutEnd& endless) const {
   throw InputError({},
                    fmt::format("part '{}' has no effect on any limit, and no upper bound",

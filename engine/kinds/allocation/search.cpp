@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "engine/base/nan.h"
@@ -59,6 +60,11 @@ double largest_ratio(std::span<const double> a, std::span<const double> b) {
     if (a[i] != b[i]) largest = std::max({largest, a[i] / b[i], b[i] / a[i]});
   }
   return largest;
+}
+
+/// Whether no part has to be perfect.
+bool can_be_made(const TolerancePoint& point) {
+  return std::ranges::find(point.tolerance, 0.0) == point.tolerance.end();
 }
 
 }  // namespace
@@ -160,12 +166,14 @@ bool ToleranceSearch::settle_effects() {
     if (!measure(before.tolerance, kDrawsAmongOthers)) return false;
     if (!choose({before.tolerance, kGrowth})) {
       found_ = programme_.lowest();  // machines will tell whether these keep the limits
+      settled_ = {before, chosen_, share_};
       return true;
     }
     const bool cost_stays = !(std::abs(found_.cost - before.cost) > kSettled * std::abs(found_.cost));
     if (cost_stays && largest_ratio(found_.tolerance, before.tolerance) < 1.0 + 10.0 * kSettled) break;
   }
   add_stage("effects among the others", 0, 0);
+  settled_ = {found_, chosen_, share_};
   return true;
 }
 
@@ -199,9 +207,43 @@ std::optional<ToleranceSearch::Tried> ToleranceSearch::try_near(const ToleranceP
   return try_some(point, std::move(machines));
 }
 
+void ToleranceSearch::take(const Programmed& of) {
+  found_ = of.point;
+  chosen_ = of.chosen;
+  share_ = of.share;
+  limits_ = programme_.limits(squares_, measured_, share_);
+}
+
+/// Makes all tolerances finer alike, where limits on root mean squares do not lead to the yield: a few machines decide
+/// that these do not see, such as those of an error that does nothing until it is large. False when stopped.
+bool ToleranceSearch::scale_all() {
+  take(settled_);
+  for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
+    auto all = try_all();
+    if (!all) return false;
+    trial_ = *std::move(all);
+    const double load = deciding_load(trial_.load, allowed_.design);
+    if (load <= 1.0) {
+      auto near = try_near(found_);
+      if (!near) return false;
+      near_ = *std::move(near);
+      if (!scale_near()) return false;
+      add_stage("all tolerances scaled alike", trial_.load.size(), near_.trial.rejects());
+      return true;
+    }
+    std::vector<double> finer = found_.tolerance;
+    for (double& tolerance : finer) tolerance /= std::clamp(load, 1.05, 2.0);
+    const TolerancePoint next = programme_.at_most(finer);
+    if (next.tolerance == found_.tolerance) break;
+    found_ = next;
+  }
+  return lower_to_least();
+}
+
 /// Tries the lowest tolerances, after which nothing is left to try. False when stopped.
 bool ToleranceSearch::lower_to_least() {
   found_ = programme_.lowest();
+  if (!can_be_made(found_)) refuse_unbounded();
   auto trial = try_all();
   if (!trial) return false;
   trial_ = *std::move(trial);
@@ -256,26 +298,18 @@ bool ToleranceSearch::meet_yield() {
   auto all = try_all();
   if (!all) return false;
   trial_ = *std::move(all);
-  struct Kept {
-    TolerancePoint point;
-    ChosenTolerances chosen;
-    double share;
-  };
-  std::optional<Kept> best;
+  std::optional<Programmed> best;
   double load = deciding_load(trial_.load, allowed_.design);
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
-    if (load <= 1.0 && (!best || share_ > best->share)) best = {found_, chosen_, share_};
+    if (load <= 1.0 && can_be_made(found_) && (!best || share_ > best->share)) best = {found_, chosen_, share_};
     if (load <= 1.0 && load >= 1.0 - kFine) break;
     if (!rescale(load)) break;
     const auto near = try_near(found_);
     if (!near) return false;
     load = deciding_load(near->trial.load, allowed_.design);
   }
-  if (!best) return lower_to_least();
-  found_ = best->point;
-  chosen_ = best->chosen;
-  share_ = best->share;
-  limits_ = programme_.limits(squares_, measured_, share_);
+  if (!best) return scale_all();
+  take(*best);
   auto near = try_near(found_);
   if (!near) return false;
   near_ = *std::move(near);
@@ -421,11 +455,15 @@ bool ToleranceSearch::try_coarser() {
 bool ToleranceSearch::scale_near() {
   const TolerancePoint before = found_;
   const Tried near_before = near_;
+  double low = 0.0;  // a factor that holds
+  double high = std::numeric_limits<double>::infinity();
   double factor = 1.0;
   double load = deciding_load(near_.trial.load, allowed_.design);
-  bool holds = load <= 1.0;
-  for (std::size_t trial = 0; trial < kMostTrials && !(holds && load <= 1.0 && load >= 1.0 - kExact); ++trial) {
+  for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
+    (load <= 1.0 ? low : high) = factor;
+    if ((load <= 1.0 && load >= 1.0 - kExact) || high < low * (1.0 + kExact)) break;
     factor *= (1.0 - 0.5 * kExact) / std::clamp(load, 0.5, 2.0);
+    if (factor <= low || factor >= high) factor = std::sqrt(low * high);
     std::vector<double> wanted = before.tolerance;
     for (double& tolerance : wanted) tolerance *= factor;
     const TolerancePoint next = programme_.at_most(wanted);
@@ -433,15 +471,26 @@ bool ToleranceSearch::scale_near() {
     auto near = try_near(next);
     if (!near) return false;
     load = deciding_load(near->trial.load, allowed_.design);
-    if (holds && (load > 1.0 || next.cost > found_.cost)) continue;
-    holds = load <= 1.0;
+    if (load > 1.0 || (low > 0.0 && next.cost > found_.cost)) continue;
     found_ = next;
     near_ = *std::move(near);
   }
-  if (holds) return true;
+  if (low > 0.0) return true;
   found_ = before;
   near_ = near_before;
   return true;
+}
+
+/// Whether machines are rejects that were left out as far from the limit, by some of all machines.
+std::optional<bool> ToleranceSearch::left_out() const {
+  const Study study = tried_at(found_.tolerance);
+  const Plan plan = Plan(study, run_.poses).with_samples(std::max<std::size_t>(trial_machines() / kFirstOf, 1));
+  const auto some = try_machines(plan, run_.model, study.analysis.limits, run_.options);
+  if (!some) return std::nullopt;
+  for (std::size_t s = 0; s < some->load.size(); ++s) {
+    if (some->load[s] > 1.0 && !std::ranges::binary_search(near_.machines, s)) return true;
+  }
+  return false;
 }
 
 /// Scales all tolerances once more, to machines that nothing chose by: those by which the shares of the parts were
@@ -459,7 +508,9 @@ bool ToleranceSearch::scale_to_others() {
     if (!scale_near()) return false;
     const double moved = largest_ratio(found_.tolerance, at);
     for (std::size_t k = 0; k < near_.machines.size(); ++k) trial_.load[near_.machines[k]] = near_.trial.load[k];
-    if (moved < 1.0 + kFar) break;
+    const std::optional<bool> again = left_out();
+    if (!again) return false;
+    if (!*again && moved < 1.0 + kFar) break;
   }
   add_stage("scaled to other machines", trial_.load.size(), trial_.rejects());
   return true;

@@ -68,6 +68,7 @@ class ToleranceSearch {
   bool meet_yield();
   bool improve_by_gradient();
   bool scale_near();
+  std::optional<bool> left_out() const;
   bool scale_to_others();
   bool try_coarser();
 
@@ -77,11 +78,20 @@ class ToleranceSearch {
     Trial trial;                          ///< of these
   };
 
+  /// Tolerances by a programme.
+  struct Programmed {
+    TolerancePoint point;
+    ChosenTolerances chosen;
+    double share;
+  };
+
   std::size_t trial_machines() const { return run_.study.analysis.samples; }
   Study tried_at(std::span<const double> tolerance) const;
   std::optional<Trial> try_all() const;
   std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
   std::optional<Tried> try_near(const TolerancePoint& point) const;
+  void take(const Programmed& of);
+  bool scale_all();
   bool lower_to_least();
 
   /// Scores of errors among the machines of largest load.
@@ -99,6 +109,7 @@ class ToleranceSearch {
   std::string row_text(std::size_t row) const;
   [[noreturn]] void refuse(const CannotBeMet& broken) const;
   [[noreturn]] void refuse_lowest() const;
+  [[noreturn]] void refuse_unbounded() const;
   [[noreturn]] void refuse_endless(const WithoutEnd& endless) const;
 
   const StudyRun& run_;
@@ -111,6 +122,7 @@ class ToleranceSearch {
   std::vector<double> measured_;       ///< [N] tolerances at which squares_ hold
   ToleranceLimits limits_;             ///< of the last programme
   ChosenTolerances chosen_;            ///< by it
+  Programmed settled_;                 ///< the last one before machines were tried
   TolerancePoint found_;               ///< the best so far
   Trial trial_;                        ///< of all machines of the design, the last one
   Tried near_;                         ///< machines that may decide, at found_
