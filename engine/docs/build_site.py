@@ -116,8 +116,10 @@ class Page:
         title = re.match(r"---\n.*?^title: *'?(.*?)'?$.*?^---$", text, re.DOTALL | re.MULTILINE)
         if title:
             folder = str((ROOT / self.source).parent)
-            command += ["--from=markdown", "--citeproc", f"--resource-path={folder}"]
+            command += ["--from=markdown", "--citeproc", "--shift-heading-level-by=1"]
             text = text.replace("bibliography: ", f"bibliography: {folder}/", 1)
+            for number, label in enumerate(re.findall(r"\\label\{(.*?)\}", text), 1):
+                text = text.replace(f"\\autoref{{{label}}}", f"Figure {number}")
             heading = f'<h1 id="paper">{html.escape(title[1])}</h1>\n'
         else:
             command += ["--from=gfm+tex_math_dollars"]
