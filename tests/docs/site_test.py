@@ -131,6 +131,18 @@ class Site(unittest.TestCase):
         self.assertTrue(any(heading == "poesy::run_study" for _, _, heading, _ in index))
 
 
+    @unittest.skipUnless(shutil.which("chromium"), "chromium is not installed")
+    def test_search_finds_in_a_browser_without_a_server(self):
+        with tempfile.TemporaryDirectory() as profile:
+            command = ["chromium", "--headless", "--no-sandbox", f"--user-data-dir={profile}", "--virtual-time-budget=10000", "--dump-dom"]
+            for words, expected in {"clopper pearson": "../engine/USER_GUIDE.html#machines-and-their-yield", "absentword": None}.items():
+                address = f"{(self.site / 'engine/THEORY.html').as_uri()}?q={words.replace(' ', '%20')}"
+                shown = subprocess.run([*command, address], capture_output=True, text=True, timeout=120, check=True).stdout
+                found = re.search(r'<ol id="found">(.*?)</ol>', shown, re.DOTALL)[1]
+                self.assertEqual(re.findall(r'href="([^"]*)"', found)[:1], [expected] if expected else [])
+                self.assertIn("<mark>Clopper</mark>" if expected else "Nothing has all of these words.", found)
+
+
 class Script(unittest.TestCase):
     def test_what_is_broken_is_found(self):
         with tempfile.TemporaryDirectory() as holder:
