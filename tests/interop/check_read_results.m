@@ -1,5 +1,6 @@
-% Checks results/read_results.m on the example results of tests/engine/io/example_result.h: from exported tables as Octave
-% reads them, and from the result file as MATLAB does, whose h5read and h5readatt are made up for in interop/matlab.
+% Checks results/read_results.m, and with it how results/+poesy reads, on the examples of tests/engine/kinds/example_result.h:
+% from exported tables as Octave reads them, and from the result file as MATLAB does, whose h5info, h5read and h5readatt are
+% made up for in interop/matlab.
 % usage: octave-cli check_read_results.m SOURCES EXAMPLES; POESY_PYTHON in the environment
 1;
 
@@ -43,11 +44,11 @@ function check_figure(source)
   assert(numel(strfind(drawn, '<path')) > 5, 'the figure is empty');
 end
 
-% What tells the kinds apart: kind, an axis of its own, and the table or the group with its numbers.
+% Folders of examples, and their kinds.
 function list = kinds()
-  list = {'monte_carlo', 'monte-carlo'; 'evaluate', 'evaluate'; 'paired', 'evaluate'; 'cases', 'evaluate'; ...
-          'identification', 'identification'; 'coupling', 'coupling'; ...
-          'allocation', 'allocation'};
+  list = {'monte_carlo', 'monte-carlo'; 'machines', 'monte-carlo'; 'evaluate', 'evaluate'; 'paired', 'evaluate'; ...
+          'cases', 'evaluate'; 'identification', 'identification'; 'coupling', 'coupling'; 'allocation', 'allocation'; ...
+          'sobol', 'sobol'};
 end
 
 % Every table of every kind: names, units and numbers are those of its text.
@@ -70,6 +71,7 @@ function check_table(table, file)
   last = strsplit(lines{end}, ',');
   assert(size(table.values), [numel(lines) - 1, numel(titles)]);
   assert(table.rows{end}, last{1});
+  assert(table.cells(end, :), last);
   assert(table.values(end, :), str2double(last));
   for c = 1:numel(titles)
     title = table.columns{c};
@@ -80,7 +82,26 @@ function check_table(table, file)
   end
 end
 
-% The groups of a file hold the numbers of its tables. Of one kind: each dataset takes a process of Python.
+% What is ranked is the same from a file and from its tables. From tables an evaluation has more columns.
+function check_ranked(examples)
+  for k = kinds()'
+    from_file = read_results([fullfile(examples, k{1}) '.h5']);
+    from_tables = read_results(fullfile(examples, k{1}));
+    assert(from_file.kind, k{2});
+    found = from_file.ranked;
+    columns = 1:numel(found.responses);
+    whole = from_tables.ranked;
+    for name = {'responses', 'units'}
+      whole.(name{1}) = whole.(name{1})(columns);
+    end
+    for name = {'value', 'low', 'high'}
+      whole.(name{1}) = whole.(name{1})(:, columns);
+    end
+    assert(isequaln(found, whole), [k{1} ': tables and file rank different numbers']);
+  end
+end
+
+% The groups of a file hold the numbers of its tables, and groups may lie in groups.
 function check_groups(examples)
   from_file = read_results([fullfile(examples, 'monte_carlo') '.h5']);
   from_tables = read_results(fullfile(examples, 'monte_carlo'));
@@ -90,6 +111,9 @@ function check_groups(examples)
   assert(from_file.groups.poses.z(:), poses.values(:, strcmp(poses.columns, 'z')));
   table = from_tables.tables.monte_carlo_linear_deformation;
   assert(isequaln(from_file.groups.monte_carlo.mean(:, 2), table.values(:, strcmp(table.columns, 'mean'))));
+  sobol = read_results([fullfile(examples, 'sobol') '.h5']).groups.sobol;
+  table = read_results(fullfile(examples, 'sobol')).tables.sobol_linear_deformation;
+  assert(isequaln(sobol.aggregated.ST(:, 2), table.values(:, strcmp(table.columns, 'ST'))));
 end
 
 warning('off', 'all');  % Octave's about its own fonts and gnuplot
@@ -109,6 +133,7 @@ fails(@() read_results(examples), 'has the tables of 0 kinds of results');
 fails(@() read_results(fullfile(examples, 'monte_carlo'), 'linear_deformation'), 'of kind monte-carlo, which has no indices');
 check_tables(examples);
 fails(@() read_results(tables, 'absent_response'), 'it has angular_deformation, linear_deformation');
+setenv('POESY', fullfile(examples, 'absent'));
 fails(@() read_results(file), 'poesy export');
 
 addpath(fullfile(sources, 'tests', 'interop', 'matlab'));
@@ -117,6 +142,7 @@ check_values(from_file);
 assert(isequaln(from_file, from_tables), 'tables and file give different results');
 fails(@() read_results([fullfile(examples, 'monte_carlo') '.h5'], 'linear_deformation'), 'of kind monte-carlo, which has no indices');
 check_groups(examples);
+check_ranked(examples);
 fails(@() read_results(fullfile(tables, 'global.csv')), 'not a result of poesy');
 fails(@() read_results(fullfile(examples, 'newer.h5')), 'has version 2.0, this reads 1.x');
 fails(@() read_results(fullfile(examples, 'stranger.h5')), 'filetype: something-else');

@@ -39,6 +39,9 @@ set_tests_properties(interop.make_strangers PROPERTIES FIXTURES_SETUP interop_st
                      FIXTURES_REQUIRED interop_examples LABELS interop)
 poesy_interop_test(python_read_results ${POESY_PYTHON} -B ${scripts}/read_results_test.py $<TARGET_FILE:poesy> ${examples})
 poesy_interop_test(octave_read_results ${octave} ${scripts}/check_read_results.m ${PROJECT_SOURCE_DIR} ${examples})
+# The package +poesy runs studies of every kind; it finds the program as users tell it where it is.
+add_test(NAME interop.octave_poesy COMMAND ${octave} ${scripts}/check_poesy.m ${PROJECT_SOURCE_DIR})
+set_tests_properties(interop.octave_poesy PROPERTIES LABELS interop TIMEOUT 300 ENVIRONMENT "POESY=$<TARGET_FILE:poesy>")
 set_tests_properties(interop.python_read_results interop.octave_read_results PROPERTIES
                      TIMEOUT 300 FIXTURES_REQUIRED "interop_examples;interop_strangers" ENVIRONMENT "POESY_PYTHON=${POESY_PYTHON}")
 add_test(NAME interop.reading_guide COMMAND ${POESY_PYTHON} -B ${scripts}/reading_guide_test.py $<TARGET_FILE:poesy>

@@ -23,7 +23,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 CLONE = "root/poesy"  # inside the root
 ERRORS = 25  # of the published study
 MOST_PACKAGES = 165
-FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen",
+FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
 RESULTS = ("build/2upr-rpu-platform.h5", "build/2upr-rpu-published.h5")
 REPORTS = ("build/2upr-rpu-platform.html", "build/2upr-rpu-both.html")

@@ -1,13 +1,18 @@
-% MATLAB's h5info, for tests in Octave: the groups of the root with the names of their datasets, both as columns.
+% MATLAB's h5info, for tests in Octave: the groups of the root with their datasets and the groups within, as columns.
 function info = h5info(file)
-  script = fullfile(fileparts(mfilename('fullpath')), 'h5_info.py');
-  [status, text] = system(sprintf('"%s" -B "%s" "%s" 2>&1', getenv('POESY_PYTHON'), script, file));
-  if status ~= 0
-    error('h5info: %s', text);
-  end
-  info.Groups = struct('Name', {}, 'Datasets', {});
-  for line = strsplit(strtrim(text), "\n")
-    words = strsplit(line{1}, ' ');
-    info.Groups(end + 1, 1) = struct('Name', words{1}, 'Datasets', {struct('Name', words(2:end)')});
+  paths = keys(h5_contents(file));
+  info = group_of(paths(~strncmp(paths, '/@', 2)), '');
+end
+
+function group = group_of(paths, name)
+  words = cellfun(@(path) strsplit(path(numel(name) + 2:end), '/'), paths, 'UniformOutput', false);
+  deeper = cellfun(@numel, words) > 1;
+  first = cellfun(@(of) of{1}, words, 'UniformOutput', false);
+  group.Name = name;
+  group.Datasets = struct('Name', first(~deeper)');
+  group.Groups = struct('Name', {}, 'Datasets', {}, 'Groups', {});
+  for inner = unique(first(deeper))
+    path = [name '/' inner{1}];
+    group.Groups(end + 1, 1) = group_of(paths(strncmp(paths, [path '/'], numel(path) + 1)), path);
   end
 end

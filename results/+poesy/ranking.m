@@ -1,0 +1,49 @@
+function ranked = ranking(result, response)
+% POESY.RANKING  What matters most: the rows of result.ranked for one response, the largest first.
+%
+%   poesy.ranking(result)                          prints the ranking for the first response that is a length
+%   poesy.ranking(result, 'angular_deformation')   for another response
+%   ranked = poesy.ranking(result, response)       gives it: kind, what, response, unit; names {N x 1};
+%                                                  value, low, high [N x 1]; order [N x 1], the rows of result.ranked
+%
+% result is what POESY.READ or POESY.RUN gave, or a file or folder that POESY.READ takes. See there for what is ranked. Rows
+% without a number come last, and rows with the same number in the order of the result. Where no response is a length, the
+% first is taken; shares and Sobol' indices have no unit, so name the response to be sure which one is meant.
+  if ~isstruct(result)
+    result = poesy.read(result);
+  end
+  all = result.ranked;
+  if isempty(all.value)
+    error('poesy:nothing', 'a result of kind %s that has nothing to rank: %s', result.kind, all.what);
+  end
+  if nargin < 2 || isempty(response)
+    lengths = [find(strcmp(all.units, 'mm')); 1];
+    response = all.responses{lengths(1)};
+  end
+  r = find(strcmp(all.responses, response));
+  if isempty(r)
+    error('poesy:response', 'there is no response %s; it has %s', response, strjoin(all.responses', ', '));
+  end
+  sorted = all.value(:, r);
+  sorted(isnan(sorted)) = -Inf;
+  [~, order] = sort(sorted, 'descend');
+  ranked = struct('kind', result.kind, 'what', all.what, 'response', response, 'unit', all.units{r}, ...
+                  'names', {all.names(order)}, 'value', all.value(order, r), 'low', all.low(order, r), ...
+                  'high', all.high(order, r), 'order', order);
+  if nargout == 0
+    print(ranked);
+    clear('ranked');
+  end
+end
+
+function print(ranked)
+  width = max(cellfun(@numel, ranked.names));
+  fprintf('%s [%s], %s\n', ranked.what, ranked.unit, ranked.response);
+  for k = 1:numel(ranked.names)
+    fprintf('%4d  %-*s  %12.4g', k, width, ranked.names{k}, ranked.value(k));
+    if ~isnan(ranked.low(k))
+      fprintf('  (%.4g to %.4g)', ranked.low(k), ranked.high(k));
+    end
+    fprintf('\n');
+  end
+end
