@@ -51,11 +51,11 @@ void ToleranceSearch::refuse_lowest() const {
       "widen a limit, ask for a smaller yield, or lower the bounds of parts");
 }
 
-void ToleranceSearch::refuse_unbounded() const {
+void ToleranceSearch::refuse_unbounded(std::uint64_t rejects) const {
   throw InputError({},
                    fmt::format("no tolerances were found with which {} % of the machines are within the limits: of the "
                                "finest that were tried, {} of {} machines are not within them, and {} may be",
-                               100.0 * asked_.yield, trial_.rejects(), trial_.load.size(), allowed_.design),
+                               100.0 * asked_.yield, rejects, trial_.load.size(), allowed_.design),
                    "widen a limit, give the parts bounds, or leave out poses where machines cannot be solved");
 }
 

@@ -243,11 +243,12 @@ bool ToleranceSearch::scale_all() {
 /// Tries the lowest tolerances, after which nothing is left to try. False when stopped.
 bool ToleranceSearch::lower_to_least() {
   found_ = programme_.lowest();
-  if (!can_be_made(found_)) refuse_unbounded();
   auto trial = try_all();
   if (!trial) return false;
+  const std::uint64_t before = trial_.rejects();
   trial_ = *std::move(trial);
   if (trial_.rejects() > allowed_.design) refuse_lowest();
+  if (!can_be_made(found_)) refuse_unbounded(before);
   chosen_ = {found_, kNaN, {}};  // by no programme
   add_stage("the lowest tolerances", trial_.load.size(), trial_.rejects());
   return true;

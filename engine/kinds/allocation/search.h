@@ -109,7 +109,7 @@ class ToleranceSearch {
   std::string row_text(std::size_t row) const;
   [[noreturn]] void refuse(const CannotBeMet& broken) const;
   [[noreturn]] void refuse_lowest() const;
-  [[noreturn]] void refuse_unbounded() const;
+  [[noreturn]] void refuse_unbounded(std::uint64_t rejects) const;
   [[noreturn]] void refuse_endless(const WithoutEnd& endless) const;
 
   const StudyRun& run_;
