@@ -1,0 +1,30 @@
+# Run by cpack when the files of the tarball are in place, before they are packed: README.txt says what the program needs of
+# the machine, read off the program.
+include(${CMAKE_CURRENT_LIST_DIR}/../notices.cmake)
+
+# poesy_highest(OUT SYMBOLS NAME): the highest version NAME_x.y.z that a symbol of the program asks for.
+function(poesy_highest out symbols name)
+  string(REGEX MATCHALL "[( ]${name}_[0-9.]+[0-9]" found "${symbols}")
+  list(TRANSFORM found REPLACE "^[( ]" "")
+  list(REMOVE_DUPLICATES found)
+  list(SORT found COMPARE NATURAL ORDER DESCENDING)
+  list(GET found 0 highest)
+  set(${out} ${highest} PARENT_SCOPE)
+endfunction()
+
+set(root ${CPACK_TEMPORARY_DIRECTORY})
+set(program ${root}/${CPACK_POESY_BINDIR}/poesy)
+execute_process(COMMAND ${CPACK_POESY_OBJDUMP} --dynamic-syms ${program} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CPACK_POESY_OBJDUMP} --private-headers ${program} OUTPUT_VARIABLE headers COMMAND_ERROR_IS_FATAL ANY)
+poesy_highest(glibc "${symbols}" GLIBC)
+string(REPLACE GLIBC_ "" glibc ${glibc})
+poesy_highest(glibcxx "${symbols}" GLIBCXX)
+poesy_highest(cxxabi "${symbols}" CXXABI)
+string(REGEX MATCHALL "NEEDED +[^\n]+" needed "${headers}")
+list(TRANSFORM needed REPLACE "NEEDED +" "        ")
+list(FILTER needed EXCLUDE REGEX " (libc|libm|libgcc_s|libstdc\\+\\+|ld-linux[^ ]*)\\.so")
+list(JOIN needed "\n" libraries)
+string(APPEND libraries "\n")
+configure_file(${CMAKE_CURRENT_LIST_DIR}/README.txt.in ${root}/README.txt @ONLY)
+configure_file(${CPACK_POESY_SOURCE}/LICENSE ${root}/${CPACK_POESY_DOC}/poesy/LICENSE COPYONLY)
+poesy_notices(${root}/${CPACK_POESY_DOC}/poesy/notices)
