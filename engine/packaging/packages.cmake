@@ -1,7 +1,9 @@
 # Packages by CPack, from a build folder in which `poesy` and `poesy_completion_and_man` are built:
 #
 #   cpack -G DEB    poesy_VERSION_ARCH.deb, the program with its data, and libpoesy-dev_VERSION_ARCH.deb
-#   cpack -G TGZ    the program with its data, for other distributions
+#   cpack -G TGZ    the program with its data, for other distributions. Configured by the preset portable it needs the C and
+#                   the C++ library alone: HDF5 is in the program, since other distributions have it under other names and
+#                   Debian's needs forty libraries more, and the others lie beside it.
 #
 # What differs between the two is in generator.cmake, which cpack reads for each.
 set(POESY_MAINTAINER "The poesy developers <maintainers@poesy.example>" CACHE STRING "Who answers for the packages")
@@ -70,6 +72,14 @@ set(CPACK_POESY_FILE_OF_OpenSSL ${OPENSSL_INCLUDE_DIR}/openssl/crypto.h)
 # for none in programs.
 set(CPACK_POESY_COMPILED_IN ${Eigen3_CONFIG} ${CLI11_CONFIG} ${nlohmann_json_CONFIG}
     ${RANDOM123_INCLUDE_DIR}/Random123/philox.h ${HIGHWAY_INCLUDE_DIR}/hwy/highway.h)
+# The preset portable links these statically, and has the program look for others beside itself.
+if(HDF5_USE_STATIC_LIBRARIES)
+  list(APPEND CPACK_POESY_COMPILED_IN ${HDF5_C_LIBRARY_hdf5} ${HDF5_C_LIBRARY_sz} ${HDF5_C_LIBRARY_z}
+       ${OPENSSL_CRYPTO_LIBRARY})
+endif()
+if(CMAKE_INSTALL_RPATH MATCHES "/lib/poesy$")
+  set(CPACK_POESY_BRINGS_LIBRARIES ON)
+endif()
 
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/generator.cmake)
 include(CPack)

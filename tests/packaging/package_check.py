@@ -3,6 +3,8 @@
 
     package_check.py BUILD                     BUILD is a build folder, in which the program is built
     package_check.py BUILD --no-development    without libpoesy-dev and the project that is built with it
+    package_check.py BUILD --portable BUILD2   the tarball from BUILD2, configured by the preset portable; it must run in the
+                                               root before anything is installed there
 
 The packages come from cpack, and lintian must find no error in them. In the root, `apt-get install ./poesy_*.deb` is all that
 is done before the published study runs; its ranking must be the one that bare_root.py asks for. Then libpoesy-dev: a project
@@ -55,7 +57,7 @@ poesy template /{MECHANISMS}/3-rps/3-rps.toml > template.toml
 poesy check template.toml > checked.txt
 bash -c '. /usr/share/bash-completion/completions/poesy && complete -p poesy'
 """
-PYTHON_PACKAGES = ("python3-venv python3-pip python3-setuptools python3-wheel python3-numpy python3-h5py python3-xarray "
+PYTHON_PACKAGES = ("python3-venv python3-setuptools python3-wheel python3-numpy python3-h5py python3-xarray "
                    "python3-matplotlib python3-nbformat python3-nbclient python3-nbconvert python3-ipykernel")
 
 
@@ -66,14 +68,13 @@ def as_owner(build, arguments, **options):
         env={key: value for key, value in os.environ.items() if not key.startswith("SUDO_")} | {"HOME": "/tmp"}, **options)
 
 
-def make_packages(build, work):
-    """Paths of poesy_*.deb, libpoesy-dev_*.deb and the tarball."""
-    folder = work / "packages"
+def make_packages(build, generator, work):
+    """The folder with the packages that cpack makes of a build."""
+    folder = work / generator
     folder.mkdir()
     os.chown(folder, build.stat().st_uid, build.stat().st_gid)
-    for generator in ("DEB", "TGZ"):
-        as_owner(build, ["cpack", "--config", build / "CPackConfig.cmake", "-G", generator, "-B", folder])
-    return [only_one(folder, pattern) for pattern in ("poesy_*.deb", "libpoesy-dev_*.deb", "poesy-*.tar.gz")]
+    as_owner(build, ["cpack", "--config", build / "CPackConfig.cmake", "-G", generator, "-B", folder])
+    return folder
 
 
 def only_one(folder, pattern):
@@ -129,12 +130,13 @@ def check_gallery(output, prefix):
         raise Fault(f"poesy models names {len(files)} files of mechanisms, not the gallery in {prefix}/share")
 
 
-def check_needs(text):
-    """That the tarball says what it needs: glibc, the C++ library and shared libraries."""
+def check_needs(text, wanted):
+    """That the tarball says what it needs: glibc, the C++ library and, as wanted, shared libraries or "none"."""
     if not re.search(r"\(glibc\) 2\.\d+ or newer", text) or not re.search(r"GLIBCXX_3\.4\.\d+ and CXXABI_1\.3", text):
         raise Fault("README.txt of the tarball does not say which glibc or which C++ library it needs")
-    if not re.search(r"^ +libhdf5\S*\.so\.\d+$", text, re.MULTILINE):
-        raise Fault("README.txt of the tarball does not name the shared libraries that it needs")
+    named = re.search(r"very names:\n((?: {8}\S+\n)+)", text)
+    if not named or not re.search(wanted, named[1]):
+        raise Fault(f"README.txt of the tarball does not name {wanted} as what it needs")
 
 
 def check_removed(root):
@@ -165,12 +167,15 @@ def use_libraries(root, package, version, clock):
            "cmake --build built && ./built/downstream", clock, HOME)
 
 
-def use_tarball(root, tarball, clock):
-    """The libraries that it needs are there since the package was installed."""
+def use_tarball(root, tarball, wanted, clock):
+    """What the root has must be enough for the program in the tarball."""
     folder = tarball.name.removesuffix(".tar.gz")
     run(["tar", "--extract", "--gzip", "--no-same-owner", "--file", tarball, "--directory", root / HOME])
-    check_needs((root / HOME / folder / "README.txt").read_text(encoding="utf-8"))
-    check_gallery(follow(root, f"echo '== The tarball' && ./{folder}/bin/poesy models", clock, HOME), f"/{HOME}/{folder}")
+    check_needs((root / HOME / folder / "README.txt").read_text(encoding="utf-8"), wanted)
+    prefix = f"/{HOME}/{folder}"
+    check_gallery(follow(root, f"echo '== The tarball' && {prefix}/bin/poesy models && {prefix}/bin/poesy run "
+                         f"{prefix}/share/poesy/mechanisms/3-rps/study.toml -o tarball.h5 --quiet && "
+                         f"{prefix}/bin/poesy verify tarball.h5", clock, HOME), prefix)
 
 
 def use_python(root, clock):
@@ -200,18 +205,23 @@ def summary(clock, count):
         print(f"{seconds:8.1f} s  {name[:100]}")
 
 
-def try_out(build, development, work):
+def try_out(build, portable, development, work):
     root, clock = work / "root", Clock()
     clock.begin("making the packages")
-    program, libraries, tarball = make_packages(build, work)
+    folder = make_packages(build, "DEB", work)
+    program, libraries = only_one(folder, "poesy_*.deb"), only_one(folder, "libpoesy-dev_*.deb")
+    tarball = only_one(make_packages(portable or build, "TGZ", work), "poesy-*.tar.gz")
     clock.begin("lintian")
     check_lintian([program, libraries])
     clock.begin("making the root")
     make_root(root, work, ["ca-certificates"])
     before = installed(root)
+    if portable:
+        use_tarball(root, tarball, "none", clock)
     use_program(root, program, clock)
     count = len(installed(root) - before)
-    use_tarball(root, tarball, clock)
+    if not portable:
+        use_tarball(root, tarball, "libhdf5", clock)
     if development:
         use_libraries(root, libraries, version_of(build), clock)
     use_python(root, clock)
@@ -223,12 +233,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path, metavar="BUILD")
     parser.add_argument("--no-development", action="store_true")
+    parser.add_argument("--portable", type=Path, metavar="BUILD2")
     asked = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     work = Path(tempfile.mkdtemp(prefix="poesy-packages-"))
     work.chmod(0o755)
     try:
-        try_out(asked.build.resolve(), not asked.no_development, work)
+        try_out(asked.build.resolve(), asked.portable and asked.portable.resolve(), not asked.no_development, work)
     except (Fault, OSError) as fault:
         sys.exit(f"package_check: {fault}")
     finally:

@@ -11,8 +11,11 @@ from bare_root import Fault
 
 NEEDS = """    GNU C library (glibc) 2.35 or newer
     GNU C++ library with GLIBCXX_3.4.30 and CXXABI_1.3.13 (of GCC 12, which built it, or newer)
+    these shared libraries of the machine, under these very names:
         libtbb.so.12
         libhdf5_serial.so.103
+    and these, which it brings along:
+        none
 """
 MODELS = "3-prs    3-PRS\n\nfiles of mechanisms\n" + "".join(f"  /usr/share/poesy/mechanisms/{n}/{n}.toml\n" for n in "abcdef")
 
@@ -57,10 +60,12 @@ class PackageCheckTest(unittest.TestCase):
         self.expect_fault("names 5 files", package_check.check_gallery, MODELS[:MODELS.rindex("  /")], "/usr")
 
     def test_needs_of_the_tarball(self):
-        package_check.check_needs(NEEDS)
-        self.expect_fault("which glibc", package_check.check_needs, NEEDS.replace("2.35", ""))
-        self.expect_fault("C++ library", package_check.check_needs, NEEDS.replace("GLIBCXX_3.4.30", ""))
-        self.expect_fault("shared libraries", package_check.check_needs, NEEDS.replace("libhdf5_serial", "lib"))
+        package_check.check_needs(NEEDS, "libhdf5")
+        package_check.check_needs(NEEDS.replace("libtbb.so.12\n        libhdf5_serial.so.103", "none"), "none")
+        self.expect_fault("which glibc", package_check.check_needs, NEEDS.replace("2.35", ""), "libhdf5")
+        self.expect_fault("C++ library", package_check.check_needs, NEEDS.replace("GLIBCXX_3.4.30", ""), "libhdf5")
+        self.expect_fault("name none", package_check.check_needs, NEEDS, "none")
+        self.expect_fault("name libhdf5", package_check.check_needs, NEEDS.replace("libhdf5_serial", "lib"), "libhdf5")
 
     def test_one_package_of_a_name(self):
         for name in ("poesy_1_amd64.deb", "libpoesy-dev_1_amd64.deb"):

@@ -3,9 +3,10 @@
 # poesy_package_of(OUT FILE): the package that installed a file. Fails for a file of no package.
 function(poesy_package_of out file)
   file(REAL_PATH "${file}" file)
-  execute_process(COMMAND dpkg-query --search ${file} OUTPUT_VARIABLE found ERROR_VARIABLE problem RESULT_VARIABLE failed)
-  if(failed OR NOT found MATCHES "^([a-z0-9.+-]+)[:,]")
-    message(FATAL_ERROR "'${file}' is of no Debian package: ${found}${problem}")
+  string(REGEX REPLACE "^/usr/lib" "/lib" before_merging ${file})  # where /lib is a link, packages may name either
+  execute_process(COMMAND dpkg-query --search ${file} ${before_merging} OUTPUT_VARIABLE found ERROR_QUIET)
+  if(NOT found MATCHES "^([a-z0-9.+-]+)[:,]")
+    message(FATAL_ERROR "'${file}' is of no Debian package: ${found}")
   endif()
   set(${out} ${CMAKE_MATCH_1} PARENT_SCOPE)
 endfunction()
