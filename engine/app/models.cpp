@@ -1,5 +1,9 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "engine/app/command_line.h"
 #include "engine/app/terminal.h"
@@ -75,6 +79,30 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
   write_text(path, mechanism_picture(*sketch, entry.description.title));
 }
 
+/// Folder of the mechanisms' files that are installed with this program; empty when there is none, as where the program
+/// lies in its build folder, and on systems without /proc.
+std::filesystem::path installed_mechanisms() {
+  std::error_code none;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
+  const auto folder = (program.parent_path() / POESY_MECHANISMS).lexically_normal();
+  return std::filesystem::is_directory(folder, none) ? folder : std::filesystem::path();
+}
+
+/// The mechanisms' files in a folder, one a line: NAME/NAME.toml of each folder NAME. "" for an empty path.
+std::string files_text(const std::filesystem::path& folder) {
+  if (folder.empty()) return "";
+  std::vector<std::string> files;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const auto file = entry.path() / (entry.path().filename().string() + ".toml");
+    if (std::filesystem::exists(file, none)) files.push_back(file.string());
+  }
+  std::sort(files.begin(), files.end());
+  std::string text = files.empty() ? "" : "\nfiles of mechanisms, each with a study beside it\n";
+  for (const std::string& file : files) text += "  " + file + "\n";
+  return text;
+}
+
 struct ModelsOptions {
   std::string model;
   std::string picture;
@@ -82,7 +110,7 @@ struct ModelsOptions {
 
 int print_models(const ModelsOptions& options) {
   if (options.model.empty()) {
-    print(models_text(registry()));
+    print(models_text(registry()) + files_text(installed_mechanisms()));
     return kDone;
   }
   const CatalogEntry entry = find_model(options.model);

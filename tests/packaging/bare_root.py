@@ -166,7 +166,8 @@ def run(arguments, **options):
         raise Fault(f"{arguments[0]} ended with exit code {done.returncode}: {' '.join(map(str, arguments))}")
 
 
-def make_root(root, work):
+def make_root(root, work, packages):
+    """Debian's minimal base with these packages besides, from this machine's sources."""
     codename = re.search(r"^VERSION_CODENAME=(\w+)$", Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE)
     if not codename:
         raise Fault("/etc/os-release does not say which Debian this is")
@@ -177,7 +178,7 @@ def make_root(root, work):
         if text:
             (work / name).write_text(text, encoding="utf-8")
             sources.append(work / name)
-    run(["mmdebstrap", "--quiet", "--variant=minbase", "--include=ca-certificates,git", codename[1], root, *sources])
+    run(["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", codename[1], root, *sources])
     shutil.copyfile("/etc/resolv.conf", root / "etc/resolv.conf")
     (root / "etc/hosts").write_text(HOSTS, encoding="utf-8")
     for certificate in Path("/", CERTIFICATES).glob("*.crt"):
@@ -193,10 +194,10 @@ def clone(root, work):
     run(["git", "-C", root / CLONE, "log", "--oneline", "--max-count=1"], env=environment)
 
 
-def follow(root, command, clock):
-    """Runs a command in the clone, shows and returns what it prints; a phase begins with each line "== ..."."""
+def follow(root, command, clock, folder=CLONE):
+    """Runs a command in a folder of the root, shows and returns what it prints; a phase begins with each line "== ..."."""
     lines = []
-    with subprocess.Popen([*ENTER, root, "sh", "-c", f"cd /{CLONE} && {command}"], stdout=subprocess.PIPE,
+    with subprocess.Popen([*ENTER, root, "sh", "-c", f"cd /{folder} && {command}"], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace") as process:
         try:
             for line in process.stdout:
@@ -235,7 +236,7 @@ def try_out(wanted, work):
     root, clock = work / "root", Clock()
     command = command_of((REPOSITORY / "README.md").read_text(encoding="utf-8"), wanted)
     clock.begin("making the root")
-    make_root(root, work)
+    make_root(root, work, ["ca-certificates", "git"])
     before = installed(root)
     clock.begin("cloning")
     clone(root, work)

@@ -26,3 +26,10 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -D CMAKE_BUIL
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/downstream)
 run(${prefix}/bin/poesy --version)
+
+# The installed program names the gallery that is installed with it.
+execute_process(COMMAND ${prefix}/bin/poesy models OUTPUT_VARIABLE models COMMAND_ERROR_IS_FATAL ANY)
+string(FIND "${models}" "  ${prefix}/share/poesy/mechanisms/3-rps/3-rps.toml\n" found)
+if(found EQUAL -1)
+  message(FATAL_ERROR "poesy models does not name the installed gallery: ${models}")
+endif()

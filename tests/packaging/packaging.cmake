@@ -12,7 +12,11 @@ add_test(NAME packaging.downstream
                  ${CMAKE_CURRENT_SOURCE_DIR}/packaging/downstream.cmake)
 set_tests_properties(packaging.downstream PROPERTIES LABELS install TIMEOUT 600)
 
-# The program that tries a new user's first command in a bare root takes minutes and root's rights: .ci/run starts it.
-add_test(NAME packaging.bare_root_finds_faults
-         COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/packaging/bare_root_test.py)
-set_tests_properties(packaging.bare_root_finds_faults PROPERTIES LABELS install)
+# The programs that use a bare root take minutes and root's rights: .ci/run starts them.
+foreach(name IN ITEMS bare_root package_check)
+  add_test(NAME packaging.${name}_finds_faults
+           COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/packaging/${name}_test.py)
+  set_tests_properties(packaging.${name}_finds_faults PROPERTIES LABELS install)
+endforeach()
+add_test(NAME packaging.changelog COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/packaging/changelog_test.py)
+set_tests_properties(packaging.changelog PROPERTIES LABELS install)

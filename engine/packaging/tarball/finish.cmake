@@ -1,0 +1,82 @@
+# Run by cpack when the files of the tarball are in place, before they are packed: brings the libraries along that the preset
+# `portable` asks for, and says in README.txt what the program needs of the machine, as read off the program.
+include(${CMAKE_CURRENT_LIST_DIR}/../notices.cmake)
+
+# Part of every Linux, and not to be mixed with another one's.
+set(POESY_SYSTEM "^(libc|libm|libgcc_s|libstdc\\+\\+|ld-linux.*)\\.so")
+
+# poesy_output(OUT COMMAND...)
+function(poesy_output out)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+  set(${out} "${output}" PARENT_SCOPE)
+endfunction()
+
+# poesy_needed(OUT FILE): names of the shared libraries that a program or library asks for, but for the system's.
+function(poesy_needed out file)
+  poesy_output(headers ${CPACK_POESY_OBJDUMP} --private-headers ${file})
+  string(REGEX MATCHALL "NEEDED +[^\n]+" names "${headers}")
+  list(TRANSFORM names REPLACE "NEEDED +" "")
+  list(FILTER names EXCLUDE REGEX ${POESY_SYSTEM})
+  set(${out} ${names} PARENT_SCOPE)
+endfunction()
+
+# poesy_highest(OUT SYMBOLS NAME): the highest version NAME_x.y.z that a symbol asks for.
+function(poesy_highest out symbols name)
+  string(REGEX MATCHALL "[( ]${name}_[0-9.]+[0-9]" found "${symbols}")
+  list(TRANSFORM found REPLACE "^[( ]${name}_" "")
+  list(REMOVE_DUPLICATES found)
+  list(SORT found COMPARE NATURAL ORDER DESCENDING)
+  list(GET found 0 highest)
+  set(${out} ${highest} PARENT_SCOPE)
+endfunction()
+
+# poesy_bring(OUT PROGRAM FOLDER): copies the libraries that a program needs, with their notices. OUT are their paths. Fails
+# for a library that needs more than the system: that one is to be linked statically.
+function(poesy_bring out program folder notices)
+  poesy_needed(names ${program})
+  poesy_output(places ldd ${program})
+  set(brought)
+  foreach(name IN LISTS names)
+    string(REGEX MATCH "${name} => ([^ \n]+)" _ "${places}")
+    file(REAL_PATH "${CMAKE_MATCH_1}" place)
+    poesy_needed(more ${place})
+    if(more)
+      message(FATAL_ERROR "${name} needs ${more}: configure with the preset portable")
+    endif()
+    configure_file(${place} ${folder}/${name} COPYONLY)
+    poesy_notice(${place} ${notices})
+    list(APPEND brought ${folder}/${name})
+  endforeach()
+  set(${out} ${brought} PARENT_SCOPE)
+endfunction()
+
+# poesy_lines(OUT NAMES...): one a line; "none" for no name.
+function(poesy_lines out)
+  set(names ${ARGN})
+  if(NOT names)
+    set(names none)
+  endif()
+  list(TRANSFORM names PREPEND "        ")
+  list(JOIN names "\n" lines)
+  set(${out} "${lines}" PARENT_SCOPE)
+endfunction()
+
+set(root ${CPACK_TEMPORARY_DIRECTORY})
+set(program ${root}/${CPACK_POESY_BINDIR}/poesy)
+set(notices ${root}/${CPACK_POESY_DOC}/poesy/notices)
+configure_file(${CPACK_POESY_SOURCE}/LICENSE ${root}/${CPACK_POESY_DOC}/poesy/LICENSE COPYONLY)
+poesy_notices(${notices})
+poesy_needed(needed ${program})
+set(brought)
+if(CPACK_POESY_BRINGS_LIBRARIES)
+  poesy_bring(brought ${program} ${root}/lib/poesy ${notices})
+  set(needed)
+endif()
+poesy_output(symbols ${CPACK_POESY_OBJDUMP} --dynamic-syms ${program} ${brought})
+poesy_highest(glibc "${symbols}" GLIBC)
+poesy_highest(glibcxx "${symbols}" GLIBCXX)
+poesy_highest(cxxabi "${symbols}" CXXABI)
+poesy_lines(libraries ${needed})
+list(TRANSFORM brought REPLACE "^${root}/" "")
+poesy_lines(brought ${brought})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/README.txt.in ${root}/README.txt @ONLY)
