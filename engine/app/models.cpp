@@ -65,7 +65,7 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
     throw InputError({path}, "is no name of a picture", "pictures are SVG: name it PICTURE.svg");
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
-  const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch();
+  const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch({});
   if (!sketch) {
     throw InputError({}, "there is no picture of '" + entry.description.name + "'",
                      "pictures are of mechanisms from files");

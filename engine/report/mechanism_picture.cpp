@@ -8,24 +8,19 @@
 
 #include "engine/base/text.h"
 #include "engine/report/html/page.h"
+#include "engine/report/svg_shapes.h"
 
 namespace poesy {
 namespace {
 
 constexpr double kPanel = 320.0;  // pixels
 constexpr double kMargin = 34.0;  // around a panel's drawing
-constexpr double kGlyph = 6.0;    // half of a joint's glyph
 constexpr double kTick = 15.0;    // half of an axis
 constexpr double kHead = 26.0;    // for a title of one line
 constexpr double kTitleLine = 18.0;
 constexpr std::size_t kTitleWidth = 70;  // characters of a line
 constexpr double kLegend = 44.0;         // below the panels
 constexpr std::array<std::string_view, 6> kColours{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
-
-struct Pixel {
-  double x;  ///< to the right
-  double y;  ///< downwards
-};
 
 /// A direction from which one looks.
 struct SketchView {
@@ -69,65 +64,6 @@ ViewExtent extent(std::span<const SketchVector> points, const SketchView& view) 
     most = {std::max(most.x, dot(point, view.right)), std::max(most.y, dot(point, view.up))};
   }
   return {{(least.x + most.x) / 2, (least.y + most.y) / 2}, std::max(most.x - least.x, most.y - least.y)};
-}
-
-std::string line(Pixel a, Pixel b, std::string_view style) {
-  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", a.x, a.y, b.x, b.y, style);
-}
-
-std::string circle(Pixel at, double radius, std::string_view style) {
-  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>\n", at.x, at.y, radius, style);
-}
-
-std::string path(std::span<const Pixel> points, std::string_view style) {
-  std::string text = "<path d=\"";
-  for (const Pixel& point : points)
-    text += fmt::format("{}{:.1f} {:.1f}", text.back() == '"' ? "M" : "L", point.x, point.y);
-  return text + fmt::format("Z\" {}/>\n", style);
-}
-
-std::string words(Pixel at, std::string_view text, std::string_view attributes = {}) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", at.x, at.y, attributes, escaped(text));
-}
-
-std::string square(Pixel at, double half, std::string_view style) {
-  const std::array<Pixel, 4> corners{Pixel{at.x - half, at.y - half},
-                                     {at.x + half, at.y - half},
-                                     {at.x + half, at.y + half},
-                                     {at.x - half, at.y + half}};
-  return path(corners, style);
-}
-
-std::string diamond(Pixel at, double half, std::string_view style) {
-  const std::array<Pixel, 4> corners{
-      Pixel{at.x - half, at.y}, {at.x, at.y - half}, {at.x + half, at.y}, {at.x, at.y + half}};
-  return path(corners, style);
-}
-
-/// R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in a circle; F: a dot.
-std::string glyph(char type, bool actuated, Pixel at, std::string_view colour) {
-  const std::string style =
-      fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.6\"", actuated ? colour : "#ffffff", colour);
-  const std::string inner =
-      fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"", actuated ? "#ffffff" : colour);
-  constexpr double kArm = 0.7 * kGlyph;
-  switch (type) {
-    case 'P':
-      return square(at, kGlyph, style);
-    case 'H':
-      return diamond(at, 1.3 * kGlyph, style);
-    case 'C':
-      return square(at, kGlyph, style) + circle(at, 0.65 * kGlyph, inner);
-    case 'U':
-      return circle(at, kGlyph, style) + line({at.x - kArm, at.y - kArm}, {at.x + kArm, at.y + kArm}, inner) +
-             line({at.x - kArm, at.y + kArm}, {at.x + kArm, at.y - kArm}, inner);
-    case 'S':
-      return circle(at, kGlyph, style) + circle(at, kGlyph / 2, inner);
-    case 'F':
-      return circle(at, kGlyph / 3, style);
-    default:
-      return circle(at, kGlyph, style);
-  }
 }
 
 /// Half of the space that a glyph takes in a row.
@@ -266,7 +202,7 @@ class ViewPanel {
   std::string joint_glyph(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
     std::string text = fmt::format("<g><title>{}</title>\n", escaped(joint.name));
     if (joint.has_errors) text += circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
-    return text + glyph(joint.type, joint.actuated, middle, colour) + "</g>\n";
+    return text + glyph(joint.type, joint.actuated, middle, {colour}) + "</g>\n";
   }
 
   const SketchView* view_;
@@ -290,10 +226,10 @@ std::string legend(Pixel at, double scale, double size) {
   double x = at.x + 170;
   constexpr std::array<std::string_view, 6> kNames{"R", "P", "H", "C", "U", "S"};
   for (const std::string_view name : kNames) {
-    text += glyph(name.front(), false, {x, at.y}, "#1d222b") + words({x + 11, at.y + 4}, name);
+    text += glyph(name.front(), false, {x, at.y}, {"#1d222b"}) + words({x + 11, at.y + 4}, name);
     x += 40;
   }
-  text += glyph('P', true, {x, at.y}, "#1d222b") + words({x + 11, at.y + 4}, "actuated");
+  text += glyph('P', true, {x, at.y}, {"#1d222b"}) + words({x + 11, at.y + 4}, "actuated");
   return text + circle({x + 84, at.y}, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"") +
          words({x + 98, at.y + 4}, "frames with errors");
 }

@@ -1,0 +1,220 @@
+// The mechanism: what C++ drew is turned, pose by pose, with the frame of a chosen error and what it does.
+
+const NO_ERROR = "none";
+const EXAGGERATIONS = [0, 0.1, 1, 10, 100];
+const FRAME_AXIS = 44; // pixels, as in robot_picture.cpp
+const ARC = 18; // pixels, radius of the arrow of a rotation
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const moved = (a, scale, b) => a.map((v, k) => v + scale * b[k]);
+
+/// Points of data-p="x,y,z x,y,z".
+function robotPoints(part) {
+  return part.dataset.p.split(" ").map((point) => point.split(",").map(Number));
+}
+
+/// Where a point stands in a picture: as RobotView has it.
+function robotProjection(data, { yaw, pitch }, { width, height }) {
+  const [sinYaw, cosYaw, sinPitch, cosPitch] = [yaw, pitch].flatMap((angle) => [
+    Math.sin((angle * Math.PI) / 180),
+    Math.cos((angle * Math.PI) / 180),
+  ]);
+  const sign = data.down ? -1 : 1;
+  return (point) => {
+    const [x, y, z] = point.map((v, k) => (k > 0 ? sign : 1) * (v - data.centre[k]));
+    const deep = x * sinYaw + y * cosYaw;
+    const up = z * cosPitch + deep * sinPitch;
+    return [width / 2 + data.scale * (x * cosYaw - y * sinYaw), height / 2 - data.scale * up];
+  };
+}
+
+/// Puts lines, outlines and what stands at a point where their points are seen.
+function placeParts(svg, project) {
+  for (const part of svg.querySelectorAll("[data-p]")) {
+    const at = robotPoints(part).map(project);
+    if (part.tagName === "line") {
+      setAttributes(part, { x1: at[0][0], y1: at[0][1], x2: at[1][0], y2: at[1][1] });
+    } else if (part.tagName === "path") {
+      part.setAttribute("d", `M${at.map((p) => p.join(" ")).join("L")}${part.dataset.open === undefined ? "Z" : ""}`);
+    } else {
+      part.setAttribute("transform", `translate(${at[0].join(" ")})`);
+    }
+  }
+}
+
+/// A part of a picture with its points.
+function robotPart(tag, points, attributes, text) {
+  const part = svgElement(tag, { ...attributes, "data-p": points.map((p) => p.join(",")).join(" ") });
+  if (text !== undefined) part.append(svgElement("text", { x: 4, y: -4 }, text));
+  return part;
+}
+
+/// The frame of an error, its axis strong, with an arrow around it where the error turns.
+function markedFrame(data, k, error) {
+  const count = values(data.frames).length / 12 / data.poses.length;
+  const numbers = Array.from(row(values(data.frames), k * count + error.frame, 12));
+  const origin = numbers.slice(0, 3);
+  const axes = [3, 6, 9].map((from) => numbers.slice(from, from + 3));
+  const group = svgElement("g", { class: "marked" });
+  axes.forEach((axis, a) => {
+    const own = a === error.axis;
+    const end = moved(origin, ((own ? 1.5 : 1) * FRAME_AXIS) / data.scale, axis);
+    group.append(robotPart("line", [origin, end], { class: own ? "error-axis" : "other-axis" }));
+    group.append(robotPart("g", [end], { class: "error-name" }, own ? `${"xyz"[a]}: ${error.name}` : "xyz"[a]));
+  });
+  if (!error.turns) return group;
+  const [u, v] = [axes[(error.axis + 1) % 3], axes[(error.axis + 2) % 3]];
+  const middle = moved(origin, (0.9 * FRAME_AXIS) / data.scale, axes[error.axis]);
+  const on = (angle, radius = ARC) =>
+    moved(moved(middle, (radius / data.scale) * Math.cos(angle), u), (radius / data.scale) * Math.sin(angle), v);
+  const arc = d3.range(0, 5.01, 0.25).map((angle) => on(angle));
+  const head = [on(4.6, ARC + 5), on(5), on(4.6, ARC - 5)];
+  group.append(robotPart("path", arc, { class: "error-turn", "data-open": "" }));
+  group.append(robotPart("path", head, { class: "error-turn", "data-open": "" }));
+  return group;
+}
+
+/// The platform as each limb holds it under the error at its size, exaggerated; once where all limbs hold it alike.
+function displacedPlatforms(data, k, e, svg, times) {
+  const group = svgElement("g", { class: "displaced" });
+  if (!data.motions || times === 0) return group;
+  const at = (k * data.errors.length + e) * data.limbs;
+  const motions = d3.range(data.limbs).map((i) => Array.from(row(values(data.motions), at + i, 6)));
+  if (!motions.flat().every(Number.isFinite)) return group;
+  const size = Math.max(...motions.flat().map(Math.abs));
+  const alike = motions.every((motion) => motion.every((v, c) => Math.abs(v - motions[0][c]) <= 1e-6 * size));
+  const platform = robotPoints(svg.querySelector(".platform"));
+  const tool = svg.querySelector(".tool");
+  for (const [i, motion] of (alike ? motions.slice(0, 1) : motions).entries()) {
+    const displaced = (p) => moved(p, times, moved(motion.slice(3), 1, cross(motion.slice(0, 3), p)));
+    const style = alike ? "" : `--limb: var(--series-${(i % 8) + 1})`;
+    group.append(robotPart("path", platform.map(displaced), { style }));
+    if (tool) group.append(robotPart("line", robotPoints(tool).map(displaced), { style }));
+    if (!alike) group.append(robotPart("g", [displaced(platform[i])], { style }, `held by limb ${i + 1}`));
+  }
+  return group;
+}
+
+/// What is shown, in words.
+function robotWords(data, k, e, times) {
+  const error = data.errors[e];
+  if (!error) return `${data.poses[k]}.`;
+  const share = error.share ? `, ${error.share}` : "";
+  const motion =
+    data.motions && times > 0 && error.size
+      ? ` The displaced platform is that of an error of ${error.size}, to first order, times ${plain(times)}.`
+      : "";
+  return `${error.name}${share}: ${error.words}.${motion}`;
+}
+
+function robot(figure, data) {
+  const pictures = [...figure.querySelectorAll(".robot-pose")];
+  const box = figure.querySelector(".robot-poses");
+  const start = { yaw: data.yaw, pitch: data.pitch };
+  const view = { ...start };
+  const shown = { pose: 0, error: data.errors.some(({ share }) => share) ? 0 : -1, times: data.exaggeration };
+  const said = readout("");
+  for (const mark of box.querySelectorAll(".marked")) mark.remove();
+
+  const update = () => {
+    pictures.forEach((picture, k) => {
+      picture.classList.toggle("other", k !== shown.pose);
+      picture.hidden = k !== shown.pose && k > 2;
+      const svg = picture.querySelector("svg");
+      for (const old of svg.querySelectorAll(".marked, .displaced")) old.remove();
+      if (shown.error >= 0) {
+        svg.append(displacedPlatforms(data, k, shown.error, svg, shown.times));
+        svg.append(markedFrame(data, k, data.errors[shown.error]));
+      }
+      placeParts(svg, robotProjection(data, view, svg.viewBox.baseVal));
+    });
+    said.textContent = robotWords(data, shown.pose, shown.error, shown.times);
+  };
+  const turn = (yaw, pitch) => {
+    view.yaw = (view.yaw + yaw) % 360;
+    view.pitch = Math.max(-90, Math.min(90, view.pitch + pitch));
+    update();
+  };
+  const reset = () => {
+    Object.assign(view, start);
+    update();
+  };
+  const steps = { ArrowLeft: [-5, 0], ArrowRight: [5, 0], ArrowUp: [0, 5], ArrowDown: [0, -5] };
+  box.classList.add("turning");
+  setAttributes(box, {
+    tabindex: 0,
+    role: "application",
+    "aria-label": "Mechanism that can be turned: drag it, or use the arrow keys; Home resets it.",
+  });
+  box.addEventListener("keydown", (event) => {
+    if (event.altKey || event.ctrlKey || event.metaKey || !(event.key in steps || event.key === "Home")) return;
+    event.preventDefault();
+    event.key === "Home" ? reset() : turn(...steps[event.key]);
+  });
+  box.addEventListener("pointerdown", (event) => box.setPointerCapture(event.pointerId));
+  box.addEventListener("pointermove", (event) => {
+    if (box.hasPointerCapture(event.pointerId)) turn(event.movementX * 0.5, event.movementY * 0.5);
+  });
+
+  const errors = select(
+    "error",
+    [NO_ERROR, ...data.errors.map(({ name, share }) => (share ? `${name} (${share})` : name))],
+    (i) => {
+      shown.error = i - 1;
+      update();
+    },
+    shown.error + 1,
+  );
+  const times = EXAGGERATIONS.map((factor) => factor * data.exaggeration);
+  const exaggeration = select(
+    "its displacement",
+    data.motions ? times.map((factor) => (factor === 0 ? "not shown" : `× ${number(factor)}`)) : [],
+    (i) => {
+      shown.times = times[i];
+      update();
+    },
+    EXAGGERATIONS.indexOf(1),
+  );
+  const slider = element("input", {
+    type: "range",
+    min: 0,
+    max: pictures.length - 1,
+    step: 1,
+    value: 0,
+    "aria-valuetext": data.poses[0],
+    oninput: () => {
+      shown.pose = Number(slider.value);
+      slider.setAttribute("aria-valuetext", data.poses[shown.pose]);
+      update();
+    },
+  });
+  const poses = element(
+    "label",
+    { class: "control", ...(pictures.length < 2 && { hidden: "" }) },
+    element("span", {}, "pose"),
+    slider,
+  );
+  figure.querySelector(".plot").before(element("div", { class: "controls" }, poses, errors, exaggeration));
+  box.after(element("button", { type: "button", class: "robot-reset", onclick: reset }, "Reset view"), said);
+  figure.classList.add("live");
+  chooseInTables(data.errors, (e) => {
+    errors.querySelector("select").selectedIndex = e + 1;
+    shown.error = e;
+    update();
+    figure.scrollIntoView({ block: "nearest" });
+  });
+  return { fit: update };
+}
+
+/// A click on the name of an error in a table chooses it; pointing there says where the error is.
+function chooseInTables(errors, choose) {
+  const positions = new Map(errors.map(({ name }, e) => [name, e]));
+  for (const cell of document.querySelectorAll("[data-table] tbody th")) {
+    const e = positions.get(cell.textContent);
+    if (e === undefined) continue;
+    cell.classList.add("in-picture");
+    cell.title = `${errors[e].words}; click to see it in the picture of the mechanism`;
+    cell.addEventListener("click", () => choose(e));
+  }
+}
