@@ -12,7 +12,7 @@
 #include "engine/base/nan.h"
 #include "engine/report/display.h"
 #include "engine/report/html/robot_picture.h"
-#include "engine/report/html/robot_words.h"
+#include "engine/report/sketch_words.h"
 
 namespace poesy {
 namespace {
@@ -398,7 +398,9 @@ void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& 
   const std::size_t open = std::min(kOpenRows, errors.size());
   section.table(errors_table(result, model, home, std::span(errors).first(open), shares));
   if (open < errors.size()) {
-    section.folded("The other errors", errors_table(result, model, home, std::span(errors).subspan(open), shares));
+    Table others = errors_table(result, model, home, std::span(errors).subspan(open), shares);
+    others.name = "where_other_errors_are";
+    section.folded("The other errors", others);
   }
   if (has_shares(errors)) section.folded("The shares of the parts", parts_table(home, parts, shares));
 }

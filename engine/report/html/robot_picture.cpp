@@ -8,18 +8,18 @@
 #include <span>
 
 #include "engine/report/html/page.h"
-#include "engine/report/html/robot_words.h"
+#include "engine/report/sketch_words.h"
 #include "engine/report/svg_shapes.h"
 
 namespace poesy {
 namespace {
 
-constexpr double kMargin = 40.0;      // pixels around the sphere that holds all
+constexpr double kMargin = 30.0;      // pixels around the sphere that holds all
 constexpr double kStep = 14.0;        // pixels between glyphs that share a point
 constexpr double kTick = 15.0;        // pixels, half of a joint's axis
-constexpr double kAxis = 44.0;        // pixels, axes of a frame
+constexpr double kAxis = 36.0;        // pixels, axes of a frame
 constexpr double kThinnest = 2.0;     // pixels of a link without share
-constexpr double kThickest = 9.0;     // pixels of the one with the largest
+constexpr double kThickest = 8.0;     // pixels of the one with the largest
 constexpr double kMillimetres = 1e3;  // in a metre
 constexpr double kSamePoint = 1.0;    // pixels: joints that are closer share a point
 

@@ -30,8 +30,8 @@ struct PartShares {
 };
 
 /// Width and height of a picture, pixels.
-inline constexpr double kRobotWidth = 640.0;
-inline constexpr double kRobotHeight = 460.0;
+inline constexpr double kRobotWidth = 460.0;
+inline constexpr double kRobotHeight = 340.0;
 
 /// A view in which all of these sketches of one mechanism are as large as may be, however it is turned.
 RobotView robot_view(const std::vector<Sketch>& sketches);

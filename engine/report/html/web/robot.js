@@ -1,8 +1,10 @@
 // The mechanism: what C++ drew is turned, pose by pose, with the frame of a chosen error and what it does.
 
 const NO_ERROR = "none";
-const EXAGGERATIONS = [0, 0.1, 1, 10, 100];
-const FRAME_AXIS = 44; // pixels, as in robot_picture.cpp
+const DISPLACEMENTS = { none: 0, same: 1, own: 2 }; // by which factor they are exaggerated
+const SHOWN_MOTION = 0.15; // of the picture's height, at most, by a factor of its own
+const FRAME_AXIS = 36; // pixels, as in robot_picture.cpp
+const NAME_WIDTH = 150; // pixels
 const ARC = 18; // pixels, radius of the arrow of a rotation
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -39,6 +41,8 @@ function placeParts(svg, project) {
       part.setAttribute("d", `M${at.map((p) => p.join(" ")).join("L")}${part.dataset.open === undefined ? "Z" : ""}`);
     } else {
       part.setAttribute("transform", `translate(${at[0].join(" ")})`);
+      const name = part.classList.contains("error-name") && part.querySelector("text");
+      if (name) name.setAttribute("text-anchor", at[0][0] > svg.viewBox.baseVal.width / 2 ? "end" : "start");
     }
   }
 }
@@ -61,7 +65,7 @@ function markedFrame(data, k, error) {
     const own = a === error.axis;
     const end = moved(origin, ((own ? 1.5 : 1) * FRAME_AXIS) / data.scale, axis);
     group.append(robotPart("line", [origin, end], { class: own ? "error-axis" : "other-axis" }));
-    group.append(robotPart("g", [end], { class: "error-name" }, own ? `${"xyz"[a]}: ${error.name}` : "xyz"[a]));
+    group.append(robotPart("g", [end], { class: "error-name" }, own ? `${"xyz"[a]}: ${shortened(error.name, NAME_WIDTH)}` : "xyz"[a]));
   });
   if (!error.turns) return group;
   const [u, v] = [axes[(error.axis + 1) % 3], axes[(error.axis + 2) % 3]];
@@ -75,35 +79,56 @@ function markedFrame(data, k, error) {
   return group;
 }
 
-/// The platform as each limb holds it under the error at its size, exaggerated; once where all limbs hold it alike.
-function displacedPlatforms(data, k, e, svg, times) {
-  const group = svgElement("g", { class: "displaced" });
-  if (!data.motions || times === 0) return group;
+/// How each limb moves the platform by the error at its size, [rotation; displacement]; one motion where all are alike;
+/// none where it is not known.
+function motionsOf(data, k, e) {
+  if (!data.motions) return [];
   const at = (k * data.errors.length + e) * data.limbs;
   const motions = d3.range(data.limbs).map((i) => Array.from(row(values(data.motions), at + i, 6)));
-  if (!motions.flat().every(Number.isFinite)) return group;
+  if (!motions.flat().every(Number.isFinite)) return [];
   const size = Math.max(...motions.flat().map(Math.abs));
   const alike = motions.every((motion) => motion.every((v, c) => Math.abs(v - motions[0][c]) <= 1e-6 * size));
+  return alike ? motions.slice(0, 1) : motions;
+}
+
+const displacement = (motion, p) => moved(motion.slice(3), 1, cross(motion.slice(0, 3), p));
+
+/// By what the motions are exaggerated: one factor for all errors, or that which shows these as well as may be.
+function exaggerationOf(data, motions, svg, choice) {
+  if (choice !== DISPLACEMENTS.own) return choice === DISPLACEMENTS.none ? 0 : data.exaggeration;
+  const points = robotPoints(svg.querySelector(".platform"));
+  const largest = d3.max(motions, (motion) => d3.max(points, (p) => Math.hypot(...displacement(motion, p))));
+  if (!(largest > 0)) return data.exaggeration;
+  const most = (SHOWN_MOTION * svg.viewBox.baseVal.height) / data.scale / largest;
+  const power = 10 ** Math.floor(Math.log10(most));
+  return power * (most < 2 * power ? 1 : most < 5 * power ? 2 : 5);
+}
+
+/// The platform as each limb holds it; once where all limbs hold it alike.
+function displacedPlatforms(motions, svg, times) {
+  const group = svgElement("g", { class: "displaced" });
+  if (times === 0) return group;
   const platform = robotPoints(svg.querySelector(".platform"));
   const tool = svg.querySelector(".tool");
-  for (const [i, motion] of (alike ? motions.slice(0, 1) : motions).entries()) {
-    const displaced = (p) => moved(p, times, moved(motion.slice(3), 1, cross(motion.slice(0, 3), p)));
-    const style = alike ? "" : `--limb: var(--series-${(i % 8) + 1})`;
+  for (const [i, motion] of motions.entries()) {
+    const displaced = (p) => moved(p, times, displacement(motion, p));
+    const style = motions.length === 1 ? "" : `--limb: var(--series-${(i % 8) + 1})`;
     group.append(robotPart("path", platform.map(displaced), { style }));
     if (tool) group.append(robotPart("line", robotPoints(tool).map(displaced), { style }));
-    if (!alike) group.append(robotPart("g", [displaced(platform[i])], { style }, `held by limb ${i + 1}`));
+    if (motions.length > 1) group.append(robotPart("g", [displaced(platform[i])], { style }, `held by limb ${i + 1}`));
   }
   return group;
 }
 
 /// What is shown, in words.
-function robotWords(data, k, e, times) {
+function robotWords(data, k, e, motions, times) {
   const error = data.errors[e];
   if (!error) return `${data.poses[k]}.`;
   const share = error.share ? `, ${error.share}` : "";
+  const whose = motions.length > 1 ? "The platform as each limb would hold it" : "The displaced platform";
   const motion =
-    data.motions && times > 0 && error.size
-      ? ` The displaced platform is that of an error of ${error.size}, to first order, times ${plain(times)}.`
+    motions.length && times > 0
+      ? ` ${whose} is that of an error of ${error.size}, to first order, × ${number(times)}.`
       : "";
   return `${error.name}${share}: ${error.words}.${motion}`;
 }
@@ -113,7 +138,7 @@ function robot(figure, data) {
   const box = figure.querySelector(".robot-poses");
   const start = { yaw: data.yaw, pitch: data.pitch };
   const view = { ...start };
-  const shown = { pose: 0, error: data.errors.some(({ share }) => share) ? 0 : -1, times: data.exaggeration };
+  const shown = { pose: 0, error: data.errors[0]?.share ? 0 : -1, times: DISPLACEMENTS.same };
   const said = readout("");
   for (const mark of box.querySelectorAll(".marked")) mark.remove();
 
@@ -123,13 +148,14 @@ function robot(figure, data) {
       picture.hidden = k !== shown.pose && k > 2;
       const svg = picture.querySelector("svg");
       for (const old of svg.querySelectorAll(".marked, .displaced")) old.remove();
+      const motions = shown.error < 0 ? [] : motionsOf(data, k, shown.error);
+      const times = exaggerationOf(data, motions, svg, shown.times);
       if (shown.error >= 0) {
-        svg.append(displacedPlatforms(data, k, shown.error, svg, shown.times));
-        svg.append(markedFrame(data, k, data.errors[shown.error]));
+        svg.append(displacedPlatforms(motions, svg, times), markedFrame(data, k, data.errors[shown.error]));
       }
       placeParts(svg, robotProjection(data, view, svg.viewBox.baseVal));
+      if (k === shown.pose) said.textContent = robotWords(data, k, shown.error, motions, times);
     });
-    said.textContent = robotWords(data, shown.pose, shown.error, shown.times);
   };
   const turn = (yaw, pitch) => {
     view.yaw = (view.yaw + yaw) % 360;
@@ -166,15 +192,16 @@ function robot(figure, data) {
     },
     shown.error + 1,
   );
-  const times = EXAGGERATIONS.map((factor) => factor * data.exaggeration);
   const exaggeration = select(
     "its displacement",
-    data.motions ? times.map((factor) => (factor === 0 ? "not shown" : `× ${number(factor)}`)) : [],
+    data.motions
+      ? ["not shown", `× ${number(data.exaggeration)}, as of all errors`, "by a factor of its own, said below"]
+      : [],
     (i) => {
-      shown.times = times[i];
+      shown.times = i;
       update();
     },
-    EXAGGERATIONS.indexOf(1),
+    DISPLACEMENTS.same,
   );
   const slider = element("input", {
     type: "range",
@@ -196,7 +223,9 @@ function robot(figure, data) {
     slider,
   );
   figure.querySelector(".plot").before(element("div", { class: "controls" }, poses, errors, exaggeration));
-  box.after(element("button", { type: "button", class: "robot-reset", onclick: reset }, "Reset view"), said);
+  const turningView = element("div", { class: "turning-view" });
+  box.replaceWith(turningView);
+  turningView.append(box, element("button", { type: "button", onclick: reset }, "Reset view"), said);
   figure.classList.add("live");
   chooseInTables(data.errors, (e) => {
     errors.querySelector("select").selectedIndex = e + 1;

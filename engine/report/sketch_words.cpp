@@ -1,4 +1,4 @@
-#include "engine/report/html/robot_words.h"
+#include "engine/report/sketch_words.h"
 
 #include <fmt/format.h>
 
