@@ -380,9 +380,10 @@ std::vector<double> divided_shares(const StoredResult& result, const std::vector
 }
 
 void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& page, Section& section) {
-  if (reported.model == nullptr || reported.model->description().name != reported.stored.model) return;
+  if (reported.model == nullptr) return;
   const StoredResult& result = reported.stored;
   const Model& model = *reported.model;
+  if (model.description().pose_coordinates.size() != result.pose_coordinates.size()) return;  // a stranger's file
   const std::vector<RobotPose> poses = poses_of(result, model, shares);
   if (poses.empty() || poses.front().pose) return;
   const Sketch& home = poses.front().sketch;

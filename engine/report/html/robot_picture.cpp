@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-constexpr double kMargin = 30.0;      // pixels around the sphere that holds all
+constexpr double kMargin = 30.0;      // pixels around all
 constexpr double kStep = 14.0;        // pixels between glyphs that share a point
 constexpr double kTick = 15.0;        // pixels, half of a joint's axis
 constexpr double kAxis = 36.0;        // pixels, axes of a frame
@@ -243,11 +243,20 @@ RobotView robot_view(const std::vector<Sketch>& sketches) {
     }
   }
   RobotView view{.centre = middle(low, high), .scale = 1.0, .z_is_down = sketches.front().z_is_down};
-  double radius = 0.0;
+  const double pitch = view.pitch * std::numbers::pi / 180.0;
+  double aside = 0.0;
+  double upwards = 0.0;
   for (const Sketch& sketch : sketches) {
-    for (const SketchVector& point : points_of(sketch)) radius = std::max(radius, distance(point, view.centre));
+    for (const SketchVector& point : points_of(sketch)) {
+      const SketchVector from = plus(point, -1.0, view.centre);
+      const double radius = std::hypot(from[0], from[1]);
+      aside = std::max(aside, radius);
+      upwards = std::max(upwards, std::abs(from[2]) * std::cos(pitch) + radius * std::sin(pitch));
+    }
   }
-  if (radius > 0.0) view.scale = (kRobotHeight / 2 - kMargin) / radius;
+  if (std::max(aside, upwards) > 0.0) {
+    view.scale = std::min((kRobotWidth / 2 - kMargin) / aside, (kRobotHeight / 2 - kMargin) / upwards);
+  }
   return view;
 }
 

@@ -29,11 +29,10 @@ struct PartShares {
   explicit PartShares(const Sketch& sketch);
 };
 
-/// Width and height of a picture, pixels.
-inline constexpr double kRobotWidth = 460.0;
-inline constexpr double kRobotHeight = 340.0;
+inline constexpr double kRobotWidth = 460.0;   ///< Of a picture, pixels.
+inline constexpr double kRobotHeight = 340.0;  ///< Of a picture, pixels.
 
-/// A view in which all of these sketches of one mechanism are as large as may be, however it is turned.
+/// A view in which all of these sketches of one mechanism have room, however it is turned about z.
 RobotView robot_view(const std::vector<Sketch>& sketches);
 
 /// A mechanism as one SVG element with title and description: links and joints in the colour of their share and as

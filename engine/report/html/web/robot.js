@@ -42,7 +42,8 @@ function placeParts(svg, project) {
     } else {
       part.setAttribute("transform", `translate(${at[0].join(" ")})`);
       const name = part.classList.contains("error-name") && part.querySelector("text");
-      if (name) name.setAttribute("text-anchor", at[0][0] > svg.viewBox.baseVal.width / 2 ? "end" : "start");
+      const atRight = at[0][0] > svg.viewBox.baseVal.width / 2;
+      if (name) setAttributes(name, { "text-anchor": atRight ? "end" : "start", x: atRight ? -4 : 4 });
     }
   }
 }
@@ -115,7 +116,7 @@ function displacedPlatforms(motions, svg, times) {
     const style = motions.length === 1 ? "" : `--limb: var(--series-${(i % 8) + 1})`;
     group.append(robotPart("path", platform.map(displaced), { style }));
     if (tool) group.append(robotPart("line", robotPoints(tool).map(displaced), { style }));
-    if (motions.length > 1) group.append(robotPart("g", [displaced(platform[i])], { style }, `held by limb ${i + 1}`));
+    if (motions.length > 1) group.append(robotPart("g", [displaced(platform[i])], { style }, `by ${i + 1}`));
   }
   return group;
 }
@@ -125,7 +126,7 @@ function robotWords(data, k, e, motions, times) {
   const error = data.errors[e];
   if (!error) return `${data.poses[k]}.`;
   const share = error.share ? `, ${error.share}` : "";
-  const whose = motions.length > 1 ? "The platform as each limb would hold it" : "The displaced platform";
+  const whose = motions.length > 1 ? "The platform as it would be held by each limb" : "The displaced platform";
   const motion =
     motions.length && times > 0
       ? ` ${whose} is that of an error of ${error.size}, to first order, × ${number(times)}.`
@@ -142,10 +143,12 @@ function robot(figure, data) {
   const said = readout("");
   for (const mark of box.querySelectorAll(".marked")) mark.remove();
 
-  const update = () => {
+  // Others than the one that is shown are drawn only to be printed.
+  const update = (all = false) => {
     pictures.forEach((picture, k) => {
       picture.classList.toggle("other", k !== shown.pose);
       picture.hidden = k !== shown.pose && k > 2;
+      if (k !== shown.pose && !all) return;
       const svg = picture.querySelector("svg");
       for (const old of svg.querySelectorAll(".marked, .displaced")) old.remove();
       const motions = shown.error < 0 ? [] : motionsOf(data, k, shown.error);
@@ -226,6 +229,7 @@ function robot(figure, data) {
   const turningView = element("div", { class: "turning-view" });
   box.replaceWith(turningView);
   turningView.append(box, element("button", { type: "button", onclick: reset }, "Reset view"), said);
+  addEventListener("beforeprint", () => update(true));
   figure.classList.add("live");
   chooseInTables(data.errors, (e) => {
     errors.querySelector("select").selectedIndex = e + 1;
@@ -233,7 +237,7 @@ function robot(figure, data) {
     update();
     figure.scrollIntoView({ block: "nearest" });
   });
-  return { fit: update };
+  return { fit: () => update(true) };
 }
 
 /// A click on the name of an error in a table chooses it; pointing there says where the error is.
