@@ -287,9 +287,7 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
 Table errors_table(const StoredResult& result, const Model& model, const Sketch& sketch,
                    std::span<const RobotError> errors, const ErrorShares& shares) {
   Table table{.name = "where_errors_are",
-              .caption =
-                  "Where each error is: joints count from the base, frames as in the names of joints' "
-                  "displacements",
+              .caption = "Where each error is",
               .columns = {text_column("error", "error"), text_column("limb", "limb"), text_column("part", "part"),
                           text_column("axis", "axis")}};
   const bool shared = has_shares({errors.begin(), errors.end()});
@@ -304,6 +302,8 @@ Table errors_table(const StoredResult& result, const Model& model, const Sketch&
     row.push_back(text_cell(axis_words(sketch, error, dimension)));
     if (shared) row.push_back(percent_cell(one.share));
   }
+  table.notes.emplace_back(
+      "joints count from the base; frame j moves with the j-th axis of the limb, its z is about or along that axis");
   if (shared) table.notes.push_back("share: " + shares.what);
   return table;
 }

@@ -12,8 +12,8 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const moved = (a, scale, b) => a.map((v, k) => v + scale * b[k]);
 
 /// Points of data-p="x,y,z x,y,z".
-function robotPoints(part) {
-  return part.dataset.p.split(" ").map((point) => point.split(",").map(Number));
+function robotPoints(part, name = "p") {
+  return part.dataset[name].split(" ").map((point) => point.split(",").map(Number));
 }
 
 /// Where a point stands in a picture: as RobotView has it.
@@ -31,6 +31,15 @@ function robotProjection(data, { yaw, pitch }, { width, height }) {
   };
 }
 
+/// Puts a name beside the end of its axis, on the side to which that goes if there is room.
+function turnAway(text, toRight) {
+  const x = text.parentElement.transform.baseVal.consolidate().matrix.e;
+  const width = 1.4 * textWidth(text.textContent);
+  const room = { left: x - width, right: text.ownerSVGElement.viewBox.baseVal.width - x - width };
+  const left = toRight < 0 ? room.left > 0 || room.right < 0 : room.right < 0;
+  setAttributes(text, { "text-anchor": left ? "end" : "start", x: left ? -4 : 4 });
+}
+
 /// Puts lines, outlines and what stands at a point where their points are seen.
 function placeParts(svg, project) {
   for (const part of svg.querySelectorAll("[data-p]")) {
@@ -41,9 +50,7 @@ function placeParts(svg, project) {
       part.setAttribute("d", `M${at.map((p) => p.join(" ")).join("L")}${part.dataset.open === undefined ? "Z" : ""}`);
     } else {
       part.setAttribute("transform", `translate(${at[0].join(" ")})`);
-      const name = part.classList.contains("error-name") && part.querySelector("text");
-      const atRight = at[0][0] > svg.viewBox.baseVal.width / 2;
-      if (name) setAttributes(name, { "text-anchor": atRight ? "end" : "start", x: atRight ? -4 : 4 });
+      if (part.dataset.from) turnAway(part.querySelector("text"), at[0][0] - project(robotPoints(part, "from")[0])[0]);
     }
   }
 }
@@ -66,7 +73,7 @@ function markedFrame(data, k, error) {
     const own = a === error.axis;
     const end = moved(origin, ((own ? 1.5 : 1) * FRAME_AXIS) / data.scale, axis);
     group.append(robotPart("line", [origin, end], { class: own ? "error-axis" : "other-axis" }));
-    group.append(robotPart("g", [end], { class: "error-name" }, own ? `${"xyz"[a]}: ${shortened(error.name, NAME_WIDTH)}` : "xyz"[a]));
+    group.append(robotPart("g", [end], { class: "error-name", "data-from": origin.join(",") }, own ? `${"xyz"[a]}: ${shortened(error.name, NAME_WIDTH)}` : "xyz"[a]));
   });
   if (!error.turns) return group;
   const [u, v] = [axes[(error.axis + 1) % 3], axes[(error.axis + 2) % 3]];
@@ -122,14 +129,14 @@ function displacedPlatforms(motions, svg, times) {
 }
 
 /// What is shown, in words.
-function robotWords(data, k, e, motions, times) {
+function robotWords(data, k, e, motions, times, choice) {
   const error = data.errors[e];
   if (!error) return `${data.poses[k]}.`;
   const share = error.share ? `, ${error.share}` : "";
   const whose = motions.length > 1 ? "The platform as it would be held by each limb" : "The displaced platform";
   const motion =
     motions.length && times > 0
-      ? ` ${whose} is that of an error of ${error.size}, to first order, × ${number(times)}.`
+      ? ` ${whose} is that of an error of ${error.size}, to first order, × ${number(times)}${choice === DISPLACEMENTS.own ? ", a factor of its own" : ""}.`
       : "";
   return `${error.name}${share}: ${error.words}.${motion}`;
 }
@@ -157,7 +164,7 @@ function robot(figure, data) {
         svg.append(displacedPlatforms(motions, svg, times), markedFrame(data, k, data.errors[shown.error]));
       }
       placeParts(svg, robotProjection(data, view, svg.viewBox.baseVal));
-      if (k === shown.pose) said.textContent = robotWords(data, k, shown.error, motions, times);
+      if (k === shown.pose) said.textContent = robotWords(data, k, shown.error, motions, times, shown.times);
     });
   };
   const turn = (yaw, pitch) => {
@@ -221,7 +228,7 @@ function robot(figure, data) {
   });
   const poses = element(
     "label",
-    { class: "control", ...(pictures.length < 2 && { hidden: "" }) },
+    { class: "control robot-slider", ...(pictures.length < 2 && { hidden: "" }) },
     element("span", {}, "pose"),
     slider,
   );
