@@ -82,7 +82,7 @@ class ViewPanel {
   }
 
   std::string drawing(const Sketch& sketch) const {
-    std::string text = words({corner_.x + 8, corner_.y + 16}, view_->name, "fill=\"#5a6270\"");
+    std::string text = svg_text({corner_.x + 8, corner_.y + 16}, view_->name, "fill=\"#5a6270\"");
     text += base_axes() + ground(sketch) + platform(sketch);
     for (std::size_t i = 0; i < sketch.limbs.size(); ++i) text += limb(sketch, i);
     return text;
@@ -98,8 +98,8 @@ class ViewPanel {
       const Pixel from = at({});
       const Pixel to = at(end);
       if (std::hypot(to.x - from.x, to.y - from.y) < 2.0) continue;
-      text += line(from, to, "stroke=\"#8b93a1\" stroke-width=\"1\"");
-      text += words({to.x + 2, to.y - 2}, std::string(1, "xyz"[axis]), "fill=\"#8b93a1\"");
+      text += svg_line(from, to, "stroke=\"#8b93a1\" stroke-width=\"1\"");
+      text += svg_text({to.x + 2, to.y - 2}, std::string(1, "xyz"[axis]), "fill=\"#8b93a1\"");
     }
     return text;
   }
@@ -108,19 +108,20 @@ class ViewPanel {
   std::string ground(const Sketch& sketch) const {
     std::vector<Pixel> points;
     for (const auto& limb : sketch.limbs) points.push_back(at(limb.front().point));
-    return path(points, "fill=\"#8b93a1\" fill-opacity=\"0.10\" stroke=\"#8b93a1\" stroke-dasharray=\"4 3\"");
+    return svg_path(points, "fill=\"#8b93a1\" fill-opacity=\"0.10\" stroke=\"#8b93a1\" stroke-dasharray=\"4 3\"");
   }
 
   std::string platform(const Sketch& sketch) const {
     std::vector<Pixel> points;
     for (const auto& limb : sketch.limbs) points.push_back(at(limb.back().point));
-    std::string text = path(points, "fill=\"#2563a8\" fill-opacity=\"0.10\" stroke=\"#5a6270\" stroke-width=\"1.5\"");
+    std::string text =
+        svg_path(points, "fill=\"#2563a8\" fill-opacity=\"0.10\" stroke=\"#5a6270\" stroke-width=\"1.5\"");
     for (const SketchVector& tip : sketch.tool) {
-      text += line(at(sketch.platform), at(tip), "stroke=\"#5a6270\" stroke-width=\"1.5\"");
-      text += words({at(tip).x + 5, at(tip).y + 4}, "tool", "fill=\"#5a6270\"");
+      text += svg_line(at(sketch.platform), at(tip), "stroke=\"#5a6270\" stroke-width=\"1.5\"");
+      text += svg_text({at(tip).x + 5, at(tip).y + 4}, "tool", "fill=\"#5a6270\"");
     }
-    return text + circle(at(sketch.platform), 2.5, "fill=\"#1d222b\"") +
-           words({at(sketch.platform).x + 5, at(sketch.platform).y - 5}, "P", "fill=\"#1d222b\"");
+    return text + svg_circle(at(sketch.platform), 2.5, "fill=\"#1d222b\"") +
+           svg_text({at(sketch.platform).x + 5, at(sketch.platform).y - 5}, "P", "fill=\"#1d222b\"");
   }
 
   std::string limb(const Sketch& sketch, std::size_t number) const {
@@ -128,14 +129,15 @@ class ViewPanel {
     const std::string_view colour = kColours[number % kColours.size()];
     std::string text;
     for (std::size_t j = 1; j < joints.size(); ++j) {
-      text +=
-          line(at(joints[j - 1].point), at(joints[j].point), fmt::format("stroke=\"{}\" stroke-width=\"2.2\"", colour));
+      text += svg_line(at(joints[j - 1].point), at(joints[j].point),
+                       fmt::format("stroke=\"{}\" stroke-width=\"2.2\"", colour));
     }
     const std::vector<Pixel> places = places_of(joints, sketch.platform);
     for (std::size_t j = 0; j < joints.size(); ++j) {
       text += tick(joints[j], places[j], colour) + joint_glyph(joints[j], places[j], colour);
     }
-    return text + words(number_place(sketch, number), std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
+    return text +
+           svg_text(number_place(sketch, number), std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
   }
 
   /// Below the first joint, or above it where the limb goes downwards; to the right of the numbers of other limbs that
@@ -194,15 +196,16 @@ class ViewPanel {
   std::string tick(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
     if (joint.type == 'S' || joint.type == 'F') return {};
     const Pixel along{dot(joint.axis, view_->right), -dot(joint.axis, view_->up)};
-    return line({middle.x - kTick * along.x, middle.y - kTick * along.y},
-                {middle.x + kTick * along.x, middle.y + kTick * along.y},
-                fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"6 2 1 2\"", colour));
+    return svg_line({middle.x - kTick * along.x, middle.y - kTick * along.y},
+                    {middle.x + kTick * along.x, middle.y + kTick * along.y},
+                    fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"6 2 1 2\"", colour));
   }
 
   std::string joint_glyph(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
     std::string text = fmt::format("<g><title>{}</title>\n", escaped(joint.name));
-    if (joint.has_errors) text += circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
-    return text + glyph(joint.type, joint.actuated, middle, {colour}) + "</g>\n";
+    if (joint.has_errors)
+      text += svg_circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
+    return text + svg_glyph(joint.type, joint.actuated, middle, {colour}) + "</g>\n";
   }
 
   const SketchView* view_;
@@ -221,17 +224,17 @@ double round_length(double size) {
 
 std::string legend(Pixel at, double scale, double size) {
   const double length = round_length(size);
-  std::string text = line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");
-  text += words({at.x + scale * length + 6, at.y + 4}, fmt::format("{:g} mm", 1e3 * length));
+  std::string text = svg_line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");
+  text += svg_text({at.x + scale * length + 6, at.y + 4}, fmt::format("{:g} mm", 1e3 * length));
   double x = at.x + 170;
   constexpr std::array<std::string_view, 6> kNames{"R", "P", "H", "C", "U", "S"};
   for (const std::string_view name : kNames) {
-    text += glyph(name.front(), false, {x, at.y}, {"#1d222b"}) + words({x + 11, at.y + 4}, name);
+    text += svg_glyph(name.front(), false, {x, at.y}, {"#1d222b"}) + svg_text({x + 11, at.y + 4}, name);
     x += 40;
   }
-  text += glyph('P', true, {x, at.y}, {"#1d222b"}) + words({x + 11, at.y + 4}, "actuated");
-  return text + circle({x + 84, at.y}, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"") +
-         words({x + 98, at.y + 4}, "frames with errors");
+  text += svg_glyph('P', true, {x, at.y}, {"#1d222b"}) + svg_text({x + 11, at.y + 4}, "actuated");
+  return text + svg_circle({x + 84, at.y}, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"") +
+         svg_text({x + 98, at.y + 4}, "frames with errors");
 }
 
 }  // namespace
@@ -253,8 +256,8 @@ std::string mechanism_picture(const Sketch& sketch, std::string_view title) {
       "fill=\"#ffffff\"/>\n",
       width, height, escaped(title), kPictureMark);
   for (std::size_t n = 0; n < title_lines.size(); ++n) {
-    text +=
-        words({8, 18 + kTitleLine * static_cast<double>(n)}, title_lines[n], "font-weight=\"bold\" font-size=\"14\"");
+    text += svg_text({8, 18 + kTitleLine * static_cast<double>(n)}, title_lines[n],
+                     "font-weight=\"bold\" font-size=\"14\"");
   }
   for (std::size_t v = 0; v < views().size(); ++v) {
     const SketchView& view = views()[v];

@@ -13,11 +13,11 @@ struct Pixel {
   double y;  ///< downwards
 };
 
-std::string line(Pixel a, Pixel b, std::string_view style);               ///< From one to the other.
-std::string circle(Pixel at, double radius, std::string_view style);      ///< Around a place.
-std::string path(std::span<const Pixel> points, std::string_view style);  ///< A closed one.
+std::string svg_line(Pixel a, Pixel b, std::string_view style);               ///< From one to the other.
+std::string svg_circle(Pixel at, double radius, std::string_view style);      ///< Around a place.
+std::string svg_path(std::span<const Pixel> points, std::string_view style);  ///< A closed one.
 /// A text, escaped.
-std::string words(Pixel at, std::string_view text, std::string_view attributes = {});
+std::string svg_text(Pixel at, std::string_view text, std::string_view attributes = {});
 
 inline constexpr double kGlyph = 6.0;  ///< Half of a joint's glyph, pixels.
 
@@ -29,6 +29,6 @@ struct GlyphColours {
 
 /// R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in a circle; F: a dot.
 /// Filled where a drive holds the joint.
-std::string glyph(char type, bool actuated, Pixel at, const GlyphColours& colours);
+std::string svg_glyph(char type, bool actuated, Pixel at, const GlyphColours& colours);
 
 }  // namespace poesy

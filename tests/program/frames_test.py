@@ -227,6 +227,16 @@ class FramesTest(ProgramTest):
         numbers = [float(number) for number in re.findall(r"<td class=\"n\"[^>]*>([\d.]+)</td>", shares)]
         self.assertAlmostEqual(sum(numbers), 100.0, delta=0.1)
 
+    def test_shares_of_groups_are_divided(self):
+        kind = 'kind = "sobol"\nfactors = ["delta_1_1_?", "epsilon_1_4_z", "epsilon_3_0_y"]\nsamples = 64\ngroups = "limb"\n'
+        self.write("study.toml", STUDY.split("[analysis]")[0] + "[analysis]\n" + kind + "[run]\nseed = 5\n")
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+        self.succeeds("report", "r.h5")
+        html = (self.folder / "r.html").read_text()
+        self.assertIn("That of a group is divided evenly among its errors", html)
+        shares = [error["share"] for error in Pictures(html).figure["errors"]]
+        self.assertEqual(len(set(shares)), 2)  # of two limbs
+
 
 if __name__ == "__main__":
     main()

@@ -322,7 +322,8 @@ Table parts_table(const Sketch& sketch, const PartShares& parts, const ErrorShar
 std::string legend(const PartShares& parts, const std::string& what) {
   if (!(parts.largest > 0.0)) return {};
   return fmt::format(
-      "<p class=\"robot-legend\"><span>{}:</span> <span>0 %</span><i class=\"robot-ramp\"></i><span>{}</span></p>\n",
+      "<p class=\"robot-legend\"><span>{}:</span> <span class=\"robot-scale\">0 %<i "
+      "class=\"robot-ramp\"></i>{}</span></p>\n",
       escaped("Colour and thickness, " + what), escaped(percent_text(parts.largest)));
 }
 

@@ -94,13 +94,13 @@ class Drawing {
 
   void add_line(const SketchVector& a, const SketchVector& b, std::string_view attributes) {
     const std::array ends{a, b};
-    text_ += line(at(a), at(b), fmt::format("{} {}", points_attribute(ends), attributes));
+    text_ += svg_line(at(a), at(b), fmt::format("{} {}", points_attribute(ends), attributes));
   }
 
   void add_path(std::span<const SketchVector> points, std::string_view attributes) {
     std::vector<Pixel> pixels;
     for (const SketchVector& point : points) pixels.push_back(at(point));
-    text_ += path(pixels, fmt::format("{} {}", points_attribute(points), attributes));
+    text_ += svg_path(pixels, fmt::format("{} {}", points_attribute(points), attributes));
   }
 
   /// What is drawn around a point, with that point in the middle.
@@ -111,7 +111,7 @@ class Drawing {
   }
 
   void add_text(const SketchVector& point, Pixel offset, std::string_view what, std::string_view attributes) {
-    add_group(point, attributes, words(offset, what));
+    add_group(point, attributes, svg_text(offset, what));
   }
 
   /// Axes of the base, the bodies between the first and between the last joints, the platform's origin and its tool.
@@ -164,7 +164,7 @@ class Drawing {
     }
     const std::string name = joint_words(*sketch_, i, j + 1) + (joint.name.empty() ? "" : " " + joint.name);
     const std::string content = element("title", fmt::format("limb {}, {}", i + 1, name)) +
-                                glyph(joint.type, joint.actuated, {0, 0}, {"var(--part)", "var(--paper)"});
+                                svg_glyph(joint.type, joint.actuated, {0, 0}, {"var(--part)", "var(--paper)"});
     add_group(place,
               fmt::format("class=\"joint\" data-limb=\"{}\" data-joint=\"{}\" data-at=\"{}\" {}", i + 1, j + 1,
                           numbers_of({&joint.point, 1}), share_style(shares_->joints[i][j])),
