@@ -228,7 +228,7 @@ class FramesTest(ProgramTest):
         self.assertAlmostEqual(sum(numbers), 100.0, delta=0.1)
 
     def test_shares_of_groups_are_divided(self):
-        kind = 'kind = "sobol"\nfactors = ["delta_1_1_?", "epsilon_1_4_z", "epsilon_3_0_y"]\nsamples = 64\ngroups = "limb"\n'
+        kind = 'kind = "sobol"\nfactors = ["delta_1_1_x", "delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]\nsamples = 64\ngroups = "limb"\n'
         self.write("study.toml", STUDY.split("[analysis]")[0] + "[analysis]\n" + kind + "[run]\nseed = 5\n")
         self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
         self.succeeds("report", "r.h5")
