@@ -167,56 +167,45 @@ function robot(figure, data) {
       if (k === shown.pose) said.textContent = robotWords(data, k, shown.error, motions, times, shown.times);
     });
   };
-  const turn = (yaw, pitch) => {
-    view.yaw = (view.yaw + yaw) % 360;
-    view.pitch = Math.max(-90, Math.min(90, view.pitch + pitch));
-    update();
-  };
-  const reset = () => {
-    Object.assign(view, start);
-    update();
-  };
-  const steps = { ArrowLeft: [-5, 0], ArrowRight: [5, 0], ArrowUp: [0, 5], ArrowDown: [0, -5] };
-  box.classList.add("turning");
-  setAttributes(box, {
-    tabindex: 0,
-    role: "application",
-    "aria-label": "Mechanism that can be turned: drag it, or use the arrow keys; Home resets it.",
+  const { controls, choose } = robotControls(data, shown, update);
+  figure.querySelector(".plot").before(controls);
+  const place = box.parentElement;
+  place.append(turnable(box, "Mechanism", view, start, TURN_STEP, update), said);
+  addEventListener("beforeprint", () => update(true));
+  figure.classList.add("live");
+  chooseInTables(data.errors, (e) => {
+    choose(e);
+    figure.scrollIntoView({ block: "nearest" });
   });
-  box.addEventListener("keydown", (event) => {
-    if (event.altKey || event.ctrlKey || event.metaKey || !(event.key in steps || event.key === "Home")) return;
-    event.preventDefault();
-    event.key === "Home" ? reset() : turn(...steps[event.key]);
-  });
-  box.addEventListener("pointerdown", (event) => box.setPointerCapture(event.pointerId));
-  box.addEventListener("pointermove", (event) => {
-    if (box.hasPointerCapture(event.pointerId)) turn(event.movementX * 0.5, event.movementY * 0.5);
-  });
+  return { fit: () => update(true) };
+}
 
+/// A slider over poses, and selects of the error and of its displacement; choose(e) chooses an error.
+function robotControls(data, shown, update) {
+  const choose = (e) => {
+    shown.error = e;
+    update();
+  };
   const errors = select(
     "error",
     [NO_ERROR, ...data.errors.map(({ name, share }) => (share ? `${name} (${share})` : name))],
-    (i) => {
-      shown.error = i - 1;
-      update();
-    },
+    (i) => choose(i - 1),
     shown.error + 1,
   );
-  const exaggeration = select(
+  const factors = ["not shown", `× ${number(data.exaggeration)}, as of all errors`, "by a factor of its own, said below"];
+  const displacement = select(
     "its displacement",
-    data.motions
-      ? ["not shown", `× ${number(data.exaggeration)}, as of all errors`, "by a factor of its own, said below"]
-      : [],
+    data.motions ? factors : [],
     (i) => {
       shown.times = i;
       update();
     },
-    DISPLACEMENTS.same,
+    shown.times,
   );
   const slider = element("input", {
     type: "range",
     min: 0,
-    max: pictures.length - 1,
+    max: data.poses.length - 1,
     step: 1,
     value: 0,
     "aria-valuetext": data.poses[0],
@@ -228,23 +217,15 @@ function robot(figure, data) {
   });
   const poses = element(
     "label",
-    { class: "control robot-slider", ...(pictures.length < 2 && { hidden: "" }) },
+    { class: "control robot-slider", ...(data.poses.length < 2 && { hidden: "" }) },
     element("span", {}, "pose"),
     slider,
   );
-  figure.querySelector(".plot").before(element("div", { class: "controls" }, poses, errors, exaggeration));
-  const turningView = element("div", { class: "turning-view" });
-  box.replaceWith(turningView);
-  turningView.append(box, element("button", { type: "button", onclick: reset }, "Reset view"), said);
-  addEventListener("beforeprint", () => update(true));
-  figure.classList.add("live");
-  chooseInTables(data.errors, (e) => {
+  const chooseHere = (e) => {
     errors.querySelector("select").selectedIndex = e + 1;
-    shown.error = e;
-    update();
-    figure.scrollIntoView({ block: "nearest" });
-  });
-  return { fit: () => update(true) };
+    choose(e);
+  };
+  return { controls: element("div", { class: "controls" }, poses, errors, displacement), choose: chooseHere };
 }
 
 /// A click on the name of an error in a table chooses it; pointing there says where the error is.
