@@ -67,8 +67,7 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
   const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch({});
   if (!sketch) {
-    throw InputError({}, "there is no picture of '" + entry.description.name + "'",
-                     "its model has no sketch");
+    throw InputError({}, "there is no picture of '" + entry.description.name + "'", "its model has no sketch");
   }
   const auto is_picture = [](const std::string& existing) { return is_marked(existing, kPictureMark); };
   check_output_path(path, {"picture", is_picture}, {{entry.file}});
