@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <limits>
@@ -11,9 +12,11 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/study_file.h"
+#include "engine/report/frames_table.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
@@ -25,10 +28,13 @@
 namespace poesy::app {
 namespace {
 
+constexpr std::array<std::string_view, 3> kForms{"text", "json", "csv"};
+
 struct EvaluateOptions {
   std::string study;
   std::string poses;
   std::string errors;
+  std::string frames;  ///< one of kForms; empty: errors are solved
   std::string result;
   std::size_t threads = 0;
   bool paired = false;
@@ -56,6 +62,22 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   return poses;
 }
 
+/// Prints where joints and frames are without errors, and solves nothing.
+int print_frames(const EvaluateOptions& options, const Model& model, const PoseSet& poses) {
+  if (std::ranges::find(kForms, options.frames) == kForms.end()) {
+    throw InputError({}, "--frames: '" + printable(options.frames) + "' is no form of a table",
+                     suggestion(options.frames, kForms));
+  }
+  const std::optional<Table> table = frames_table(model, poses);
+  if (!table) {
+    throw InputError({}, "'" + model.description().name + "' does not say where its frames are", "leave out --frames");
+  }
+  print(options.frames == "json"  ? json_of(*table)
+        : options.frames == "csv" ? csv_of(*table)
+                                  : text_of(*table, output_width()));
+  return kDone;
+}
+
 int evaluate(const EvaluateOptions& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
   if (study.mechanism.compared) {
@@ -64,6 +86,7 @@ int evaluate(const EvaluateOptions& options) {
   }
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = read_reachable_poses(options.poses, *model);
+  if (!options.frames.empty()) return print_frames(options, *model, poses.poses);
   const ErrorTable errors = read_errors(options.errors, *model);
   if (options.paired && poses.poses.size() != errors.rows) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
@@ -124,19 +147,27 @@ Command& add_evaluate(Command& program) {
       .add_value("--poses", options.poses, "P.csv",
                  "poses; the first line names the pose coordinates, with units (\"z [mm]\") or SI")
       ->required();
+  CLI::Option* errors = command.add_value(
+      "--errors", options.errors, "E.csv",
+      "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
+      "names the rows");
+  errors->required();
   command
-      .add_value("--errors", options.errors, "E.csv",
-                 "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
-                 "names the rows")
-      ->required();
+      .add_value(
+          "--frames", options.frames, "FORM",
+          "print where joints and frames are at these poses without errors, and solve nothing; FORM: " + either(kForms))
+      ->each([errors](const std::string&) { errors->required(false); })
+      ->excludes(errors);
   command.add_flag("--paired", options.paired, "row by row, instead of every pose with every row");
   command.add_value("-o,--output", options.result, "RESULT.h5", "result file; default: only the summary");
   command.add_whole_number("--threads", options.threads, "N", "number of threads; default: one per processor", 1, 1024);
   command.add_flag("--quiet", options.quiet, "no progress");
-  command.examples = {{"every pose with every row of errors; prints the summary",
-                       "poesy evaluate study.toml --poses p.csv --errors e.csv"},
-                      {"the first pose with the first row, and so on; keeps every outcome",
-                       "poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o r.h5"}};
+  command.examples = {
+      {"every pose with every row of errors; prints the summary",
+       "poesy evaluate study.toml --poses p.csv --errors e.csv"},
+      {"the first pose with the first row, and so on; keeps every outcome",
+       "poesy evaluate study.toml --poses p.csv --errors e.csv --paired -o r.h5"},
+      {"where joints and frames are, without errors", "poesy evaluate study.toml --poses p.csv --frames csv"}};
   return command;
 }
 

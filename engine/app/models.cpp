@@ -69,10 +69,9 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
     throw InputError({path}, "is no name of a picture", "pictures are SVG: name it PICTURE.svg");
   std::vector<double> geometry;
   for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
-  const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch();
+  const std::optional<Sketch> sketch = entry.build(geometry, 0)->sketch({});
   if (!sketch) {
-    throw InputError({}, "there is no picture of '" + entry.description.name + "'",
-                     "pictures are of mechanisms from files");
+    throw InputError({}, "there is no picture of '" + entry.description.name + "'", "its model has no sketch");
   }
   const auto is_picture = [](const std::string& existing) { return is_marked(existing, kPictureMark); };
   check_output_path(path, {"picture", is_picture}, {{entry.file}});
@@ -124,7 +123,7 @@ int print_models(const ModelsOptions& options) {
 Command& add_models(Command& program) {
   const auto [command, options] = program.add_command("models", "list the mechanisms, or describe one", print_models);
   CLI::Option* named = command.add_value("model", options.model, "MODEL", "mechanism, or its file");
-  command.add_value("-o,--output", options.picture, "PICTURE.svg", "picture of a mechanism from a file")->needs(named);
+  command.add_value("-o,--output", options.picture, "PICTURE.svg", "picture of the mechanism")->needs(named);
   command.examples = {{"which mechanisms are there?", "poesy models"},
                       {"errors, poses and responses of one", "poesy models 2upr-rpu"},
                       {"what was understood of a mechanism's file", "poesy models rps3.toml -o rps3.svg"}};

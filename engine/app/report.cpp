@@ -9,7 +9,6 @@
 #include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
-#include "engine/report/mechanism_picture.h"
 #include "engine/report/report_kind.h"
 #include "models/registry.h"
 
@@ -34,10 +33,9 @@ bool may_be_replaced(const std::string& path) { return is_marked(path, kReportMa
 /// What a report needs of a result, read from its file.
 ReportedResult reported(const std::string& path) {
   ReportedResult result{read_result_with_warning(path), path};
-  if (result.stored.mechanism_text.empty()) return result;
-  const std::optional<Study> study = study_in(result.stored, registry());
-  const std::optional<Sketch> sketch = study ? build_model(study->mechanism)->sketch() : std::nullopt;
-  if (sketch) result.picture = mechanism_picture(*sketch, study->model().title);
+  if (const std::optional<Study> study = study_in(result.stored, registry())) {
+    result.model = build_model(study->mechanism);
+  }
   return result;
 }
 

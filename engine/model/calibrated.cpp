@@ -38,7 +38,7 @@ class CalibratedModel final : public Model {
   ErrorBound error_bound(FactorIndex factor) const override { return model_->error_bound(factor); }
   std::vector<PlatformPoint> metric_points() const override { return model_->metric_points(); }
   std::vector<std::string> mobility() const override { return model_->mobility(); }
-  std::optional<Sketch> sketch() const override { return model_->sketch(); }
+  std::optional<Sketch> sketch(std::span<const double> pose) const override { return model_->sketch(pose); }
   std::vector<std::string> unusual_geometry() const override { return model_->unusual_geometry(); }
 
  private:

@@ -291,8 +291,8 @@ class Model {
   /// How the mechanism can move, in lines for people; none where it was never asked.
   virtual std::vector<std::string> mobility() const { return {}; }
 
-  /// How the mechanism looks at home; empty where the model has no picture.
-  virtual std::optional<Sketch> sketch() const { return std::nullopt; }
+  /// How the mechanism looks at a reachable pose (SI), or without a pose at home; empty where the model has no picture.
+  virtual std::optional<Sketch> sketch(std::span<const double> /*pose*/) const { return std::nullopt; }
 
   /// What of the geometry is possible, but so unusual that it may be a slip; clauses for people: "the platform (l_A =
   /// 800 mm) is larger than the base (l_B = 200 mm)". None unless a model says otherwise.

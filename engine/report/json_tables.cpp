@@ -94,6 +94,8 @@ std::string json_of(const StoredResult& result, const SolveCounts& solves, std::
   return text_of(all);
 }
 
+std::string json_of(const Table& table) { return text_of(Json(table)); }
+
 std::string json_of(const RankedResult& a, const RankedResult& b, const TwoRankings& rankings) {
   return text_of({{"results", Json::array({ranked_json(a), ranked_json(b)})},
                   {"kendall_tau", std::isnan(rankings.tau) ? Json(nullptr) : Json(rankings.tau)},

@@ -8,24 +8,19 @@
 
 #include "engine/base/text.h"
 #include "engine/report/html/page.h"
+#include "engine/report/svg_shapes.h"
 
 namespace poesy {
 namespace {
 
 constexpr double kPanel = 320.0;  // pixels
 constexpr double kMargin = 34.0;  // around a panel's drawing
-constexpr double kGlyph = 6.0;    // half of a joint's glyph
 constexpr double kTick = 15.0;    // half of an axis
 constexpr double kHead = 26.0;    // for a title of one line
 constexpr double kTitleLine = 18.0;
 constexpr std::size_t kTitleWidth = 70;  // characters of a line
 constexpr double kLegend = 44.0;         // below the panels
 constexpr std::array<std::string_view, 6> kColours{"#2563a8", "#b4541a", "#2f7d4f", "#8a3d8f", "#8a6d1b", "#3b7f8c"};
-
-struct Pixel {
-  double x;  ///< to the right
-  double y;  ///< downwards
-};
 
 /// A direction from which one looks.
 struct SketchView {
@@ -71,65 +66,6 @@ ViewExtent extent(std::span<const SketchVector> points, const SketchView& view) 
   return {{(least.x + most.x) / 2, (least.y + most.y) / 2}, std::max(most.x - least.x, most.y - least.y)};
 }
 
-std::string line(Pixel a, Pixel b, std::string_view style) {
-  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", a.x, a.y, b.x, b.y, style);
-}
-
-std::string circle(Pixel at, double radius, std::string_view style) {
-  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>\n", at.x, at.y, radius, style);
-}
-
-std::string path(std::span<const Pixel> points, std::string_view style) {
-  std::string text = "<path d=\"";
-  for (const Pixel& point : points)
-    text += fmt::format("{}{:.1f} {:.1f}", text.back() == '"' ? "M" : "L", point.x, point.y);
-  return text + fmt::format("Z\" {}/>\n", style);
-}
-
-std::string words(Pixel at, std::string_view text, std::string_view attributes = {}) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", at.x, at.y, attributes, escaped(text));
-}
-
-std::string square(Pixel at, double half, std::string_view style) {
-  const std::array<Pixel, 4> corners{Pixel{at.x - half, at.y - half},
-                                     {at.x + half, at.y - half},
-                                     {at.x + half, at.y + half},
-                                     {at.x - half, at.y + half}};
-  return path(corners, style);
-}
-
-std::string diamond(Pixel at, double half, std::string_view style) {
-  const std::array<Pixel, 4> corners{
-      Pixel{at.x - half, at.y}, {at.x, at.y - half}, {at.x + half, at.y}, {at.x, at.y + half}};
-  return path(corners, style);
-}
-
-/// R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in a circle; F: a dot.
-std::string glyph(char type, bool actuated, Pixel at, std::string_view colour) {
-  const std::string style =
-      fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.6\"", actuated ? colour : "#ffffff", colour);
-  const std::string inner =
-      fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"", actuated ? "#ffffff" : colour);
-  constexpr double kArm = 0.7 * kGlyph;
-  switch (type) {
-    case 'P':
-      return square(at, kGlyph, style);
-    case 'H':
-      return diamond(at, 1.3 * kGlyph, style);
-    case 'C':
-      return square(at, kGlyph, style) + circle(at, 0.65 * kGlyph, inner);
-    case 'U':
-      return circle(at, kGlyph, style) + line({at.x - kArm, at.y - kArm}, {at.x + kArm, at.y + kArm}, inner) +
-             line({at.x - kArm, at.y + kArm}, {at.x + kArm, at.y - kArm}, inner);
-    case 'S':
-      return circle(at, kGlyph, style) + circle(at, kGlyph / 2, inner);
-    case 'F':
-      return circle(at, kGlyph / 3, style);
-    default:
-      return circle(at, kGlyph, style);
-  }
-}
-
 /// Half of the space that a glyph takes in a row.
 double half_space(const SketchedJoint& joint) { return joint.type == 'F' ? kGlyph / 3 + 2 : kGlyph + 1.5; }
 
@@ -146,7 +82,7 @@ class ViewPanel {
   }
 
   std::string drawing(const Sketch& sketch) const {
-    std::string text = words({corner_.x + 8, corner_.y + 16}, view_->name, "fill=\"#5a6270\"");
+    std::string text = svg_text({corner_.x + 8, corner_.y + 16}, view_->name, "fill=\"#5a6270\"");
     text += base_axes() + ground(sketch) + platform(sketch);
     for (std::size_t i = 0; i < sketch.limbs.size(); ++i) text += limb(sketch, i);
     return text;
@@ -162,8 +98,8 @@ class ViewPanel {
       const Pixel from = at({});
       const Pixel to = at(end);
       if (std::hypot(to.x - from.x, to.y - from.y) < 2.0) continue;
-      text += line(from, to, "stroke=\"#8b93a1\" stroke-width=\"1\"");
-      text += words({to.x + 2, to.y - 2}, std::string(1, "xyz"[axis]), "fill=\"#8b93a1\"");
+      text += svg_line(from, to, "stroke=\"#8b93a1\" stroke-width=\"1\"");
+      text += svg_text({to.x + 2, to.y - 2}, std::string(1, "xyz"[axis]), "fill=\"#8b93a1\"");
     }
     return text;
   }
@@ -172,19 +108,20 @@ class ViewPanel {
   std::string ground(const Sketch& sketch) const {
     std::vector<Pixel> points;
     for (const auto& limb : sketch.limbs) points.push_back(at(limb.front().point));
-    return path(points, "fill=\"#8b93a1\" fill-opacity=\"0.10\" stroke=\"#8b93a1\" stroke-dasharray=\"4 3\"");
+    return svg_path(points, "fill=\"#8b93a1\" fill-opacity=\"0.10\" stroke=\"#8b93a1\" stroke-dasharray=\"4 3\"");
   }
 
   std::string platform(const Sketch& sketch) const {
     std::vector<Pixel> points;
     for (const auto& limb : sketch.limbs) points.push_back(at(limb.back().point));
-    std::string text = path(points, "fill=\"#2563a8\" fill-opacity=\"0.10\" stroke=\"#5a6270\" stroke-width=\"1.5\"");
+    std::string text =
+        svg_path(points, "fill=\"#2563a8\" fill-opacity=\"0.10\" stroke=\"#5a6270\" stroke-width=\"1.5\"");
     for (const SketchVector& tip : sketch.tool) {
-      text += line(at(sketch.platform), at(tip), "stroke=\"#5a6270\" stroke-width=\"1.5\"");
-      text += words({at(tip).x + 5, at(tip).y + 4}, "tool", "fill=\"#5a6270\"");
+      text += svg_line(at(sketch.platform), at(tip), "stroke=\"#5a6270\" stroke-width=\"1.5\"");
+      text += svg_text({at(tip).x + 5, at(tip).y + 4}, "tool", "fill=\"#5a6270\"");
     }
-    return text + circle(at(sketch.platform), 2.5, "fill=\"#1d222b\"") +
-           words({at(sketch.platform).x + 5, at(sketch.platform).y - 5}, "P", "fill=\"#1d222b\"");
+    return text + svg_circle(at(sketch.platform), 2.5, "fill=\"#1d222b\"") +
+           svg_text({at(sketch.platform).x + 5, at(sketch.platform).y - 5}, "P", "fill=\"#1d222b\"");
   }
 
   std::string limb(const Sketch& sketch, std::size_t number) const {
@@ -192,14 +129,15 @@ class ViewPanel {
     const std::string_view colour = kColours[number % kColours.size()];
     std::string text;
     for (std::size_t j = 1; j < joints.size(); ++j) {
-      text +=
-          line(at(joints[j - 1].point), at(joints[j].point), fmt::format("stroke=\"{}\" stroke-width=\"2.2\"", colour));
+      text += svg_line(at(joints[j - 1].point), at(joints[j].point),
+                       fmt::format("stroke=\"{}\" stroke-width=\"2.2\"", colour));
     }
     const std::vector<Pixel> places = places_of(joints, sketch.platform);
     for (std::size_t j = 0; j < joints.size(); ++j) {
       text += tick(joints[j], places[j], colour) + joint_glyph(joints[j], places[j], colour);
     }
-    return text + words(number_place(sketch, number), std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
+    return text +
+           svg_text(number_place(sketch, number), std::to_string(number + 1), fmt::format("fill=\"{}\"", colour));
   }
 
   /// Below the first joint, or above it where the limb goes downwards; to the right of the numbers of other limbs that
@@ -258,15 +196,16 @@ class ViewPanel {
   std::string tick(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
     if (joint.type == 'S' || joint.type == 'F') return {};
     const Pixel along{dot(joint.axis, view_->right), -dot(joint.axis, view_->up)};
-    return line({middle.x - kTick * along.x, middle.y - kTick * along.y},
-                {middle.x + kTick * along.x, middle.y + kTick * along.y},
-                fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"6 2 1 2\"", colour));
+    return svg_line({middle.x - kTick * along.x, middle.y - kTick * along.y},
+                    {middle.x + kTick * along.x, middle.y + kTick * along.y},
+                    fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"6 2 1 2\"", colour));
   }
 
   std::string joint_glyph(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
     std::string text = fmt::format("<g><title>{}</title>\n", escaped(joint.name));
-    if (joint.has_errors) text += circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
-    return text + glyph(joint.type, joint.actuated, middle, colour) + "</g>\n";
+    if (joint.has_errors)
+      text += svg_circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
+    return text + svg_glyph(joint.type, joint.actuated, middle, {colour}) + "</g>\n";
   }
 
   const SketchView* view_;
@@ -285,17 +224,17 @@ double round_length(double size) {
 
 std::string legend(Pixel at, double scale, double size) {
   const double length = round_length(size);
-  std::string text = line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");
-  text += words({at.x + scale * length + 6, at.y + 4}, fmt::format("{:g} mm", 1e3 * length));
+  std::string text = svg_line({at.x, at.y}, {at.x + scale * length, at.y}, "stroke=\"#1d222b\" stroke-width=\"2\"");
+  text += svg_text({at.x + scale * length + 6, at.y + 4}, fmt::format("{:g} mm", 1e3 * length));
   double x = at.x + 170;
   constexpr std::array<std::string_view, 6> kNames{"R", "P", "H", "C", "U", "S"};
   for (const std::string_view name : kNames) {
-    text += glyph(name.front(), false, {x, at.y}, "#1d222b") + words({x + 11, at.y + 4}, name);
+    text += svg_glyph(name.front(), false, {x, at.y}, {"#1d222b"}) + svg_text({x + 11, at.y + 4}, name);
     x += 40;
   }
-  text += glyph('P', true, {x, at.y}, "#1d222b") + words({x + 11, at.y + 4}, "actuated");
-  return text + circle({x + 84, at.y}, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"") +
-         words({x + 98, at.y + 4}, "frames with errors");
+  text += svg_glyph('P', true, {x, at.y}, {"#1d222b"}) + svg_text({x + 11, at.y + 4}, "actuated");
+  return text + svg_circle({x + 84, at.y}, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"") +
+         svg_text({x + 98, at.y + 4}, "frames with errors");
 }
 
 }  // namespace
@@ -317,8 +256,8 @@ std::string mechanism_picture(const Sketch& sketch, std::string_view title) {
       "fill=\"#ffffff\"/>\n",
       width, height, escaped(title), kPictureMark);
   for (std::size_t n = 0; n < title_lines.size(); ++n) {
-    text +=
-        words({8, 18 + kTitleLine * static_cast<double>(n)}, title_lines[n], "font-weight=\"bold\" font-size=\"14\"");
+    text += svg_text({8, 18 + kTitleLine * static_cast<double>(n)}, title_lines[n],
+                     "font-weight=\"bold\" font-size=\"14\"");
   }
   for (std::size_t v = 0; v < views().size(); ++v) {
     const SketchView& view = views()[v];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/report/html/parts.h"
+#include "engine/report/html/robot.h"
 #include "engine/report/solves.h"
 #include "engine/report/tables.h"
 
@@ -29,8 +30,9 @@ struct ReportKind {
   StudyWords (*words)(const StoredResult&);             ///< for the list of what was run
   /// Adds warnings of its own; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
-  ShownCells (*shown_cells)(const StoredResult&);                            ///< what its figures by pose show
-  void (*page)(const StoredResult&, std::span<const Table> tables, Page&);   ///< adds its sections, with its tables
+  ShownCells (*shown_cells)(const StoredResult&);                           ///< what its figures by pose show
+  void (*page)(const StoredResult&, std::span<const Table> tables, Page&);  ///< adds its sections, with its tables
+  ErrorShares (*error_shares)(const StoredResult&) = nullptr;  ///< by which its picture is coloured; null: by none
   Comparable (*comparable)(const StoredResult&, const StoredResult& other);  ///< what it compares with the other
   /// Adds the sections of two results; null: add_comparison.
   void (*compare)(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page&) = nullptr;

@@ -115,6 +115,8 @@ std::string json_of(const StoredResult& result, const SolveCounts& solves, std::
 ///     tables: [the one table, as above]
 std::string json_of(const RankedResult& a, const RankedResult& b, const TwoRankings& rankings);
 
+std::string json_of(const Table& table);  ///< One of the tables above alone, as JSON.
+
 std::string models_text(const Catalog& catalog);  ///< All mechanisms, a line each.
 
 /// One mechanism: geometry, pose coordinates, workspace, factors, factor sets, responses, details.

@@ -16,6 +16,7 @@
 #include "models/chain/metric.h"
 #include "models/chain/passive_condition.h"
 #include "models/chain/separation.h"
+#include "models/chain/sketch.h"
 #include "models/file/charts.h"
 #include "models/file/mobility.h"
 #include "models/file/structure.h"
@@ -169,7 +170,12 @@ class FileModel final : public Model {
 
   std::vector<std::string> unusual_geometry() const override { return home_outside(mechanism_); }
 
-  std::optional<Sketch> sketch() const override { return sketch_of(mechanism_); }
+  std::optional<Sketch> sketch(std::span<const double> pose) const override {
+    Sketch sketch = sketch_of(mechanism_);
+    chain::place(sketch, model_,
+                 pose.empty() ? std::vector(model_.chain.joints(), 0.0) : model_.joint_displacements(pose));
+    return sketch;
+  }
 
   double rounding(std::size_t response) const override { return chain::effect_rounding(model_, response); }
 

@@ -101,7 +101,8 @@ Sketch sketch_of(const Mechanism& mechanism) {
       const std::span<const Joint> one = joints.subspan(j, end - j);
       const bool actuated = std::ranges::any_of(one, &Joint::actuated);
       limb.push_back({one.front().name, type_of(one), actuated, sketched(one.front().at_home.p),
-                      sketched(one.front().at_home.R.col(2)), has_errors(mechanism, i, j == 0 ? 0 : end, end)});
+                      sketched(one.front().at_home.R.col(2)), has_errors(mechanism, i, j == 0 ? 0 : end, end), j + 1,
+                      j + 1});
       j = end;
     }
     sketch.limbs.push_back(std::move(limb));

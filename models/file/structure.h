@@ -17,7 +17,7 @@ std::string structure_text(const Mechanism& mechanism);
 /// What a coordinate is.
 std::string coordinate_text(const Coordinate& coordinate);
 
-/// The joints as the file has them: elementary ones that make one joint are one.
+/// The joints at home as the file has them: elementary ones that make one joint are one.
 Sketch sketch_of(const Mechanism& mechanism);
 
 /// Which coordinates of home are outside their workspace, a clause for each.

@@ -10,6 +10,7 @@
 #include "models/three_prs/errors.h"
 #include "models/three_prs/evaluators.h"
 #include "models/three_prs/kinematics.h"
+#include "models/three_prs/sketch.h"
 
 namespace poesy::three_prs {
 namespace {
@@ -151,6 +152,11 @@ class ThreePrs final : public Model {
   double rounding(std::size_t /*response*/) const override {
     if (fidelity_ == Fidelity::first_order) return 0.0;
     return rounding_level({geometry_.a, 0.0, geometry_.rail + geometry_.l + geometry_.h});
+  }
+
+  std::optional<Sketch> sketch(std::span<const double> pose) const override {
+    return three_prs::sketch(geometry_,
+                             configuration(geometry_, pose.empty() ? home_pose(geometry_) : pose_from(pose)));
   }
 
   ErrorBound error_bound(FactorIndex factor) const override {

@@ -8,6 +8,7 @@
 #include "models/chain/deformation_model.h"
 #include "models/chain/deformation_trace.h"
 #include "models/chain/passive_condition.h"
+#include "models/chain/sketch.h"
 #include "models/two_upr_rpu/errors.h"
 #include "models/two_upr_rpu/kinematics.h"
 
@@ -72,6 +73,22 @@ bool are_same(const lie::Transform<double>& a, const lie::Transform<double>& b, 
   return screw.head<3>().norm() < kClosure && screw.tail<3>().norm() < kClosure * reach;
 }
 
+/// U, P and R of the first two limbs, R, P and U of the third; U is where both of its axes meet.
+std::vector<std::vector<SketchedJoint>> joints() {
+  const auto joint = [](char type, std::size_t first, std::size_t frame) {
+    return SketchedJoint{.name = {},
+                         .type = type,
+                         .actuated = type == 'P',
+                         .point = {},
+                         .axis = {},
+                         .has_errors = true,
+                         .first = first,
+                         .frame = frame};
+  };
+  const std::vector upr{joint('U', 1, 2), joint('P', 3, 3), joint('R', 4, 4)};
+  return {upr, upr, {joint('R', 1, 1), joint('P', 2, 2), joint('U', 3, 3)}};
+}
+
 class TwoUprRpu final : public Model {
  public:
   /// points: of the platform's metric; none: as published.
@@ -128,6 +145,13 @@ class TwoUprRpu final : public Model {
     if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
     if (geometry_.l_A < geometry_.l_B) return {geometry_.l_A, "the platform's size l_A"};
     return {geometry_.l_B, "the base's size l_B"};
+  }
+
+  std::optional<Sketch> sketch(std::span<const double> pose) const override {
+    Sketch sketch{.limbs = joints(), .platform = {}, .tool = {}};
+    chain::place(sketch, deformation_,
+                 pose.empty() ? std::vector(deformation_.chain.joints(), 0.0) : joint_displacements(pose));
+    return sketch;
   }
 
   std::vector<std::string> unusual_geometry() const override {

@@ -10,10 +10,10 @@ MOST_CLICKS = 6  # of the options of one select, and of the checkboxes of one fi
 # Figures without a mark that can be seen: a text that says there is nothing is none.
 EMPTY = """
 const seen = (e) => { const r = e.getBoundingClientRect(); return r.width + r.height > 0; };
-const marks = "g[data-mark=rect], g[data-mark=dot], g[data-mark=line], image";
+const marks = "g[data-mark=rect], g[data-mark=dot], g[data-mark=line], image, .joint";
 const drawn = (svg) => seen(svg) && [...svg.querySelectorAll(marks)].some((mark) => seen(mark));
 const pictures = (figure) =>
-  [...figure.querySelectorAll(".plot svg[role=img]")].filter((svg) => !svg.closest(".legend"));
+  [...figure.querySelectorAll(".plot svg[role=img]")].filter((svg) => !svg.closest(".legend, .other"));
 return (arguments[0] ? [arguments[0]] : [...document.querySelectorAll("figure[data-figure]")])
   .filter((figure) => !pictures(figure).length || !pictures(figure).every(drawn) ||
     figure.querySelector(".plot-nothing"))
@@ -26,7 +26,7 @@ const problems = [];
 const width = document.documentElement.clientWidth;
 for (const svg of (arguments[0] ?? document).querySelectorAll("figure[data-figure] svg")) {
   const key = svg.closest("figure").dataset.figure;
-  const said = svg.getAttribute("aria-label") ?? "";
+  const said = svg.getAttribute("aria-label") ?? [...svg.querySelectorAll(":scope > :is(title, desc)")].map((e) => e.textContent).join(" ");
   if (svg.getAttribute("role") !== "img" || said.length < 20) problems.push(`${key}: not described`);
   if (/NaN|undefined|null|unknown/.test(said)) problems.push(`${key}: ${said}`);
   const texts = [...svg.querySelectorAll("text")].filter((text) => !text.closest("[pointer-events=none]"))

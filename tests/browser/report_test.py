@@ -254,6 +254,35 @@ class Reports(PageTest):
         study = ROOT / "results" / "2upr-rpu-sensitivity" / "study.toml"
         self.check_page(self.report("sensitivity", self.result("sensitivity", study)))
 
+    def test_the_mechanism_is_turned_and_shown_at_its_poses(self):
+        study = self.poesy("template", "3-prs").replace("samples = 1000", "samples = 20")
+        page = self.report("mechanism", self.result("mechanism", study))
+        self.browser.open(page, 1000)
+        shown = """const figure = document.querySelector("[data-figure=robot]");
+            const pictures = [...figure.querySelectorAll(".robot-pose")].filter((one) => one.getBoundingClientRect().width);
+            return [pictures.map((one) => one.querySelector(".plot-title").textContent),
+              figure.querySelector("[role=status]").textContent,
+              pictures[0].querySelectorAll(".displaced path").length,
+              pictures[0].querySelector(".joint").getAttribute("transform")]"""
+        first = self.browser.run(shown)
+        self.assertEqual(first[0], ["At home"])
+        self.assertIn("limb ", first[1])
+        self.assertIn("to first order", first[1])
+        self.assertEqual(first[2], 1)
+        slide = """const slider = document.querySelector("[data-figure=robot] [type=range]");
+            slider.value = 1; slider.dispatchEvent(new Event("input"));"""
+        self.browser.run(slide)
+        worst = self.browser.run(shown)
+        self.assertEqual(len(worst[0]), 1)
+        self.assertIn("is largest", worst[0][0])
+        name = self.browser.run(
+            """const cell = [...document.querySelectorAll("[data-table=ranked] tbody th")].at(-1);
+            cell.click(); return cell.textContent""")
+        chosen = self.browser.run(shown)
+        self.assertTrue(chosen[1].startswith(name), chosen[1])
+        not_drawn = "return document.querySelector('[data-figure=robot] .marked text:last-of-type').textContent"
+        self.assertTrue(self.browser.run(not_drawn))
+
     def test_coupled_errors_along_a_trajectory(self):
         study = ROOT / "results" / "3prs-paper" / "studies" / "trajectory.toml"
         self.check_page(self.report("coupling", self.result("coupling", study)))

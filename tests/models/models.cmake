@@ -3,6 +3,7 @@ poesy_test(chain_test LABELS property SOURCES models/chain/limb_test.cpp models/
            models/chain/passive_condition_test.cpp models/chain/separation_test.cpp
            LINKS poesy_models)
 poesy_test(trace_test LABELS unit SOURCES models/trace_test.cpp LINKS poesy_models)
+poesy_test(sketch_test LABELS property SOURCES models/sketch_test.cpp LINKS poesy_models DATA)
 poesy_test(two_upr_rpu_test LABELS unit
            SOURCES models/two_upr_rpu/errors_test.cpp models/two_upr_rpu/kinematics_test.cpp
                    models/two_upr_rpu/model_test.cpp

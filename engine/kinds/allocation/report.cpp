@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/result.h"
@@ -162,6 +164,21 @@ StudyWords words(const StoredResult& result) {
           .samples = counted(allocation_of(result).certificate.machines, "fresh machine", "fresh machines")};
 }
 
+/// Of each part its share of the mean square, and at each pose the use of the limit that is used most.
+ErrorShares error_shares(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  if (found.parts() == 0 || found.poses == 0) return {};
+  ErrorShares shares{.what = "share of the mean square under the tightest limit",
+                     .values = divided_shares(result, found.part_members, found.mean_square_share),
+                     .joined = "part",
+                     .pose_what = "the use of the limits",
+                     .at_poses = std::vector<double>(found.poses, kNaN)};
+  for (std::size_t at = 0; at < found.limit_use.size(); ++at) {
+    shares.at_poses[at % found.poses] = std::fmax(shares.at_poses[at % found.poses], found.limit_use[at]);
+  }
+  return shares;
+}
+
 /// The parts; costs are compared where both results have them.
 Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const Result& found = allocation_of(result);
@@ -189,6 +206,7 @@ constinit const ReportKind kAllocationReport{.tally = tally,
                                              .warn = warn,
                                              .shown_cells = cells,
                                              .page = add_page,
+                                             .error_shares = error_shares,
                                              .comparable = comparable};
 
 }  // namespace poesy

@@ -361,6 +361,19 @@ std::vector<std::pair<std::string, std::vector<double>>> overall(const StoredRes
   return list;
 }
 
+/// First-order indices, and root mean squares at the poses.
+ErrorShares error_shares(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  if (found.poses == 0) return {};
+  const std::size_t r = response_named(result, default_ranking(result));
+  const std::string& response = result.responses[r].name;
+  ErrorShares shares{.pose_what = "the root mean square of " + response, .at_poses = of_row(found.rms, r, found.poses)};
+  if (!found.effects) return shares;
+  shares.what = "first-order index S1 of " + response;
+  shares.values = of_row(found.effects->effects.s1, r, result.factors.size());
+  return shares;
+}
+
 Comparable comparable(const StoredResult& result, const StoredResult&) {
   const auto numbers = overall(result);
   std::vector<std::string> names;
@@ -393,6 +406,7 @@ constinit const ReportKind kMonteCarloReport{
     .warn = warn,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
     .page = add_page,
+    .error_shares = error_shares,
     .comparable = comparable};
 
 }  // namespace poesy

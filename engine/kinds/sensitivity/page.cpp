@@ -306,6 +306,20 @@ void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>
                   result.responses[widest->second / found.factors].name, percent_text(widest->first)));
 }
 
+/// What each error adds to the mean square, and the effect of all errors at each pose.
+ErrorShares error_shares(const StoredResult& result) {
+  if (result.factors.empty() || result.poses.size() == 0) return {};
+  const std::size_t r = response_named(result, default_ranking(result));
+  const std::string& response = result.responses[r].name;
+  ErrorShares shares{.pose_what = "the effect of all errors on " + response,
+                     .at_poses = root_sum_squares(local_effects(result, r), result.poses.size())};
+  if (!has_tolerances(result)) return shares;
+  const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, r));
+  shares.what = "share of the mean square of " + response;
+  shares.values = mean_square_shares(found, result.factor_sigma);
+  return shares;
+}
+
 Settling settling(const StoredResult& result) {
   return {"global indices", names_of(result.factors), positions(result.responses.size())};
 }
@@ -338,6 +352,7 @@ constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
                                               .warn = warn,
                                               .shown_cells = sensitivity_cells,
                                               .page = add_page,
+                                              .error_shares = error_shares,
                                               .comparable = comparable_sensitivity,
                                               .compare = compare_sensitivity};
 

@@ -320,6 +320,22 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
 
+/// Shapley effects where there are some, for these add up, else total indices; and the variance at each pose.
+ErrorShares error_shares(const StoredResult& result) {
+  const SobolResult& found = sobol_of(result);
+  if (found.groups() == 0 || found.poses == 0) return {};
+  const std::size_t r = response_named(result, default_ranking(result));
+  const std::string& response = result.responses[r].name;
+  const bool shapley = !found.Sh.empty();
+  const std::vector<double>& all = shapley ? found.Sh : found.aggregated.ST;
+  return {
+      .what = fmt::format("{} of {}", shapley ? "Shapley effect" : "total index ST", response),
+      .values = divided_shares(result, found.group_members, std::span(all).subspan(r * found.groups(), found.groups())),
+      .joined = found.joined ? "group" : "",
+      .pose_what = "the variance of " + response,
+      .at_poses = of_row(found.variance, r, found.poses)};
+}
+
 Comparable comparable(const StoredResult& result, const StoredResult&) {
   const SobolResult& found = sobol_of(result);
   Comparable all{"response", names_of(result.responses, response_order(result)), word(found), found.group_names};
@@ -357,6 +373,7 @@ constinit const ReportKind kSobolReport{.tally = tally,
                                         .warn = warn,
                                         .shown_cells = cells,
                                         .page = add_page,
+                                        .error_shares = error_shares,
                                         .comparable = comparable};
 
 }  // namespace poesy

@@ -1,4 +1,4 @@
-# cmake -D "SCRIPTS=a.js;b.js" -D STYLE=x.css -D BUNDLED=folder -D OUTPUT=assets.cpp -P assets.cmake
+# cmake -D "SCRIPTS=a.js;b.js" -D "STYLES=x.css;y.css" -D BUNDLED=folder -D OUTPUT=assets.cpp -P assets.cmake
 # Writes the C++ source of asset() in page.h, and beside it the assets as files.
 
 # What would end the element in which the text is to stand, or the literal, ends the build instead.
@@ -20,7 +20,11 @@ foreach(path IN LISTS SCRIPTS)
   string(APPEND report "${script}\n")
 endforeach()
 string(APPEND report "})();\n")
-file(READ ${STYLE} style)
+set(style "")
+foreach(path IN LISTS STYLES)
+  file(READ ${path} part)
+  string(APPEND style "${part}\n")
+endforeach()
 
 get_filename_component(folder ${OUTPUT} DIRECTORY)
 set(constants "")

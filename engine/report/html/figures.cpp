@@ -93,6 +93,26 @@ static void to_json(Json& json, const Scatter& scatter) {
           {"y", axis(scatter.y)}, {"units", scatter.units},     {"names", scatter.names}};
 }
 
+static void to_json(Json& json, const PicturedError& error) {
+  json = {{"name", error.name},   {"words", error.words}, {"frame", error.frame}, {"axis", error.axis},
+          {"turns", error.turns}, {"size", error.size},   {"share", error.share}};
+}
+
+static void to_json(Json& json, const Robot& robot) {
+  json = {{"type", "robot"},
+          {"yaw", robot.yaw},
+          {"pitch", robot.pitch},
+          {"scale", robot.scale},
+          {"centre", robot.centre},
+          {"down", robot.z_is_down},
+          {"poses", robot.poses},
+          {"errors", robot.errors},
+          {"frames", robot.frames},
+          {"limbs", robot.limbs},
+          {"exaggeration", robot.exaggeration}};
+  if (!robot.motions.empty()) json["motions"] = robot.motions;
+}
+
 namespace {
 
 constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

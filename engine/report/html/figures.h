@@ -133,7 +133,36 @@ struct Scatter {
   std::vector<std::string> names;       ///< [P]
 };
 
-using Figure = std::variant<Bars, HeatMap, WorkspaceMap, Lines, Scatter>;  ///< Any of them.
+/// An error as a picture of the mechanism shows it.
+struct PicturedError {
+  std::string name;   ///< of the error
+  std::string words;  ///< where it is, along or about which axis
+  std::size_t frame;  ///< position among the frames of all limbs
+  std::size_t axis;   ///< of the frame: 0, 1 or 2
+  bool turns;         ///< about that axis
+  std::string size;   ///< at which it is shown, with its unit; empty where it has none
+  std::string share;  ///< with its unit; empty where it has none
+};
+
+/// A mechanism at K poses, which stands drawn in its figure and can be turned: L limbs hold its platform. Lengths in
+/// mm, in the base frame.
+struct Robot {
+  double yaw;                              ///< at first, deg
+  double pitch;                            ///< likewise
+  double scale;                            ///< pixels for a millimetre
+  std::vector<double> centre;              ///< [3] of the picture
+  bool z_is_down;                          ///< whether y and z change their signs before it is turned
+  std::vector<std::string> poses = {};     ///< [K] for people
+  std::vector<PicturedError> errors = {};  ///< [E]
+  ArrayName frames = {};                   ///< [K x frames x 12] origins, x, y and z axes
+  std::size_t limbs = 0;                   ///< L
+  /// [K x E x L x 6] how each limb moves the platform at the error's size, [rotation; displacement at the base's
+  /// origin]; none: it is not known.
+  ArrayName motions = {};
+  double exaggeration = 1.0;  ///< by which motions are shown at first
+};
+
+using Figure = std::variant<Bars, HeatMap, WorkspaceMap, Lines, Scatter, Robot>;  ///< Any of them.
 
 /// The figures of a document by their keys, and the numbers that they show.
 struct FigureSet {

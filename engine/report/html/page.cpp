@@ -147,15 +147,9 @@ Section& Section::definitions(const std::vector<std::pair<std::string, std::stri
   return *this;
 }
 
-Section& Section::figure(std::string_view key, std::string_view caption) {
-  body_ += fmt::format("<figure data-figure=\"{}\"><div class=\"plot\"></div>{}</figure>\n", escaped(key),
+Section& Section::figure(std::string_view key, std::string_view caption, std::string_view drawn) {
+  body_ += fmt::format("<figure data-figure=\"{}\"><div class=\"plot\">{}</div>{}</figure>\n", escaped(key), drawn,
                        element("figcaption", caption));
-  return *this;
-}
-
-Section& Section::picture(std::string_view svg, std::string_view caption) {
-  body_ += fmt::format("<div class=\"table-wrap\" tabindex=\"0\" role=\"group\" aria-label=\"{}\">{}</div>\n",
-                       escaped(caption), svg);
   return *this;
 }
 

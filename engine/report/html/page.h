@@ -39,10 +39,9 @@ class Section {
 
   Section& paragraph(std::string_view text);                                           ///< Adds one.
   Section& definitions(const std::vector<std::pair<std::string, std::string>>& list);  ///< Names, each with what it is.
-  /// The place of a figure of the page, which is drawn by its script.
-  Section& figure(std::string_view key, std::string_view caption);
-  Section& picture(std::string_view svg, std::string_view caption);  ///< Adds an SVG document as it stands.
-  Section& table(const Table& table);                                ///< Adds it, open.
+  /// The place of a figure of the page, which is drawn by its script. drawn: what stands there without it, as HTML.
+  Section& figure(std::string_view key, std::string_view caption, std::string_view drawn = {});
+  Section& table(const Table& table);  ///< Adds it, open.
   /// Adds the one of this name, where there is one.
   Section& table(std::span<const Table> tables, std::string_view name);
   /// Tables that are open only when the reader asks for them.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "engine/files/result_file.h"
+#include "engine/model/model.h"
 #include "engine/report/html/figures.h"
 #include "engine/report/html/page.h"
 
@@ -19,9 +21,9 @@ struct ReportKind;
 
 /// A result and the file where it was found, as the reader may name it.
 struct ReportedResult {
-  StoredResult stored;       ///< what it says
-  std::string path;          ///< where it was read from
-  std::string picture = {};  ///< of the mechanism, as SVG (engine/report/mechanism_picture.h); empty: there is none
+  StoredResult stored;                           ///< what it says
+  std::string path;                              ///< where it was read from
+  std::shared_ptr<const Model> model = nullptr;  ///< of the mechanism; null: it cannot be built again
 };
 
 /// The names at these positions.
@@ -35,6 +37,8 @@ std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
 /// What a caption of bars says of the order of errors, whose units may be mixed.
 std::string order_by_effect(bool mixed);
+/// Row r of values of that many columns.
+std::vector<double> of_row(std::span<const double> values, std::size_t r, std::size_t columns);
 bool mixed_units(const std::vector<NamedUnit>& things);  ///< Whether not all have the same unit.
 
 /// Which part of a result's cells goes into its figures, so that a report stays small.

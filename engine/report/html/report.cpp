@@ -98,12 +98,13 @@ std::string subtitle(const StoredResult& result) {
   return result.metric.empty() ? text : text + "; metric: " + metric_text(result);
 }
 
-/// What a mechanism from a file looks like, and its file.
-void add_mechanism(const ReportedResult& result, Page& page) {
-  if (result.stored.mechanism_text.empty()) return;
-  Section& section = page.add_section("mechanism", "The mechanism");
-  if (!result.picture.empty()) section.picture(result.picture, "The mechanism at home");
-  section.folded_text("Its file", result.stored.mechanism_text);
+/// What the mechanism looks like, where its errors are, and its file.
+void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& page) {
+  Section section("mechanism", "The mechanism");
+  const ErrorShares shares = kind.error_shares == nullptr ? ErrorShares() : kind.error_shares(result.stored);
+  add_robot(result, shares, page, section);
+  if (!result.stored.mechanism_text.empty()) section.folded_text("Its file", result.stored.mechanism_text);
+  if (!section.body().empty()) page.sections.push_back(std::move(section));
 }
 
 /// Of one result.
@@ -113,7 +114,7 @@ Page page_of(const ReportKind& kind, const ReportedResult& result) {
   page.subtitle = subtitle(result.stored);
   page.warnings = warnings(kind, result);
   add_responses(result.stored, page);
-  add_mechanism(result, page);
+  add_mechanism(kind, result, page);
   kind.page(result.stored, result_tables(kind, result.stored, {default_ranking(result.stored)}), page);
   add_glossary(result.stored, page);
   add_outcomes(kind, result, page);

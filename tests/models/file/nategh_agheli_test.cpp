@@ -112,7 +112,7 @@ bool within_reach(const Sketch& home, double x, double y) {
 TEST(NateghAgheli, MeanOfFirstOrderOverTheirPosesIsTheirs) {
   const std::unique_ptr<Model> model = hexapod().build({{0.8}}, kFirstOrder);
   const auto evaluator = model->evaluator({});
-  const Sketch home = model->sketch().value();
+  const Sketch home = model->sketch({}).value();
   const std::vector<double> errors = measured();
   std::size_t poses = 0;
   double sum = 0.0;

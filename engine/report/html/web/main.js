@@ -1,7 +1,7 @@
 // Draws every figure of the page at once, before a frame is shown. One that fails leaves the others, and the tables, as
 // they are.
 
-const DRAWINGS = { bars, heatmap, workspace, lines, scatter };
+const DRAWINGS = { bars, heatmap, workspace, lines, scatter, robot };
 
 for (const figure of document.querySelectorAll("figure[data-figure]")) {
   const data = report.figures[figure.dataset.figure];

@@ -114,44 +114,10 @@ function workspace(figure, data) {
   }
 
   function turning(poses, chosen, size, sentence) {
-    const box = element("div", {
-      class: "turning",
-      tabindex: "0",
-      role: "application",
-      "aria-label": "View that can be turned: drag it, or use the arrow keys; Home resets it.",
-    });
+    const box = element("div");
     const show = () => box.replaceChildren(turned(poses, chosen, size, view, sentence));
-    const turn = (yaw, pitch) => {
-      view.yaw = (view.yaw + yaw) % 360;
-      view.pitch = Math.max(-90, Math.min(90, view.pitch + pitch));
-      show();
-    };
-    const reset = () => {
-      Object.assign(view, START_VIEW);
-      show();
-    };
-    const steps = {
-      ArrowLeft: [-TURN_STEP, 0],
-      ArrowRight: [TURN_STEP, 0],
-      ArrowUp: [0, TURN_STEP],
-      ArrowDown: [0, -TURN_STEP],
-    };
-    box.addEventListener("keydown", (event) => {
-      if (event.altKey || event.ctrlKey || event.metaKey || !(event.key in steps || event.key === "Home")) return;
-      event.preventDefault();
-      event.key === "Home" ? reset() : turn(...steps[event.key]);
-    });
-    box.addEventListener("pointerdown", (event) => box.setPointerCapture(event.pointerId));
-    box.addEventListener("pointermove", (event) => {
-      if (box.hasPointerCapture(event.pointerId)) turn(event.movementX * 0.5, event.movementY * 0.5);
-    });
     show();
-    return element(
-      "div",
-      { class: "turning-view" },
-      box,
-      element("button", { type: "button", onclick: reset }, "Reset view"),
-    );
+    return turnable(box, "View", view, START_VIEW, TURN_STEP, show);
   }
 
   return place;

@@ -1,0 +1,29 @@
+#include "engine/report/sketch_words.h"
+
+#include <fmt/format.h>
+
+namespace poesy {
+
+std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint) {
+  const std::vector<SketchedJoint>& joints = sketch.limbs[limb];
+  if (joint == 0) return "the base";
+  if (joint > joints.size()) return "the platform";
+  const char type = joints[joint - 1].type;
+  return type == 'F' ? fmt::format("fixed frame {}", joint) : fmt::format("{} joint {}", type, joint);
+}
+
+std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before) {
+  if (after == before) return "inside " + joint_words(sketch, limb, after);
+  return fmt::format("between {} and {}", joint_words(sketch, limb, after), joint_words(sketch, limb, before));
+}
+
+std::string axis_words(const Sketch& sketch, const SketchedError& error, Dimension dimension) {
+  const std::size_t platform = sketch.frames[error.limb].size() - 1;
+  const std::string frame = error.frame == 0          ? "the base"
+                            : error.frame == platform ? "the platform"
+                                                      : fmt::format("frame {}", error.frame);
+  return fmt::format("{} {} of {}", dimension == Dimension::angle ? "rotation about" : "displacement along",
+                     "xyz"[error.axis], frame);
+}
+
+}  // namespace poesy

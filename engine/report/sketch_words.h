@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "engine/model/model.h"
+#include "engine/model/sketch.h"
+
+namespace poesy {
+
+/// "U joint 1": a joint of a limb (from 0) by its kind and its number from the base; "the base" for 0, "the platform"
+/// for one more than there are joints.
+std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint);
+
+/// "between the base and U joint 1", "inside U joint 1": where joints count as in SketchedError.
+std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before);
+
+/// "rotation about x of frame 4", "displacement along x of the base".
+std::string axis_words(const Sketch& sketch, const SketchedError& error, Dimension dimension);
+
+}  // namespace poesy

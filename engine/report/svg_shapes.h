@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+/// What pictures of mechanisms are drawn with, as elements of SVG. style, attributes: attributes as they stand.
+namespace poesy {
+
+/// A place in a picture.
+struct Pixel {
+  double x;  ///< to the right
+  double y;  ///< downwards
+};
+
+std::string svg_line(Pixel a, Pixel b, std::string_view style);               ///< From one to the other.
+std::string svg_circle(Pixel at, double radius, std::string_view style);      ///< Around a place.
+std::string svg_path(std::span<const Pixel> points, std::string_view style);  ///< A closed one.
+/// A text, escaped.
+std::string svg_text(Pixel at, std::string_view text, std::string_view attributes = {});
+
+inline constexpr double kGlyph = 6.0;  ///< Half of a joint's glyph, pixels.
+
+/// What a glyph is drawn in, as values of attributes.
+struct GlyphColours {
+  std::string_view line;               ///< and of what is filled
+  std::string_view paper = "#ffffff";  ///< and of what is not
+};
+
+/// R: circle; P: square; H: diamond; C: circle in a square; U: circle with a cross; S: circle in a circle; F: a dot.
+/// Filled where a drive holds the joint.
+std::string svg_glyph(char type, bool actuated, Pixel at, const GlyphColours& colours);
+
+}  // namespace poesy

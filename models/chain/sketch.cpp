@@ -1,0 +1,120 @@
+#include "models/chain/sketch.h"
+
+#include <algorithm>
+
+#include "models/chain/first_order.h"
+
+namespace poesy::chain {
+namespace {
+
+using Vector3 = lie::Vector3<double>;
+using Transform = lie::Transform<double>;
+
+/// Motions of limbs that differ by less than this share of the largest are alike.
+constexpr double kAlike = 1e-9;
+
+SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+SketchedFrame sketched(const Transform& frame) {
+  return {sketched(frame.p), {sketched(frame.R.col(0)), sketched(frame.R.col(1)), sketched(frame.R.col(2))}};
+}
+
+/// A limb's frames before and after each joint has moved.
+struct LimbFrames {
+  std::vector<Transform> before;  ///< [n] of its joints
+  std::vector<Transform> after;   ///< [n + 2] base, joints, platform
+};
+
+LimbFrames frames_of(const Limb& limb, std::span<const double> displacements) {
+  LimbFrames frames;
+  Transform g;
+  frames.after.push_back(g);
+  for (std::size_t j = 0; j < limb.joints.size(); ++j) {
+    g = g * limb.home[j];
+    frames.before.push_back(g);
+    move_joint(limb.joints[j], displacements[j], g);
+    frames.after.push_back(g);
+  }
+  frames.after.push_back(g * limb.home.back());
+  return frames;
+}
+
+/// The joint, from 1, to which a frame of a limb belongs; 0 for the base, one more than there are for the platform.
+std::size_t joint_of(const std::vector<SketchedJoint>& joints, std::size_t frame, std::size_t platform) {
+  if (frame == platform) return joints.size() + 1;
+  return static_cast<std::size_t>(
+      std::ranges::count_if(joints, [frame](const SketchedJoint& joint) { return joint.first <= frame; }));
+}
+
+/// By which each limb moves the platform, or one motion where all are alike.
+std::vector<SketchTwist> motions(const ParallelChain& chain, FirstOrder& first_order, const FrameEntry& entry,
+                                 double scale) {
+  std::vector<double> delta_mu(6 * chain.pairs.size());
+  std::vector<double> moved(chain.passive_joints());
+  first_order.effect(entry, delta_mu, moved);
+  std::vector<lie::Screw<double>> twists(chain.limbs.size(), lie::Screw<double>::Zero());
+  twists[first_order.limb_of_frame(entry.frame)] = first_order.motion(entry);
+  for (std::size_t a = 0; a < moved.size(); ++a) {
+    twists[first_order.limb_of_joint(a)] += moved[a] * first_order.column(a);
+  }
+  double largest = 0.0;
+  double apart = 0.0;
+  for (const lie::Screw<double>& twist : twists) {
+    largest = std::max(largest, twist.norm());
+    apart = std::max(apart, (twist - twists.front()).norm());
+  }
+  if (apart <= kAlike * std::max(largest, first_order.motion(entry).norm())) twists.resize(1);
+  std::vector<SketchTwist> list;
+  for (const lie::Screw<double>& twist : twists) {
+    SketchTwist& one = list.emplace_back();
+    for (std::size_t c = 0; c < one.size(); ++c) one[c] = scale * twist[static_cast<Eigen::Index>(c)];
+  }
+  return list;
+}
+
+void add_errors(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements) {
+  const std::optional<Metric> metric = model.metric(displacements);
+  FirstOrder first_order(model.chain);
+  const bool regular = first_order.prepare(displacements, metric ? &metric->W : nullptr);
+  for (const ErrorSlot& slot : model.slots) {
+    const std::vector<SketchedJoint>& joints = sketch.limbs[slot.limb];
+    const std::size_t last = model.chain.limbs[slot.limb].joints.size();
+    const std::size_t platform = last + 1;
+    sketch.errors.push_back({.limb = slot.limb,
+                             .frame = slot.frame == last ? platform : slot.frame,
+                             .axis = slot.component % 3,
+                             .after = joint_of(joints, slot.frame, platform),
+                             .before = joint_of(joints, slot.frame + 1, platform),
+                             .motions = regular ? motions(model.chain, first_order, model.entry(slot), slot.scale)
+                                                : std::vector<SketchTwist>()});
+  }
+}
+
+}  // namespace
+
+void place(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements) {
+  sketch.frames.clear();
+  std::span<const double> left = displacements;
+  Transform platform;
+  for (std::size_t i = 0; i < sketch.limbs.size(); ++i) {
+    const Limb& limb = model.chain.limbs[i];
+    const LimbFrames frames = frames_of(limb, left.first(limb.joints.size()));
+    left = left.subspan(limb.joints.size());
+    if (i == 0) platform = frames.after.back();
+    for (SketchedJoint& joint : sketch.limbs[i]) {
+      joint.point = sketched(frames.before[joint.frame - 1].p);
+      joint.axis = sketched(frames.before[joint.first - 1].R.col(2));
+    }
+    std::vector<SketchedFrame>& list = sketch.frames.emplace_back();
+    for (const Transform& frame : frames.after) list.push_back(sketched(frame));
+  }
+  sketch.platform = sketched(platform.p);
+  sketch.tool.clear();
+  if (model.platform && model.platform->tool) {
+    sketch.tool.push_back(sketched(platform.p + platform.R * *model.platform->tool));
+  }
+  sketch.errors.clear();
+  add_errors(sketch, model, displacements);
+}
+
+}  // namespace poesy::chain

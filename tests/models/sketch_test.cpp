@@ -1,0 +1,185 @@
+// What models say to pictures, against their evaluators and files.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "models/registry.h"
+
+namespace poesy {
+namespace {
+
+CatalogEntry from_gallery(const std::string& name) {
+  const std::string path = POESY_TEST_DATA "/../../results/gallery/" + name + "/" + name + ".toml";
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return registry().from_text(text.str(), path);
+}
+
+/// Mechanisms of the catalog and of the gallery, by their names there.
+CatalogEntry entry_of(const std::string& name) {
+  const CatalogEntry* known = find(registry(), name);
+  return known == nullptr ? from_gallery(name.substr(name.find('/') + 1)) : by_metric(*known, "platform");
+}
+
+class Sketches : public testing::TestWithParam<const char*> {
+ protected:
+  Sketches() : entry_(entry_of(GetParam())) {
+    constexpr std::size_t kFirstOrder = 1;
+    std::vector<double> geometry;
+    for (const GeometryParameter& parameter : entry_.description.geometry) geometry.push_back(parameter.published);
+    model_ = entry_.build(geometry, kFirstOrder);
+    const ModelDescription& description = model_->description();
+    if (description.pose_lower.empty()) {
+      pose_ = {-0.19, 0.2, -0.3};
+      return;
+    }
+    for (std::size_t c = 0; c < description.pose_lower.size(); ++c) {
+      pose_.push_back(0.4 * description.pose_lower[c] + 0.6 * description.pose_upper[c]);
+    }
+  }
+
+  /// Responses, and details behind them, to one error of this size.
+  std::vector<double> outcome(std::size_t factor, double size) const {
+    const ModelDescription& description = model_->description();
+    std::size_t details = 0;
+    for (const Detail& detail : description.details) details += detail.components.size();
+    std::vector<double> errors(description.factors.size(), 0.0);
+    errors[factor] = size;
+    std::vector<double> responses(description.responses.size());
+    std::vector<double> more(details);
+    std::array<SolveStatus, 1> status{};
+    std::array<std::uint32_t, 1> iterations{};
+    model_->evaluator({})->evaluate({pose_, errors, {}, {}, 1}, {responses, status, iterations, more});
+    responses.insert(responses.end(), more.begin(), more.end());
+    return responses;
+  }
+
+  CatalogEntry entry_;
+  std::unique_ptr<Model> model_;
+  std::vector<double> pose_;
+};
+
+double distance(const SketchVector& a, const SketchVector& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// Of a motion at a point.
+SketchVector displaced(const SketchTwist& t, const SketchVector& p) {
+  return {t[3] + t[1] * p[2] - t[2] * p[1], t[4] + t[2] * p[0] - t[0] * p[2], t[5] + t[0] * p[1] - t[1] * p[0]};
+}
+
+TEST_P(Sketches, LimbsEndInOnePlatformAndJointsStandAtTheirFrames) {
+  for (const std::vector<double>& pose : {std::vector<double>(), pose_}) {
+    const std::optional<Sketch> sketch = model_->sketch(pose);
+    ASSERT_TRUE(sketch.has_value());
+    ASSERT_EQ(sketch->errors.size(), model_->description().factors.size());
+    for (std::size_t i = 0; i < sketch->limbs.size(); ++i) {
+      EXPECT_LT(distance(sketch->frames[i].back().origin, sketch->platform), 1e-9);
+      for (const SketchedJoint& joint : sketch->limbs[i]) {
+        const SketchedFrame& frame = sketch->frames[i][joint.frame];
+        const SketchVector moved{frame.origin[0] - joint.point[0], frame.origin[1] - joint.point[1],
+                                 frame.origin[2] - joint.point[2]};
+        const double length = std::hypot(moved[0], moved[1], moved[2]);
+        if (joint.type != 'P' && joint.type != 'C' && joint.type != 'H') {
+          EXPECT_LT(length, 1e-12) << joint.name;
+        }
+        // A joint that slides moves its frame along its axis.
+        const SketchVector& z = frame.axes[2];
+        EXPECT_NEAR(std::abs(moved[0] * z[0] + moved[1] * z[1] + moved[2] * z[2]), length, 1e-12);
+      }
+    }
+  }
+}
+
+TEST_P(Sketches, ErrorsAreWhereTheModelSays) {
+  const Sketch sketch = model_->sketch({}).value();
+  for (std::size_t f = 0; f < sketch.errors.size(); ++f) {
+    const Factor& factor = model_->description().factors[f];
+    const SketchedError& error = sketch.errors[f];
+    EXPECT_EQ(error.limb + 1, factor.limb);
+    if (!factor.axis.empty()) {
+      EXPECT_EQ(std::string(1, "xyz"[error.axis]), factor.axis);
+    }
+    EXPECT_LE(error.after, error.before);
+    EXPECT_LE(error.before, error.after + 1);
+    EXPECT_LE(error.before, sketch.limbs[error.limb].size() + 1);
+    ASSERT_LT(error.frame, sketch.frames[error.limb].size());
+  }
+}
+
+TEST_P(Sketches, MotionsAreThoseOfTheEvaluator) {
+  constexpr double kSize = 1e-4;
+  const ModelDescription& description = model_->description();
+  const Sketch sketch = model_->sketch(pose_).value();
+  const auto position = [&](std::string_view name) {
+    const auto at = std::ranges::find(description.responses, name, &Response::name);
+    return static_cast<std::size_t>(at - description.responses.begin());
+  };
+  std::size_t compared = 0;
+  for (std::size_t f = 0; f < sketch.errors.size(); ++f) {
+    const std::vector<SketchTwist>& motions = sketch.errors[f].motions;
+    ASSERT_FALSE(motions.empty());
+    const std::vector<double> found = outcome(f, kSize);
+    if (position("theta_x") < description.responses.size()) {
+      SketchTwist mean{};
+      for (const SketchTwist& motion : motions) {
+        for (std::size_t c = 0; c < 6; ++c) mean[c] += motion[c] / static_cast<double>(motions.size());
+      }
+      const SketchVector moved = displaced(mean, sketch.platform);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(mean[c], found[position(std::array{"theta_x", "theta_y", "theta_z"}[c])] / kSize, 1e-7);
+        EXPECT_NEAR(moved[c], found[position(std::array{"x", "y", "z"}[c])] / kSize, 1e-7);
+      }
+      ++compared;
+    }
+    if (description.deformation && motions.size() > 1) {
+      std::size_t at = description.responses.size();
+      for (const Detail& pair : description.details) {
+        const auto k = static_cast<std::size_t>(pair.name[9] - '1');  // delta_mu_ki
+        const auto i = static_cast<std::size_t>(pair.name[10] - '1');
+        for (std::size_t c = 0; c < 6; ++c, ++at) {
+          EXPECT_NEAR(motions[k][c] - motions[i][c], found[at] / kSize, 1e-7) << description.factors[f].name;
+        }
+      }
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 10u);
+}
+
+std::string case_name(const testing::TestParamInfo<const char*>& info) {
+  std::string name = info.param;
+  std::ranges::replace_if(
+      name, [](char c) { return c == '-' || c == '/'; }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Mechanisms, Sketches,
+                         testing::Values("2upr-rpu", "3-prs", "gallery/2upr-rpu", "gallery/3-prs", "gallery/3-rps",
+                                         "gallery/3-rrr", "gallery/6-ups", "gallery/tripteron"),
+                         case_name);
+
+TEST(Sketch, OfAFileIsAtItsPointsAtHome) {
+  const CatalogEntry entry = from_gallery("3-rps");
+  const Sketch sketch = entry.build(std::array{0.25, 0.135, 0.6}, 0)->sketch({}).value();
+  ASSERT_EQ(sketch.limbs.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double angle = 2.0943951023931953 * static_cast<double>(i);
+    const auto at = [&](double radius, double z) {
+      return SketchVector{radius * std::cos(angle), radius * std::sin(angle), z};
+    };
+    EXPECT_LT(distance(sketch.limbs[i][0].point, at(0.25, 0.0)), 1e-12);
+    EXPECT_LT(distance(sketch.limbs[i][1].point, at(0.25, 0.0)), 1e-12);
+    EXPECT_LT(distance(sketch.limbs[i][2].point, at(0.135, 0.6)), 1e-12);
+  }
+  EXPECT_LT(distance(sketch.platform, {0.0, 0.0, 0.6}), 1e-12);
+  EXPECT_LT(distance(sketch.tool.front(), {0.0, 0.0, 0.7}), 1e-12);
+}
+
+}  // namespace
+}  // namespace poesy
