@@ -3,7 +3,7 @@
 /// An entry of a legend: a patch of colour and what it stands for.
 function swatch(fill, stroke, text) {
   const patch = element("i", { class: "swatch", style: `background:${fill};border-color:${stroke}` });
-  return element("span", { class: "entry" }, patch, text);
+  return element("span", { class: "entry" }, patch, element("span", {}, ...named(text)));
 }
 
 /// The colours of a field: colour(value), null where it is not known, and legend(width) with its label and unit.
@@ -28,11 +28,13 @@ function fieldColours(array, { label, unit, signed }) {
       marginLeft: 14,
       marginRight: 26,
       ticks: 4,
+      tickFormat: (value, k) => tickText(value, k, d3.ticks(...ends, 4)),
       style: FIGURE_STYLE,
     });
+    setNames(ramp);
     const [low, high] = domain.map((v) => withUnit(number(v), unit));
     describe(ramp, `Colours from ${low} to ${high}.`);
-    return element("div", { class: "legend" }, element("span", {}, labelled(label, axis.unit)), ramp, ...unknown);
+    return element("div", { class: "legend" }, element("span", {}, ...named(labelled(label, axis.unit))), ramp, ...unknown);
   };
   return { colour, legend };
 }
