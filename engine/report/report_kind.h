@@ -29,6 +29,8 @@ struct ReportKind {
   StudyWords (*words)(const StoredResult&);             ///< for the list of what was run
   /// Adds warnings of its own; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
+  /// The lines that come first. A line "How sure" is continued with how the solves ended.
+  Answer (*answer)(const StoredResult&);
   ShownCells (*shown_cells)(const StoredResult&);                            ///< what its figures by pose show
   void (*page)(const StoredResult&, std::span<const Table> tables, Page&);   ///< adds its sections, with its tables
   Comparable (*comparable)(const StoredResult&, const StoredResult& other);  ///< what it compares with the other

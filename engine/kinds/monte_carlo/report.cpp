@@ -209,15 +209,6 @@ Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
   return drawn;
 }
 
-/// The limit of a response where it is drawn: on both sides of zero if the response has values there.
-std::vector<Mark> limit_marks(const StoredResult& result, std::size_t r, double unit) {
-  const LimitVerdict* verdict = verdict_on(result, r);
-  if (verdict == nullptr) return {};
-  std::vector<Mark> marks{{"limit", verdict->limit / unit}};
-  if (monte_carlo_of(result).overall_min[r] < 0.0) marks.push_back({"limit", -verdict->limit / unit});
-  return marks;
-}
-
 std::string distribution_caption(const StoredResult& result, std::size_t r) {
   const NamedUnit& response = result.responses[r];
   std::string text = fmt::format(
@@ -245,7 +236,7 @@ Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
                       unit.empty() ? "%" : "%/" + unit,
                       {{"samples of all poses", density, zero, density}}},
                      {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
-          .marks = limit_marks(result, r, display(response).si)};
+          .marks = limit_marks(result, r, monte_carlo_of(result).overall_min[r] < 0.0)};
 }
 
 void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -286,7 +277,10 @@ void add_where(const StoredResult& result, Page& page) {
     };
     const ArrayName mean = add("mean", std::span(found.mean).subspan(r * found.poses, found.poses));
     const ArrayName highest = quantile(levels.size() - 1);
-    bands.panels.push_back({response.name, unit, {{"mean", mean, quantile(0), highest}}});
+    bands.panels.push_back({response.name,
+                            unit,
+                            {{"mean", mean, quantile(0), highest}},
+                            limit_marks(result, r, found.overall_min[r] < 0.0)});
     fields.push_back({response.name + ", mean", unit, mean});
     fields.push_back({response.name + ", " + quantile_label(levels.back()), unit, highest});
     fields.push_back({response.name + ", standard deviation", unit,
@@ -337,6 +331,61 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   if (monte_carlo_of(result).effects) add_effects_section(result, tables, page);
   add_where(result, page);
   add_how_sure(result, tables, page);
+}
+
+/// The errors that make most of a response's variance alone, "delta_1 (12 %), ..."; empty where that is not known.
+std::string drivers_text(const StoredResult& result, std::size_t r) {
+  constexpr std::size_t kMost = 3;
+  const MonteCarloResult& found = monte_carlo_of(result);
+  if (!found.effects) return {};
+  const MainEffects& effects = found.effects->effects;
+  const std::size_t factors = result.factors.size();
+  std::vector<std::size_t> order;  // those that certainly have an effect alone
+  for (std::size_t p = 0; p < factors; ++p) {
+    if (effects.s1_ci_low[r * factors + p] > 0.0) order.push_back(p);
+  }
+  if (order.empty()) return {};
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t p) { return effects.s1[r * factors + p]; });
+  std::string text;
+  for (const std::size_t p : std::span(order).first(std::min(kMost, order.size()))) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name,
+                        percent_text(effects.s1[r * factors + p]));
+  }
+  return fmt::format("Alone make the largest shares of the variance of {}: {}.", result.responses[r].name, text);
+}
+
+/// What one may expect, and where the worst pose is, of a response.
+Answer answer(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  if (found.poses == 0 || found.levels.empty()) return {};
+  const std::size_t r = response_named(result, default_ranking(result));
+  const NamedUnit& response = result.responses[r];
+  const auto text = [&](double value) { return response_text(response, value); };
+  const std::size_t highest = found.levels.size() - 1;
+  const std::string level = percent_text(found.levels[highest]);
+  const WorstPoses worst = worst_poses(found, r);
+  Answer lines{
+      {"Answer",
+       fmt::format("{} is {} on average; {} of the samples of all poses are below {}, the largest is {}.",
+                   response.name, text(found.overall_mean[r]), level,
+                   text(found.overall_quantiles[r * found.levels.size() + highest]), text(found.overall_max[r]))}};
+  if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
+  const std::string place = place_text(result, worst.worst);
+  lines.emplace_back("Where", fmt::format("The worst is {}: {} of the samples there are below {}.", place, level,
+                                          text(worst.quantile[worst.worst])));
+  std::string sure = fmt::format("{} at each pose.", counted(found.solves.front().total(), "sample", "samples"));
+  if (!std::isnan(worst.low)) {
+    sure += fmt::format(" The {} interval of the value at the worst pose is {} to {}; {} not be told from it.",
+                        percent_text(found.conf_level), text(worst.low), text(worst.high),
+                        counted(worst.alike.size(), "other pose can", "other poses can"));
+  }
+  lines.emplace_back("How sure", std::move(sure));
+  const std::string drivers = drivers_text(result, r);
+  const std::string limits =
+      result.verdicts ? "" : "State limits under [analysis.limits], and the report judges them. ";
+  lines.emplace_back("What to do", limits + (drivers.empty() ? "A sensitivity study says which errors to make smaller."
+                                                             : drivers + " Make these smaller first."));
+  return lines;
 }
 
 Settling settling(const StoredResult& result) { return {"overall means", {"all errors"}, result.headline}; }
@@ -391,6 +440,7 @@ constinit const ReportKind kMonteCarloReport{
     .settling = settling,
     .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
     .warn = warn,
+    .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
     .page = add_page,
     .comparable = comparable};
