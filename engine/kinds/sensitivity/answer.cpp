@@ -10,6 +10,7 @@
 
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/figures.h"
+#include "engine/kinds/sensitivity/indices.h"
 #include "engine/kinds/sensitivity/linearity.h"
 #include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
