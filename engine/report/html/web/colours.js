@@ -6,12 +6,16 @@ function swatch(fill, stroke, text) {
   return element("span", { class: "entry" }, patch, element("span", {}, ...named(text)));
 }
 
+/// Like PuOr, but 0 is near the dark paper, so that what differs stands out there too.
+const DARK_DIFFERENCES = d3.piecewise(d3.interpolateRgb, ["#d3c2ff", "#9276dd", "#2a2f37", "#c9771f", "#ffcb8a"]);
+
 /// The colours of a field: colour(value), null where it is not known, and legend(width) with its label and unit.
 /// A field with both signs, and a difference whatever its values, has two hues that meet at 0; another one has the
 /// colours of viridis.
 function fieldColours(array, { label, unit, signed }) {
   const domain = symmetric(valueExtent(array), signed);
-  const interpolate = domain[0] < 0 && domain[1] > 0 ? d3.interpolatePuOr : d3.interpolateViridis;
+  const differs = domain[0] < 0 && domain[1] > 0;
+  const interpolate = !differs ? d3.interpolateViridis : isDark() ? DARK_DIFFERENCES : d3.interpolatePuOr;
   const scale = d3.scaleSequential(domain, interpolate);
   const colour = (value) => (Number.isFinite(value) ? scale(value) : null);
   const unknown = known(array).length < array.length ? [swatch("var(--unknown)", "var(--unknown)", "unknown")] : [];

@@ -45,6 +45,16 @@ class Choices {
   }
 }
 
+// Paper is light whatever the screen is.
+const darkScheme = matchMedia("(prefers-color-scheme: dark)");
+let printing = false;
+addEventListener("beforeprint", () => (printing = true));
+addEventListener("afterprint", () => (printing = false));
+
+function isDark() {
+  return darkScheme.matches && !printing;
+}
+
 /// Where a figure is drawn: controls above, then the plot, drawn by draw(width): at first by fit(), when the figure is
 /// whole, and again whenever its width changes.
 class Place {
@@ -58,6 +68,7 @@ class Place {
     new ResizeObserver(() => requestAnimationFrame(() => this.fit())).observe(this.plot);
     addEventListener("beforeprint", () => this.redraw(PRINT_WIDTH));
     addEventListener("afterprint", () => this.redraw());
+    darkScheme.addEventListener("change", () => this.redraw());
   }
   fit() {
     const width = Math.floor(this.plot.clientWidth);
