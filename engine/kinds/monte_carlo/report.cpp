@@ -333,25 +333,40 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_how_sure(result, tables, page);
 }
 
-/// The errors that make most of a response's variance alone, "delta_1 (12 %), ..."; empty where that is not known.
+/// "Make delta_1 (12 %), ... smaller first", the errors that make most of a response's variance alone; empty where that
+/// is not known, or is little, as of a response without sign.
 std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
+  constexpr double kLittle = 0.1;
   const MonteCarloResult& found = monte_carlo_of(result);
   if (!found.effects) return {};
   const MainEffects& effects = found.effects->effects;
   const std::size_t factors = result.factors.size();
+  const auto share = [&](std::size_t p) { return effects.s1[r * factors + p]; };
   std::vector<std::size_t> order;  // those that certainly have an effect alone
   for (std::size_t p = 0; p < factors; ++p) {
     if (effects.s1_ci_low[r * factors + p] > 0.0) order.push_back(p);
   }
-  if (order.empty()) return {};
-  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t p) { return effects.s1[r * factors + p]; });
+  std::ranges::stable_sort(order, std::ranges::greater(), share);
+  order.resize(std::min(kMost, order.size()));
   std::string text;
-  for (const std::size_t p : std::span(order).first(std::min(kMost, order.size()))) {
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name,
-                        percent_text(effects.s1[r * factors + p]));
+  double sum = 0.0;
+  for (const std::size_t p : order) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name, percent_text(share(p)));
+    sum += share(p);
   }
-  return fmt::format("Alone make the largest shares of the variance of {}: {}.", result.responses[r].name, text);
+  if (!(sum >= kLittle)) return {};
+  return fmt::format("Make smaller first what makes most of the variance of {} alone: {}.", result.responses[r].name,
+                     text);
+}
+
+/// By the limits, where the study has some.
+std::string advice(const StoredResult& result, std::size_t r) {
+  if (result.verdicts && result.verdicts->passed())
+    return "Nothing has to be done: as far as it shows, the limits are kept.";
+  const std::string drivers = drivers_text(result, r);
+  const std::string which = drivers.empty() ? "A sensitivity study says which errors to make smaller." : drivers;
+  return (result.verdicts ? "" : "State limits under [analysis.limits], and the report judges them. ") + which;
 }
 
 /// What one may expect, and where the worst pose is, of a response.
@@ -375,16 +390,12 @@ Answer answer(const StoredResult& result) {
                                           text(worst.quantile[worst.worst])));
   std::string sure = fmt::format("{} at each pose.", counted(found.solves.front().total(), "sample", "samples"));
   if (!std::isnan(worst.low)) {
-    sure += fmt::format(" The {} interval of the value at the worst pose is {} to {}; {} not be told from it.",
+    sure += fmt::format(" The {} interval of the value at the worst pose is {} to {}; {} cannot be told from it.",
                         percent_text(found.conf_level), text(worst.low), text(worst.high),
-                        counted(worst.alike.size(), "other pose can", "other poses can"));
+                        counted(worst.alike.size(), "other pose", "other poses"));
   }
   lines.emplace_back("How sure", std::move(sure));
-  const std::string drivers = drivers_text(result, r);
-  const std::string limits =
-      result.verdicts ? "" : "State limits under [analysis.limits], and the report judges them. ";
-  lines.emplace_back("What to do", limits + (drivers.empty() ? "A sensitivity study says which errors to make smaller."
-                                                             : drivers + " Make these smaller first."));
+  lines.emplace_back("What to do", advice(result, r));
   return lines;
 }
 

@@ -91,8 +91,8 @@ std::string advice(const std::optional<FewMatter>& few) {
   std::string text;
   if (few && !few->names.empty()) text = fmt::format("Hold {} to tight tolerances. ", some_names(few->names, 3));
   if (few && !few->hardly.empty()) {
-    text += fmt::format("{} together below 1 %: {} may be loose. ",
-                        counted(few->hardly.size(), "error makes", "errors make"), some_names(few->hardly, 3));
+    text += fmt::format("{} may be loose: together below 1 % ({}). ", counted(few->hardly.size(), "error", "errors"),
+                        some_names(few->hardly, 3));
   }
   return text + "'poesy tolerances' gives sizes that keep a limit; a study of kind allocation, those of least cost.";
 }

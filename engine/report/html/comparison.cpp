@@ -247,7 +247,9 @@ Answer comparison_answer(const Comparison& compared) {
                                                "what differs there; where intervals overlap, they may.",
                                                apart, counted(items, a.item_word, a.item_word + "s")));
   }
-  lines.emplace_back("What to do", "Look first at how the studies differ: what differs below follows from that alone.");
+  lines.emplace_back(
+      "What to do",
+      "Look at how the studies differ first: the rest of what differs follows from that, and from chance.");
   return lines;
 }
 

@@ -119,7 +119,9 @@ function lines(figure, data) {
         }),
       ].flat(),
     );
-    const xDomain = extent([...x, ...xMarks.map(({ value }) => value)]);
+    const [from, to] = extent([...x, ...xMarks.map(({ value }) => value)]);
+    const room = ({ value, beyond }) => value + { above: 0.04, below: -0.04 }[beyond] * (to - from); // for the tint
+    const xDomain = d3.extent([from, to, ...xMarks.filter(({ beyond }) => beyond).map(room)]);
     const svg = draw(sentence(one, shown, unit), {
       width,
       height,
