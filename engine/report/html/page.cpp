@@ -55,13 +55,12 @@ std::string number_element(const PrintedNumber& cell, std::size_t longest_tail) 
   return element("td", cell.text, fmt::format("class=\"n\" style=\"--room:{}\"", room));
 }
 
-/// Texts of a line are not broken; longer ones get room enough for some words in each line.
+/// Short texts are not broken into lines; long ones get room for some words in each line.
 std::string_view width_class(const Table& table, std::size_t c) {
-  constexpr std::size_t kShort = 20;
   constexpr std::size_t kLong = 30;
-  std::size_t longest = 0;
-  for (const std::vector<Cell>& row : table.rows) longest = std::max(longest, text_width(row[c].text));
-  return longest <= kShort ? "class=\"short\"" : longest > kLong ? "class=\"long\"" : "";
+  const bool is_long =
+      std::ranges::any_of(table.rows, [&](const std::vector<Cell>& row) { return text_width(row[c].text) > kLong; });
+  return is_long ? "class=\"long\"" : "";
 }
 
 /// "+-0.1 mm", which terminals can show, with the sign that print has.
