@@ -41,7 +41,9 @@ struct NumberColumn {
 NumberColumn column_of_numbers(const Table& table, std::size_t c) {
   std::vector<Cell> cells;
   for (const std::vector<Cell>& row : table.rows) cells.push_back(row[c]);
-  NumberColumn column{printed_numbers(cells)};
+  constexpr int kShareDigits = 3;  // of what is missing from 100 % it has more
+  const bool shares = table.columns[c].unit == "%";
+  NumberColumn column{printed_numbers(cells, shares ? kShareDigits : 0)};
   for (const PrintedNumber& one : column.cells) column.longest_tail = std::max(column.longest_tail, one.tail);
   return column;
 }

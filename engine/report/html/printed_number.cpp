@@ -80,17 +80,18 @@ PrintedNumber printed(double shown, int digits) {
 
 }  // namespace
 
-std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column) {
-  int most = 0;  // of numbers with a fraction; whole ones are counts, or exact
-  for (const Cell& cell : column) {
-    if (cell.value && cell.text.find_first_of(".e") != std::string::npos) most = std::max(most, digits_of(cell.text));
+std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits) {
+  int most = digits;
+  for (const Cell& cell : column) {  // with a fraction; whole numbers are counts, or exact
+    if (digits == 0 && cell.value && cell.text.find_first_of(".e") != std::string::npos)
+      most = std::max(most, digits_of(cell.text));
   }
   std::vector<PrintedNumber> list;
   for (const Cell& cell : column) {
-    const int digits = cell.value ? digits_of(cell.text) : 0;
-    if (!cell.value || (digits == 0 && cell.text != "0")) {
+    const int shown = cell.value ? digits_of(cell.text) : 0;
+    if (!cell.value || (shown == 0 && cell.text != "0")) {
       list.push_back({cell.text, 0, cell.value.has_value()});
-    } else if (digits == 0) {
+    } else if (shown == 0) {
       list.push_back({"0", 0, true});
     } else {
       list.push_back(printed(std::strtod(cell.text.c_str(), nullptr), full_digits(cell, most)));

@@ -20,6 +20,7 @@ struct PrintedNumber {
 /// digits as the others have, as far as they are digits of the number ("0.5000" below "0.4913"); digits of large
 /// numbers in groups of three; powers of ten above a million and below a millionth ("4.53 x 10^-7" with the signs of
 /// print).
-std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column);
+/// digits: how many those are; 0: as many as the longest has.
+std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits = 0);
 
 }  // namespace poesy

@@ -10,18 +10,18 @@
 namespace poesy {
 namespace {
 
-std::vector<std::string> texts(const std::vector<Cell>& column) {
+std::vector<std::string> texts(const std::vector<Cell>& column, int digits = 0) {
   std::vector<std::string> list;
-  for (const PrintedNumber& one : printed_numbers(column)) list.push_back(one.text);
+  for (const PrintedNumber& one : printed_numbers(column, digits)) list.push_back(one.text);
   return list;
 }
 
 TEST(PrintedNumbers, HaveTheZerosBehindThemThatAreDigitsOfTheNumber) {
   EXPECT_EQ(texts({number_cell(0.4913), number_cell(0.45001), number_cell(0.5), number_cell(2.0)}),
             (std::vector<std::string>{"0.4913", "0.4500", "0.5000", "2.000"}));
-  // 99.755 has five digits, because what is missing from 100 % has three; 7.8246 is not 7.8200.
-  EXPECT_EQ(texts({percent_cell(0.99755), percent_cell(0.078246), percent_cell(0.0)}),
-            (std::vector<std::string>{"99.755", "7.82", "0"}));
+  // 99.755 has five digits, because what is missing from 100 % has three.
+  EXPECT_EQ(texts({percent_cell(0.99755), percent_cell(0.078196), percent_cell(0.5), percent_cell(0.0)}, 3),
+            (std::vector<std::string>{"99.755", "7.82", "50.0", "0"}));
 }
 
 TEST(PrintedNumbers, OfWholeColumnsAreExact) {

@@ -138,7 +138,7 @@ function lines(figure, data) {
         labelArrow: "none",
         ...(log
           ? { ticks: logTicks(xDomain, (width - marginRight - 56) / 60), tickFormat: logTick }
-          : { ticks: Math.max(3, Math.floor((width - marginRight) / 90)) }),
+          : { ticks: Math.max(4, Math.floor((width - marginRight) / 90)) }),
         grid: true,
       },
       y: {
@@ -202,12 +202,17 @@ function isNear(value, numbers) {
   return Math.abs(value) <= 3 * d3.max(numbers, Math.abs);
 }
 
-/// "limit 0.03 mm".
+/// "limit 0.03 mm"; a pure number says less than its label.
 function markText({ label, value }, unit) {
-  return `${label} ${withUnit(plain(value), unit)}`;
+  return isUnit(unit) ? `${label} ${withUnit(plain(value), unit)}` : label;
 }
 
-const LIMIT = { stroke: "var(--limit)", strokeWidth: 1.5, strokeDasharray: "5 3" };
+/// Limits stand out from other values that are marked.
+function markColour({ beyond }) {
+  return beyond ? "var(--limit)" : "var(--ink)";
+}
+
+const MARK = { stroke: markColour, strokeWidth: 1.5, strokeDasharray: "5 3" };
 
 /// What lies beyond limits of x, which is not allowed, in a tint over the whole height.
 function beyondLimits(xMarks) {
@@ -227,19 +232,19 @@ function beyondLimits(xMarks) {
 function levels(yMarks, factor, unit) {
   const y = ({ value }) => value / factor;
   const text = (mark) => markText(mark, unit);
-  const place = { frameAnchor: "left", textAnchor: "start", dx: 4, dy: -8, fontWeight: 600, fill: "var(--limit)" };
-  return [Plot.ruleY(yMarks, { y, ...LIMIT }), Plot.text(yMarks, { y, text, ...place, stroke: "var(--paper)", strokeWidth: 3 })];
+  const place = { frameAnchor: "left", textAnchor: "start", dx: 4, dy: -8, fontWeight: 600, fill: markColour };
+  return [Plot.ruleY(yMarks, { y, ...MARK }), Plot.text(yMarks, { y, text, ...place, stroke: "var(--paper)", strokeWidth: 3 })];
 }
 
 /// A rule at each value, named on the side where there is more room.
 function markedValues(xMarks, [from, to], unit) {
   const onTheRight = ({ value }) => value > (from + to) / 2;
   const text = (mark) => markText(mark, unit);
-  const halo = { fill: "var(--limit)", stroke: "var(--paper)", strokeWidth: 3, fontWeight: 600 };
+  const halo = { fill: markColour, stroke: "var(--paper)", strokeWidth: 3, fontWeight: 600 };
   const name = (some, side, dx) =>
     Plot.text(some, { x: "value", text, frameAnchor: "top", textAnchor: side, dx, dy: 2, ...halo });
   return [
-    Plot.ruleX(xMarks, { x: "value", ...LIMIT }),
+    Plot.ruleX(xMarks, { x: "value", ...MARK }),
     name(xMarks.filter(onTheRight), "end", -5),
     name(xMarks.filter((mark) => !onTheRight(mark)), "start", 5),
   ];
