@@ -671,7 +671,8 @@ TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
   sensitivity_in(b.stored).mean.assign(16, 0.5e-3);
   const std::string rows = table(report(a, b), "totals");
   // Two errors: sqrt(2 (3^2 + 4^2 999 / 1000)) = 7.069 mm, and sqrt(2) 0.5 mm.
-  EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\" style=\"--room:1\">7.069</td>"), std::string::npos)
+  EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\" style=\"--room:1\">7.069</td>"),
+            std::string::npos)
       << rows;
   EXPECT_NE(rows.find(">0.7071</td><td>mm</td><td class=\"n\">0.1</td>"), std::string::npos) << rows;
 }
