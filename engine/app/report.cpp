@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/app/command_line.h"
+#include "engine/app/pdf.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/files/file_writer.h"
@@ -41,10 +42,17 @@ ReportedResult reported(const std::string& path) {
 
 int report(const ReportOptions& options) {
   const std::string path = options.report.empty() ? default_path(options.results) : options.report;
-  check_output_path(path, {"report", may_be_replaced}, options.results);
+  const bool pdf = is_pdf(path);
+  check_output_path(path, {"report", pdf ? is_pdf_report : may_be_replaced}, options.results);
+  const std::string browser = pdf ? printing_browser(path) : std::string();
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back(reported(result));
-  write_text(path, html_report(kind_of(results.front().stored).report, results));
+  const std::string page = html_report(kind_of(results.front().stored).report, results);
+  if (!pdf) {
+    write_text(path, page);
+  } else if (write_pdf(path, page, browser) == Printed::interrupted) {
+    return complain("interrupted: " + path + " is not written", kInterrupted);
+  }
   std::puts(path.c_str());
   return kDone;
 }
@@ -57,10 +65,13 @@ Command& add_report(Command& program) {
   command.add_value("results", options.results, "RESULT.h5", "result file, or two to be compared")
       ->required()
       ->expected(1, 2);
-  command.add_value("-o,--output", options.report, "REPORT.html",
-                    "report; default: RESULT.html beside the result, A-B.html beside A for two");
+  command.add_value(
+      "-o,--output", options.report, "REPORT.html",
+      "report; default: RESULT.html beside the result, A-B.html beside A for two; REPORT.pdf is printed by "
+      "Chromium where it is installed");
   command.examples = {{"gives result.html", "poesy report result.h5"},
-                      {"two compared, before-after.html", "poesy report before.h5 after.h5"}};
+                      {"two compared, before-after.html", "poesy report before.h5 after.h5"},
+                      {"printed, where Chromium is installed", "poesy report result.h5 -o result.pdf"}};
   return command;
 }
 

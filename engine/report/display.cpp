@@ -81,7 +81,7 @@ std::string counted(std::uint64_t count, std::string_view one, std::string_view 
 }
 
 std::string number_text(double value, int digits) {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
+  return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value + 0.0, digits);  // no "-0"
 }
 
 std::string percent_number(double share) {
@@ -141,11 +141,13 @@ std::string response_text(const NamedUnit& response, double si) {
 }
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
+  constexpr double kRounding = 1e-12;          // mm or deg; what a curve leaves where it comes back to zero
   if (pose >= result.poses.size()) return {};  // a stranger's file may name any number
   std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];
-    const std::string number = number_text(result.poses[PoseIndex(pose)][c] / display(named).si, 3);
+    const double value = result.poses[PoseIndex(pose)][c] / display(named).si;
+    const std::string number = number_text(std::abs(value) < kRounding ? 0.0 : value, 3);
     text += (text.empty() ? "" : ", ") + named.name + " " + with_unit_text(number, named);
   }
   return text;

@@ -30,6 +30,8 @@ struct ReportKind {
   StudyWords (*words)(const StoredResult&);             ///< for the list of what was run
   /// Adds warnings of its own; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
+  /// The lines that come first. A line "How sure" is continued with how the solves ended.
+  Answer (*answer)(const StoredResult&);
   ShownCells (*shown_cells)(const StoredResult&);                           ///< what its figures by pose show
   void (*page)(const StoredResult&, std::span<const Table> tables, Page&);  ///< adds its sections, with its tables
   ErrorShares (*error_shares)(const StoredResult&) = nullptr;  ///< by which its picture is coloured; null: by none

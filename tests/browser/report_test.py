@@ -201,6 +201,24 @@ class Figures(PageTest):
         self.assertNotEqual(first[0], turned)
         self.assertEqual(back, [first[0], "Reset view"])
 
+    def test_names_are_set_as_in_print_and_stay_plain_for_all_else(self):
+        page = figures_page(WEB).replace("<h1>Figures</h1>", "<h1>Figures of epsilon_1_4_y, q_0.95 and beta</h1>"
+                                         "<p id='plain'>tip_x, results/a_1.h5, alphabet, e.g. not_converged</p>")
+        self.open(page)
+        heading = self.browser.run(
+            """const names = [...document.querySelectorAll("h1 .name")];
+            const shown = (e, where) => getComputedStyle(e, where).content.split('"')[1];
+            return [document.querySelector("h1").textContent, document.querySelector("#plain .name"),
+              names.map((e) => [shown(e, "::before"), e.dataset.index, e.title])]""")
+        self.assertEqual(heading[0], "Figures of epsilon_1_4_y, q_0.95 and beta")
+        self.assertIsNone(heading[1])
+        self.assertEqual([name[:2] for name in heading[2]], [["ε", "1,4,y"], ["q", "0.95"], ["β", ""]])
+        self.assertTrue(heading[2][0][2].startswith("epsilon_1_4_y"))
+        ticks = self.browser.run(
+            """return [...document.querySelectorAll("[data-figure=ranking] [data-mark='y-axis tick label'] text")]
+              .map((text) => text.textContent)""")
+        self.assertTrue(all(tick.startswith("δ") for tick in ticks), ticks)
+
     def test_faults_are_found(self):
         """The checks themselves: a page with one fault of each kind."""
         page = self.folder / "faults.html"
@@ -248,7 +266,22 @@ class Reports(PageTest):
         print(f"{name}: {page.stat().st_size / 1e6:.2f} MB in {seconds:.2f} s")
         self.assertLess(page.stat().st_size, MOST_BYTES)
         self.assertLess(seconds, MOST_SECONDS)
+        self.check_answer(page)
         return page
+
+    def check_answer(self, page):
+        """A report says first what was found, in five lines at the most, the last of which is what to do."""
+        self.browser.open(page, max(WIDTHS))
+        first, words, texts = self.browser.run(
+            """const section = document.querySelector("main section");
+            const texts = (tag) => [...section.querySelectorAll(tag)].map((e) => e.textContent);
+            return [section.id, texts("dt"), texts("dd")]""")
+        self.assertEqual(first, "answer")
+        self.assertLessEqual(len(words), 5)
+        self.assertEqual([words[0], words[-1]], ["Answer", "What to do"])
+        for text in texts:
+            self.assertNotRegex(text, r"\bnan\b|\binf\b|  |\(\)")
+            self.assertRegex(text, r"[.)]$")
 
     def test_published_sensitivity_study(self):
         study = ROOT / "results" / "2upr-rpu-sensitivity" / "study.toml"
@@ -297,8 +330,11 @@ class Reports(PageTest):
         self.check_page(self.report("monte-carlo", self.result("monte-carlo", limited)))
         marked = self.browser.run(
             """return [...document.querySelectorAll("[data-figure^=distribution] svg")].map((svg) =>
-              [...svg.querySelectorAll("text")].filter((text) => text.textContent === "limit").length)""")
+              [...svg.querySelectorAll("text")].filter((text) => /^limit [\\d.]+/.test(text.textContent)).length)""")
         self.assertEqual(sorted(marked), [0, 0, 1, 1, 1, 1])  # two panels of each of three responses, two with a limit
+        shaded = self.browser.run(
+            "return document.querySelectorAll('[data-figure^=distribution] svg rect[height]').length")
+        self.assertEqual(shaded, 4)
 
     def test_comparison(self):
         template = self.poesy("template", "2upr-rpu")

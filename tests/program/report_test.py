@@ -1,13 +1,34 @@
 """Reports as a user makes them: names, refusals, two results, and the same numbers as `poesy show --json`."""
 
 import json
+import os
+import shutil
+import signal
+import subprocess
+import time
 from html.parser import HTMLParser
 
 import h5py
 
-from poesy_program import STUDY, ProgramTest, main
+from poesy_program import PROGRAM, STUDY, ProgramTest, main
 
 MONTE_CARLO = STUDY.replace('kind = "sensitivity"', 'kind = "monte-carlo"').split("background")[0] + "[run]\nseed = 5\n"
+
+
+RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+
+
+def number(text):
+    """The number that a page prints, or None: signs, groups and powers of ten as print has them."""
+    plain = text.replace("\u2212", "-").replace("\u00a0×\u00a010", "e").translate(RAISED)
+    try:
+        return float(plain.replace(" ", ""))
+    except ValueError:
+        return None
+
+
+def same(printed, shown):
+    return printed == shown or (number(printed) is not None and number(printed) == number(shown))
 
 
 class Page(HTMLParser):
@@ -66,6 +87,7 @@ class Report(ProgramTest):
     def test_stands_beside_the_result_and_is_named(self):
         self.assertEqual(self.succeeds("report", "r.h5"), "r.html\n")
         page = self.page("r.html")
+        self.assertEqual(page.sections[0], "answer")
         self.assertEqual(page.sections[-2:], ["not-solved", "what-was-run"])
         self.assertIn("which-errors-matter", page.sections)
         self.assertEqual(sorted(page.figures), sorted(page.data["figures"]))
@@ -118,6 +140,65 @@ class Report(ProgramTest):
         self.refused(3, "study.toml")
         self.assertEqual(list(self.folder.glob("*.html")), [])
 
+    def browser(self, script):
+        """PATH with a browser that does this, and the tools it needs."""
+        (self.folder / "bin").mkdir(exist_ok=True)
+        path = self.write("bin/chromium", "#!/bin/sh\n" + script)
+        path.chmod(0o755)
+        return {"PATH": f"{path.parent}:/usr/bin:/bin"}
+
+    def printed(self, environment, *arguments):
+        return subprocess.run([PROGRAM, "report", *arguments], cwd=self.folder, capture_output=True, timeout=300,
+                              check=False, env=os.environ | environment)
+
+    def test_is_printed_where_there_is_a_browser(self):
+        found = any(shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome"))
+        if not found:
+            self.skipTest("no Chromium")
+        for _ in range(2):  # its own PDF is replaced
+            self.assertEqual(self.succeeds("report", "r.h5", "-o", "r.pdf"), "r.pdf\n")
+            pdf = (self.folder / "r.pdf").read_bytes()
+            self.assertTrue(pdf.startswith(b"%PDF-"))
+            self.assertGreater(len(pdf), 20000)
+        foreign = pdf.removesuffix(b"% poesy report\n")
+        self.write("foreign.pdf", foreign)
+        self.assertIn("would be lost", self.refused(2, "r.h5", "-o", "foreign.pdf"))
+        self.assertEqual((self.folder / "foreign.pdf").read_bytes(), foreign)
+
+    def test_says_how_to_print_without_a_browser(self):
+        done = self.printed({"PATH": str(self.folder)}, "r.h5", "-o", "r.pdf")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"open it in a browser and print it", done.stderr)
+        self.assertFalse((self.folder / "r.pdf").exists())
+
+    def test_is_not_written_where_the_browser_fails(self):
+        temporary = self.folder / "tmp"
+        temporary.mkdir()
+        for script, said in (("echo no display >&2; exit 1", b"no display"), ("exit 0", b"said: nothing"),
+                             ('for a; do case $a in --print-to-pdf=*) echo %PDF-1.4 > "${a#*=}";; esac; done', b"was not")):
+            with self.subTest(script):
+                done = self.printed(self.browser(script) | {"TMPDIR": str(temporary)}, "r.h5", "-o", "r.pdf")
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertIn(said, done.stderr)
+                self.assertFalse((self.folder / "r.pdf").exists())
+                self.assertEqual(list(temporary.iterdir()), [])
+
+    def test_ends_the_browser_when_interrupted(self):
+        temporary = self.folder / "tmp"
+        temporary.mkdir()
+        environment = self.browser(f"echo $$ > {self.folder}/id; exec sleep 100") | {"TMPDIR": str(temporary)}
+        started = subprocess.Popen([PROGRAM, "report", "r.h5", "-o", "r.pdf"], cwd=self.folder, stderr=subprocess.PIPE,
+                                   env=os.environ | environment)
+        while not (self.folder / "id").exists() or not (self.folder / "id").read_text().endswith("\n"):
+            time.sleep(0.02)
+        started.send_signal(signal.SIGINT)
+        self.assertIn(b"is not written", started.communicate(timeout=60)[1])
+        self.assertEqual(started.returncode, 4)
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int((self.folder / "id").read_text()), 0)
+        self.assertFalse((self.folder / "r.pdf").exists())
+        self.assertEqual(list(temporary.iterdir()), [])
+
     def test_refuses_two_results_of_different_kinds(self):
         self.write("mc.toml", MONTE_CARLO)
         self.succeeds("run", "mc.toml", "-o", "mc.h5", "--quiet")
@@ -131,7 +212,10 @@ class Report(ProgramTest):
         self.assertTrue(shown)
         for table in shown:
             with self.subTest(table["name"]):
-                self.assertEqual(tables[table["name"]][1:], table["shown"])
+                rows = tables[table["name"]][1:]
+                self.assertEqual([len(row) for row in rows], [len(row) for row in table["shown"]])
+                cells = [pair for row, others in zip(rows, table["shown"]) for pair in zip(row, others)]
+                self.assertEqual([pair for pair in cells if not same(*pair)], [])
 
     def test_compares_two_results(self):
         self.succeeds("run", "study.toml", "-o", "s.h5", "--seed", "6", "--quiet")
@@ -141,7 +225,7 @@ class Report(ProgramTest):
         facts = {row[0]: row[1:] for row in page.tables["what_was_run"]}
         self.assertEqual(facts["seed"], ["5", "6"])
         self.assertEqual(page.tables["settings"][1:], [["run.seed", "5", "6"]])
-        self.assertEqual(next(section for section in page.sections if section != "warnings"), "studies")
+        self.assertEqual(next(section for section in page.sections if section not in ("answer", "warnings")), "studies")
         self.assertNotIn("kind of study", facts)
         self.assertIn(["kind of study", "sensitivity", "sensitivity"], page.tables["what_was_run_alike"])
         self.assertEqual({row[-1] for row in page.tables["differences_1"][1:]}, {"overlap"})

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "engine/base/nan.h"
@@ -159,6 +161,65 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   list.push_back(text + ".");
 }
 
+/// A sentence of its own.
+std::string sentence(std::string text) {
+  text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  return text + ".";
+}
+
+/// Which parts cost most, or use most of the limits.
+std::string largest_parts(const Result& found) {
+  constexpr std::size_t kMost = 3;
+  const std::vector<double>& shares = has_costs(found) ? found.share : found.mean_square_share;
+  const std::vector<std::size_t> order = ordered_parts(found, RowOrder::effect);
+  std::string text;
+  for (const std::size_t n : std::span(order).first(std::min(kMost, order.size()))) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", found.part_names[n], percent_text(shares[n]));
+  }
+  return text;
+}
+
+/// The limit that would save most, and the pose where it is used most; empty where none is known.
+std::string tightest_text(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  std::optional<std::size_t> most;
+  for (const std::size_t r : limited_responses(found)) {
+    if (!std::isnan(found.saving[r]) && (!most || found.saving[r] > found.saving[*most])) most = r;
+  }
+  if (!most) return {};
+  const NamedUnit& response = result.responses[*most];
+  const std::optional<std::size_t> pose = worst_pose(found, found.limit_use, *most);
+  const std::string where = pose ? fmt::format(", used most at {}", place_text(result, *pose)) : std::string();
+  return fmt::format("The limit of {} on {}{}. 1 % wider it saves {} of {}.",
+                     response_text(response, found.limit[*most]), response.name, where,
+                     number_text(found.saving[*most], 3), number_text(found.total_cost));
+}
+
+Answer answer(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  if (found.poses == 0 || found.parts() == 0) return {};
+  const YieldVerdict& shown = found.certificate;
+  const std::string parts = counted(found.parts(), "part", "parts");
+  const std::string largest = largest_parts(found);
+  Answer lines{{"Answer", sentence(certificate_text(found))},
+               {has_costs(found) ? "Cost" : "Parts",
+                has_costs(found)
+                    ? fmt::format("{} cost {} in all; most of it {}.", parts, number_text(found.total_cost), largest)
+                    : fmt::format("{}; most of the mean square is made by {}.", parts, largest)}};
+  if (std::string tightest = tightest_text(result); !tightest.empty()) {
+    lines.emplace_back("What decides", std::move(tightest));
+  }
+  lines.emplace_back(
+      "How sure", fmt::format("{} of fresh machines are good, {} interval {} to {}.", percent_text(shown.value),
+                              percent_text(shown.conf_level), percent_text(shown.ci_low), percent_text(shown.ci_high)));
+  lines.emplace_back("What to do", found.certified()
+                                       ? "Put the tolerances of the table below on the drawing. The study of the "
+                                         "certificate repeats the proof."
+                                       : "Do not use these tolerances as they are: study again with another seed or a "
+                                         "lower yield.");
+  return lines;
+}
+
 StudyWords words(const StoredResult& result) {
   return {.draws = true,
           .samples = counted(allocation_of(result).certificate.machines, "fresh machine", "fresh machines")};
@@ -204,6 +265,7 @@ constinit const ReportKind kAllocationReport{.tally = tally,
                                              .sorts = true,
                                              .words = words,
                                              .warn = warn,
+                                             .answer = answer,
                                              .shown_cells = cells,
                                              .page = add_page,
                                              .error_shares = error_shares,

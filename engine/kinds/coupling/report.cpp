@@ -274,6 +274,42 @@ std::vector<std::string> sized_subsets(const StoredCoupling& coupling) {
   return list;
 }
 
+/// Of the last size, which the tables show, and the first response.
+Answer answer(const StoredResult& result) {
+  const StoredCoupling& stored = coupling_of(result);
+  const CouplingResult& found = stored.found;
+  if (found.subsets == 0 || found.sizes == 0 || result.signed_headline.empty()) return {};
+  const std::size_t r = result.signed_headline.front();
+  const std::size_t first = (r * found.sizes + found.sizes - 1) * found.subsets;
+  const std::size_t all = found.subsets - 1;
+  const std::size_t sources = std::min(stored.sources.size(), found.subsets);
+  const NamedUnit& response = result.responses[r];
+  const auto text = [&](double value) { return response_text(response, value); };
+  const auto place = [&](const std::vector<std::int64_t>& poses) {
+    return place_text(result, static_cast<std::size_t>(poses[first + all]));
+  };
+  const auto effects = std::span(found.effect_max).subspan(first, sources);
+  const auto largest = static_cast<std::size_t>(std::ranges::max_element(effects) - effects.begin());
+  Answer lines{
+      {"Answer",
+       fmt::format("At {}, {} together move {} by up to {}, at {}.", stored.size_names.back(), stored.subsets[all],
+                   response.name, text(found.effect_max[first + all]), place(found.effect_max_pose))},
+      {"Largest source", fmt::format("{} alone, with up to {}.", stored.subsets[largest], text(effects[largest]))}};
+  if (sources > 1) {
+    lines.emplace_back(
+        "Together", fmt::format("Interaction is at most {}. Where signs are as likely as not, {} are to be expected at "
+                                "most; the worst case is {}.",
+                                text(found.interaction_max[first + all]), text(found.root_sum_square_max[first + all]),
+                                text(found.worst_case_max[first + all])));
+  }
+  lines.emplace_back("How sure", fmt::format("Solved, not sampled, at {}.", counted(found.poses, "pose", "poses")));
+  lines.emplace_back("What to do",
+                     fmt::format("Make {} smaller first. Where sources cancel, do not count on it: their signs may "
+                                 "differ from machine to machine.",
+                                 stored.subsets[largest]));
+  return lines;
+}
+
 Comparable comparable(const StoredResult& result, const StoredResult&) {
   const CouplingResult& found = coupling_of(result).found;
   Comparable all = comparable_by_response(result, "subset", sized_subsets(coupling_of(result)));
@@ -297,6 +333,7 @@ constinit const ReportKind kCouplingReport{
     .tally = tally,
     .tables = coupling_tables,
     .words = [](const StoredResult& result) { return StudyWords{.sizes = coupling_of(result).size_names}; },
+    .answer = answer,
     .shown_cells = cells,
     .page = add_page,
     .comparable = comparable};

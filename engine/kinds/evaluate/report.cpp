@@ -190,14 +190,17 @@ void add_distribution(const StoredResult& result, Page& page, Section& section) 
   std::vector<double> levels;
   for (std::size_t n = 0; n < kLevels; ++n) levels.push_back(static_cast<double>(n) / (kLevels - 1.0));
   ArrayPool& pool = page.figures.pool;
-  Lines lines{.x = {"share of the samples below", "%", pool.add("axis_levels", levels, 0.01)}, .panels = {}};
+  const ArrayName shares = pool.add("axis_levels", levels, 0.01);
   for (const std::size_t r : headline_order(result)) {
     const NamedUnit& response = result.responses[r];
     const std::vector<double> values = order_statistics(found, r, 0, found.poses * found.samples, levels);
     const ArrayName array = pool.add(fmt::format("distribution/{}", r), values, display(response).si);
-    lines.panels.push_back({response.name, unit_text(response), {{"all poses and rows", array}}});
+    add_figure(page, section, fmt::format("distribution-{}", r),
+               Lines{.x = {response.name, unit_text(response), array},
+                     .panels = {{"share of the samples below", "%", {{"all poses and rows", shares}}}},
+                     .marks = limit_marks(result, r, values.front() < 0.0)},
+               fmt::format("{}: the share of all poses and rows below a value.", response.name));
   }
-  add_figure(page, section, "distribution", std::move(lines), "The distribution of each response by its quantiles.");
 }
 
 void add_rows(const StoredResult& result, const PoseFigures& figures, Page& page, Section& section) {
@@ -276,6 +279,37 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(stored.cases.size(), "case", "cases")};
 }
 
+/// By the response that ranks.
+Answer answer(const StoredResult& result) {
+  const StoredEvaluation& stored = evaluation_of(result);
+  const std::size_t r = response_named(result, default_ranking(result));
+  const NamedUnit& response = result.responses[r];
+  const std::size_t cases = stored.cases.size();
+  const Summary all = summary(stored.evaluation, r);
+  Answer lines;
+  if (cases > 0) {
+    const auto largest = std::span(stored.max).subspan(r * cases, cases);
+    const auto worst = static_cast<std::size_t>(std::ranges::max_element(largest) - largest.begin());
+    lines.emplace_back(
+        "Answer", fmt::format("Of {}, {} does most: {} of up to {}, on average {}.", counted(cases, "case", "cases"),
+                              stored.cases[worst], response.name, response_text(response, largest[worst]),
+                              response_text(response, stored.mean[r * cases + worst])));
+  } else {
+    lines.emplace_back("Answer", fmt::format("{} is {} on average, between {} and {}.", response.name,
+                                             response_text(response, all.mean), response_text(response, all.smallest),
+                                             response_text(response, all.largest)));
+  }
+  if (std::string worst = worst_note(result, r); !worst.empty()) lines.emplace_back("Worst", worst + ".");
+  if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
+  lines.emplace_back("How sure", "These errors were given, not drawn, so nothing here is up to chance.");
+  const bool limited = result.verdicts.has_value();
+  lines.emplace_back("What to do", !limited ? "State limits under [analysis.limits], and the report judges them."
+                                   : result.verdicts->passed()
+                                       ? "Nothing for these errors; others need a study of their own."
+                                       : "Begin with the rows and poses that are named below as the worst.");
+  return lines;
+}
+
 Comparable comparable(const StoredResult& result, const StoredResult&) {
   const StoredEvaluation& stored = evaluation_of(result);
   if (stored.cases.empty()) {
@@ -332,6 +366,7 @@ Table evaluation_table(const StoredResult& result) {
 constinit const ReportKind kEvaluationReport{.tally = tally,
                                              .tables = evaluation_tables,
                                              .words = words,
+                                             .answer = answer,
                                              .shown_cells = cells,
                                              .page = add_page,
                                              .comparable = comparable};

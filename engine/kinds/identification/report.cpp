@@ -11,9 +11,13 @@
 namespace poesy {
 namespace {
 
-std::string verdict(const IdentificationResult& found, std::size_t p) {
-  if (found.single[p] != 0) return "deforms alone";
-  return found.coupled[p] != 0 ? "deforms in a coupling" : "absorbed";
+constexpr std::string_view kAlone = "deforms alone";
+constexpr std::string_view kCoupled = "deforms in a coupling";
+constexpr std::string_view kAbsorbed = "absorbed";
+
+std::string_view verdict(const IdentificationResult& found, std::size_t p) {
+  if (found.single[p] != 0) return kAlone;
+  return found.coupled[p] != 0 ? kCoupled : kAbsorbed;
 }
 
 bool groups_agree(const IdentificationResult& found) {
@@ -115,6 +119,35 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   for (const Table& table : tables) section.table(table);
 }
 
+/// The errors with this verdict.
+std::vector<std::string> errors_that(const StoredResult& result, std::string_view what) {
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < identification_of(result).factors; ++p) {
+    if (verdict(identification_of(result), p) == what) names.push_back(result.factors[p].name);
+  }
+  return names;
+}
+
+Answer answer(const StoredResult& result) {
+  const IdentificationResult& found = identification_of(result);
+  const std::vector<std::string> alone = errors_that(result, kAlone);
+  const std::vector<std::string> coupled = errors_that(result, kCoupled);
+  const std::vector<std::string> absorbed = errors_that(result, kAbsorbed);
+  Answer lines{{"Answer", fmt::format("{} of {} deform the mechanism alone, {} more in a coupling; {} absorbed.",
+                                      alone.size(), counted(found.factors, "error", "errors"), coupled.size(),
+                                      counted(absorbed.size(), "is", "are"))}};
+  if (!coupled.empty()) lines.emplace_back("In couplings", some_names(coupled) + ".");
+  if (!absorbed.empty()) lines.emplace_back("Absorbed", some_names(absorbed) + ".");
+  lines.emplace_back("How sure", fmt::format("Solved, not sampled, at {}: {} decide. The {} of errors {}.",
+                                             counted(found.poses, "pose", "poses"), count_text(found.required_poses),
+                                             counted(found.groups, "size", "sizes"),
+                                             groups_agree(found) ? "agree" : "do not agree on all errors"));
+  lines.emplace_back("What to do",
+                     "Tolerances of errors that are absorbed do not load the mechanism. A sensitivity study with "
+                     "factors = \"deforming\" says how much each of the others does.");
+  return lines;
+}
+
 SolveTally tally(const StoredResult& result) { return {"", {"all errors"}, 1, {identification_of(result).solves}}; }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
@@ -143,6 +176,7 @@ constinit const ReportKind kIdentificationReport{
     .tally = tally,
     .tables = identification_tables,
     .words = [](const StoredResult& result) { return StudyWords{.sizes = group_names(result)}; },
+    .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
     .page = add_page,
     .comparable = comparable};

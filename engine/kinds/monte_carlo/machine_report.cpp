@@ -170,6 +170,10 @@ void add_yield_section(const StoredResult& result, std::span<const Table> tables
       "A machine has one set of errors, and is good if it is within every limit at every pose. The yield is the share "
       "of "
       "good machines; its slope by the size of an error follows from the same machines (likelihood ratio).");
+  if (yield.rejects == 0) {
+    section.paragraph("No machine was rejected, so these machines say nothing of that slope: take tighter limits.");
+    return;
+  }
   Bars bars{{},
             {{fmt::format("change of the yield if sigma grows by {}", percent_text(kPart)),
               {{"%"}},
@@ -190,7 +194,10 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   const std::size_t factors = result.factors.size();
   std::vector<double> below;
   for (std::size_t k = 0; k < kEffectBins; ++k) below.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
-  Lines lines{.x = {"share of the error's values below", "%", pool.add("effect_bin", below, 0.01)}, .panels = {}};
+  constexpr std::size_t kAtFirst = 5;  // more bands cover each other
+  Lines lines{.x = {"share of the error's values below", "%", pool.add("effect_bin", below, 0.01)},
+              .panels = {},
+              .most = kAtFirst};
   for (const std::size_t r : headline_order(result)) {
     const NamedUnit& response = result.responses[r];
     Panel panel{"mean of " + response.name, unit_text(response), {}};

@@ -209,15 +209,6 @@ Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
   return drawn;
 }
 
-/// The limit of a response where it is drawn: on both sides of zero if the response has values there.
-std::vector<Mark> limit_marks(const StoredResult& result, std::size_t r, double unit) {
-  const LimitVerdict* verdict = verdict_on(result, r);
-  if (verdict == nullptr) return {};
-  std::vector<Mark> marks{{"limit", verdict->limit / unit}};
-  if (monte_carlo_of(result).overall_min[r] < 0.0) marks.push_back({"limit", -verdict->limit / unit});
-  return marks;
-}
-
 std::string distribution_caption(const StoredResult& result, std::size_t r) {
   const NamedUnit& response = result.responses[r];
   std::string text = fmt::format(
@@ -245,7 +236,7 @@ Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
                       unit.empty() ? "%" : "%/" + unit,
                       {{"samples of all poses", density, zero, density}}},
                      {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
-          .marks = limit_marks(result, r, display(response).si)};
+          .marks = limit_marks(result, r, monte_carlo_of(result).overall_min[r] < 0.0)};
 }
 
 void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -286,7 +277,10 @@ void add_where(const StoredResult& result, Page& page) {
     };
     const ArrayName mean = add("mean", std::span(found.mean).subspan(r * found.poses, found.poses));
     const ArrayName highest = quantile(levels.size() - 1);
-    bands.panels.push_back({response.name, unit, {{"mean", mean, quantile(0), highest}}});
+    bands.panels.push_back({response.name,
+                            unit,
+                            {{"mean", mean, quantile(0), highest}},
+                            limit_marks(result, r, found.overall_min[r] < 0.0)});
     fields.push_back({response.name + ", mean", unit, mean});
     fields.push_back({response.name + ", " + quantile_label(levels.back()), unit, highest});
     fields.push_back({response.name + ", standard deviation", unit,
@@ -337,6 +331,72 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   if (monte_carlo_of(result).effects) add_effects_section(result, tables, page);
   add_where(result, page);
   add_how_sure(result, tables, page);
+}
+
+/// "Make delta_1 (12 %), ... smaller first", the errors that make most of a response's variance alone; empty where that
+/// is not known, or is little, as of a response without sign.
+std::string drivers_text(const StoredResult& result, std::size_t r) {
+  constexpr std::size_t kMost = 3;
+  constexpr double kLittle = 0.1;
+  const MonteCarloResult& found = monte_carlo_of(result);
+  if (!found.effects) return {};
+  const MainEffects& effects = found.effects->effects;
+  const std::size_t factors = result.factors.size();
+  const auto share = [&](std::size_t p) { return effects.s1[r * factors + p]; };
+  std::vector<std::size_t> order;  // those that certainly have an effect alone
+  for (std::size_t p = 0; p < factors; ++p) {
+    if (effects.s1_ci_low[r * factors + p] > 0.0) order.push_back(p);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), share);
+  order.resize(std::min(kMost, order.size()));
+  std::string text;
+  double sum = 0.0;
+  for (const std::size_t p : order) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name, percent_text(share(p)));
+    sum += share(p);
+  }
+  if (!(sum >= kLittle)) return {};
+  return fmt::format("Make smaller first what makes most of the variance of {} alone: {}.", result.responses[r].name,
+                     text);
+}
+
+/// By the limits, where the study has some.
+std::string advice(const StoredResult& result, std::size_t r) {
+  if (result.verdicts && result.verdicts->passed())
+    return "Nothing has to be done: as far as it shows, the limits are kept.";
+  const std::string drivers = drivers_text(result, r);
+  const std::string which = drivers.empty() ? "A sensitivity study says which errors to make smaller." : drivers;
+  return (result.verdicts ? "" : "State limits under [analysis.limits], and the report judges them. ") + which;
+}
+
+/// What one may expect, and where the worst pose is, of a response.
+Answer answer(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  if (found.poses == 0 || found.levels.empty()) return {};
+  const std::size_t r = response_named(result, default_ranking(result));
+  const NamedUnit& response = result.responses[r];
+  const auto text = [&](double value) { return response_text(response, value); };
+  const std::size_t highest = found.levels.size() - 1;
+  const std::string level = percent_text(found.levels[highest]);
+  const WorstPoses worst = worst_poses(found, r);
+  Answer lines{
+      {"Answer",
+       fmt::format("{} is {} on average; {} of the samples of all poses are below {}, the largest is {}.",
+                   response.name, text(found.overall_mean[r]), level,
+                   text(found.overall_quantiles[r * found.levels.size() + highest]), text(found.overall_max[r]))}};
+  if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
+  const std::string place = place_text(result, worst.worst);
+  lines.emplace_back("Where", fmt::format("The worst is {}: {} of the samples there are below {}.", place, level,
+                                          text(worst.quantile[worst.worst])));
+  std::string sure = fmt::format("{} at each pose.", counted(found.solves.front().total(), "sample", "samples"));
+  if (!std::isnan(worst.low)) {
+    sure += fmt::format(" The {} interval of the value at the worst pose is {} to {}; {} cannot be told from it.",
+                        percent_text(found.conf_level), text(worst.low), text(worst.high),
+                        counted(worst.alike.size(), "other pose", "other poses"));
+  }
+  lines.emplace_back("How sure", std::move(sure));
+  lines.emplace_back("What to do", advice(result, r));
+  return lines;
 }
 
 Settling settling(const StoredResult& result) { return {"overall means", {"all errors"}, result.headline}; }
@@ -404,6 +464,7 @@ constinit const ReportKind kMonteCarloReport{
     .settling = settling,
     .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
     .warn = warn,
+    .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
     .page = add_page,
     .error_shares = error_shares,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/kinds/sensitivity/answer.h"
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/figures.h"
 #include "engine/kinds/sensitivity/indices.h"
@@ -25,39 +26,6 @@ namespace {
 
 /// An interval that reaches further than this share of its index is called wide.
 constexpr double kWideInterval = 0.10;
-
-/// The errors that make most of the mean square, and those that together make next to none; empty where not all of
-/// their effects are known, or none has one.
-std::string few_matter_text(const StoredResult& result) {
-  constexpr double kMost = 0.8;
-  constexpr double kHardly = 0.01;
-  if (!has_tolerances(result)) return {};
-  const std::size_t response = response_named(result, default_ranking(result));
-  const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
-  const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
-  if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return {};
-  std::vector<std::size_t> order = positions(shares.size());
-  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t p) { return shares[p]; });
-  std::vector<std::string> names;
-  double sum = 0.0;
-  while (sum < kMost && names.size() < order.size()) {
-    const std::size_t p = order[names.size()];
-    names.push_back(result.factors[p].name);
-    sum += shares[p];
-  }
-  std::size_t hardly = 0;
-  for (double tail = 0.0; hardly < order.size(); ++hardly) {
-    tail += shares[order[order.size() - 1 - hardly]];
-    if (tail >= kHardly) break;
-  }
-  std::string text = fmt::format(
-      "{} of {} {} {:.0f} % of what the study's sizes add to the mean square of {} over samples and poses: {}.",
-      names.size(), counted(order.size(), "error", "errors"), names.size() == 1 ? "makes" : "make", 100.0 * sum,
-      result.responses[response].name, some_names(names));
-  if (hardly > 0)
-    text += fmt::format(" {} hardly {} (below 1 % together).", hardly, hardly == 1 ? "matters" : "matter");
-  return text;
-}
 
 constexpr std::string_view kCorrected =
     "The published estimator counts the noise of sampling as spread between poses; the value shown is without that "
@@ -148,27 +116,6 @@ std::string trend_text(const StoredResult& result) {
       result.responses[r].name, order->correlation > 0.0 ? "grows" : "falls", order->name(result), order->correlation);
 }
 
-/// Where the most important error has its largest effect; empty where poses hardly differ.
-std::string worst_place_text(const StoredResult& result) {
-  constexpr double kHardlyDiffers = 1.05;
-  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
-  if (ranked.rows.empty()) return {};
-  const std::size_t error = ranked.rows.front();
-  const std::vector<double> all = local_effects(result, ranked.response);
-  const auto effects = std::span(all).subspan(error * result.poses.size(), result.poses.size());
-  std::size_t worst = 0;
-  double sum = 0.0;
-  for (std::size_t m = 0; m < effects.size(); ++m) {
-    sum += effects[m];
-    if (effects[m] > effects[worst]) worst = m;
-  }
-  const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
-  if (!(ratio >= kHardlyDiffers)) return {};  // neither where an effect is not known
-  return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
-                     result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),
-                     ratio);
-}
-
 void add_where(const StoredResult& result, Page& page) {
   const PoseFigures figures(result, sensitivity_cells(result), page);
   const RankedErrors ranked = ranked_errors(result, default_ranking(result));
@@ -222,7 +169,10 @@ Lines effects_over_samples(const StoredResult& result, const EstimateCourse& cou
 
 void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
   Section& section = add_how_sure(page, "How sure are the indices", sensitivity_of(result).conf_level);
-  if (const std::optional<EstimateCourse> course = course_of(result)) {
+  const std::optional<EstimateCourse> course = course_of(result);
+  if (course && course->samples.size() < 2) {
+    section.paragraph("With so few samples there is no smaller study to show how indices settle.");
+  } else if (course) {
     section.paragraph(
         "What a study with fewer samples would have found: curves that have become flat, with narrow bands, would not "
         "change with more. Effects are index x sigma; errors without effect are left out.");
@@ -350,6 +300,7 @@ constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
                                               .settling = settling,
                                               .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
                                               .warn = warn,
+                                              .answer = sensitivity_answer,
                                               .shown_cells = sensitivity_cells,
                                               .page = add_page,
                                               .error_shares = error_shares,

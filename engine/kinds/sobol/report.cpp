@@ -336,7 +336,58 @@ ErrorShares error_shares(const StoredResult& result) {
       .at_poses = of_row(found.variance, r, found.poses)};
 }
 
-Comparable comparable(const StoredResult& result, const StoredResult&) {
+/// "delta_1 (41 %), delta_2 (12 %)": the largest of these shares, in this order.
+std::string largest_shares(const SobolResult& found, std::span<const double> shares,
+                           const std::vector<std::size_t>& order) {
+  constexpr std::size_t kMost = 3;
+  std::string text;
+  for (const std::size_t g : std::span(order).first(std::min(kMost, order.size()))) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", found.group_names[g], percent_text(shares[g]));
+  }
+  return text;
+}
+
+/// Of the response that ranks: by Shapley effects where there are any, else by total indices.
+Answer answer(const StoredResult& result) {
+  constexpr double kWide = 0.2;
+  const SobolResult& found = sobol_of(result);
+  const std::size_t groups = found.groups();
+  if (found.poses == 0 || groups == 0) return {};
+  const std::size_t r = response_named(result, default_ranking(result));
+  const std::size_t first = r * groups;
+  const std::string& response = result.responses[r].name;
+  const SobolIndices& indices = found.aggregated;
+  const std::vector<std::size_t> order = by_total_index(found, indices, first);
+  const std::size_t top = order.front();
+  const auto of_response = [&](const std::vector<double>& values) { return std::span(values).subspan(first, groups); };
+  Answer lines{{"Answer", fmt::format("With all interactions the largest shares of the variance of {} are made by {}.",
+                                      response, largest_shares(found, of_response(indices.ST), order))}};
+  if (!found.Sh.empty()) {
+    lines.emplace_back("Divided", fmt::format("What several make together divided evenly (Shapley): {}.",
+                                              largest_shares(found, of_response(found.Sh), by_share(found, first))));
+  }
+  const double alone = sum_of(indices.S1, first, groups);
+  if (!std::isnan(alone)) {
+    lines.emplace_back("Alone or together",
+                       fmt::format("{} of the variance is made by single {}s; what is missing from 100 % needs several "
+                                   "at once{}.",
+                                   percent_text(alone), word(found),
+                                   found.without_sign[r] != 0 ? ", as it must where a response has no sign" : ""));
+  }
+  const double low = indices.ST_ci_low[first + top];
+  const double high = indices.ST_ci_high[first + top];
+  lines.emplace_back(
+      "How sure", fmt::format("The {} interval of the total index of {} is {} to {}.", percent_text(indices.conf_level),
+                              found.group_names[top], percent_text(low), percent_text(high)));
+  const bool wide = !(high - low <= 2.0 * kWide * indices.ST[first + top]);
+  lines.emplace_back("What to do",
+                     wide ? "Take more samples before the order of the largest is relied on: their intervals are wide."
+                          : fmt::format("Make {} smaller first; what has a small total index may be set to its mean.",
+                                        found.group_names[top]));
+  return lines;
+}
+
+Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const SobolResult& found = sobol_of(result);
   Comparable all{"response", names_of(result.responses, response_order(result)), word(found), found.group_names};
   const std::vector<std::vector<std::string>> units(all.options.size(), {""});
@@ -347,6 +398,9 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
   };
   const SobolIndices& indices = found.aggregated;
   add("total index", "ST", indices.ST, indices.ST_ci_low, indices.ST_ci_high);
+  if (!found.Sh.empty() && !sobol_of(other).Sh.empty()) {
+    add("Shapley effect", "Sh", found.Sh, found.Sh_ci_low, found.Sh_ci_high);
+  }
   add("first-order index", "S1", indices.S1, indices.S1_ci_low, indices.S1_ci_high);
   all.ranked = true;
   return all;
@@ -371,6 +425,7 @@ constinit const ReportKind kSobolReport{.tally = tally,
                                         .settling = settling,
                                         .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
                                         .warn = warn,
+                                        .answer = answer,
                                         .shown_cells = cells,
                                         .page = add_page,
                                         .error_shares = error_shares,

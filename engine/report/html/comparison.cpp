@@ -209,6 +209,50 @@ Comparison comparison(const ReportKind& kind, const ReportedResult& a, const Rep
           only_in(all_b.items, all_a.items)};
 }
 
+Answer comparison_answer(const Comparison& compared) {
+  const Comparable& a = compared.a;
+  const ComparableQuantity& in_a = a.quantities.front();
+  const ComparableQuantity& in_b = compared.b.quantities.front();
+  const std::size_t items = a.items.size();
+  const auto first = [&](const ComparableQuantity& of) { return std::span(of.value).first(items); };
+  std::size_t most = 0;  // that changes most
+  for (std::size_t p = 0; p < items; ++p) {
+    const auto change = [&](std::size_t n) { return std::abs(in_b.value[n] - in_a.value[n]); };
+    if (change(p) > change(most) || std::isnan(change(most))) most = p;
+  }
+  const auto value = [&](const ComparableQuantity& of, std::size_t p) {
+    const std::vector<std::string>& unit = of.units.front();
+    const std::string& shown = unit.size() == 1 ? unit.front() : unit[p];
+    return number_text(of.value[p]) + (shown.empty() ? "" : " " + shown);
+  };
+  Answer lines;
+  if (a.ranked) {
+    const auto largest = [&](const ComparableQuantity& of) {
+      const std::vector<std::size_t> rank = ranks(first(of));
+      return static_cast<std::size_t>(std::ranges::find(rank, 1U) - rank.begin());
+    };
+    const std::size_t top_a = largest(in_a);
+    const std::size_t top_b = largest(in_b);
+    lines.emplace_back(
+        "Answer", fmt::format("{}, {}: the largest is that of {} in A ({}) and of {} in B ({}).", a.options.front(),
+                              in_a.label, a.items[top_a], value(in_a, top_a), a.items[top_b], value(in_b, top_b)));
+  }
+  lines.emplace_back(
+      a.ranked ? "Largest change" : "Answer",
+      fmt::format("{} of {}, from {} to {}.", in_a.label, a.items[most], value(in_a, most), value(in_b, most)));
+  if (!in_a.low.empty() && !in_b.low.empty()) {
+    std::size_t apart = 0;
+    for (std::size_t p = 0; p < items; ++p) apart += overlap(in_a, in_b, p) == "apart" ? 1 : 0;
+    lines.emplace_back("How sure", fmt::format("The intervals of {} of {} are apart, so samples alone do not explain "
+                                               "what differs there; where intervals overlap, they may.",
+                                               apart, counted(items, a.item_word, a.item_word + "s")));
+  }
+  lines.emplace_back(
+      "What to do",
+      "Look at how the studies differ first: the rest of what differs follows from that, and from chance.");
+  return lines;
+}
+
 void add_comparison(const Comparison& compared, Page& page) {
   const Comparable& a = compared.a;
   ArrayPool& pool = page.figures.pool;

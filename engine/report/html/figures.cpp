@@ -52,11 +52,15 @@ static void to_json(Json& json, const Series& series) {
   if (!series.high.empty()) json["high"] = series.high;
 }
 
-static void to_json(Json& json, const Panel& panel) {
-  json = {{"label", panel.label}, {"unit", panel.unit}, {"series", panel.series}};
+static void to_json(Json& json, const Mark& mark) {
+  json = {{"label", mark.label}, {"value", mark.value}};
+  if (!mark.beyond.empty()) json["beyond"] = mark.beyond;
 }
 
-static void to_json(Json& json, const Mark& mark) { json = {{"label", mark.label}, {"value", mark.value}}; }
+static void to_json(Json& json, const Panel& panel) {
+  json = {{"label", panel.label}, {"unit", panel.unit}, {"series", panel.series}};
+  if (!panel.marks.empty()) json["marks"] = panel.marks;
+}
 
 static void to_json(Json& json, const Bars& bars) {
   json = {{"type", "bars"},

@@ -102,17 +102,19 @@ struct Series {
   std::string style = "solid";  ///< "solid", "dashed" or "dotted"
 };
 
-/// Curves over one axis.
-struct Panel {
-  std::string label;           ///< for people
-  std::string unit;            ///< of its numbers
-  std::vector<Series> series;  ///< the curves
+/// A value that is marked across a panel.
+struct Mark {
+  std::string label;        ///< for people
+  double value;             ///< in the unit of its axis
+  std::string beyond = {};  ///< "above" or "below": where a limit allows nothing; empty: on both sides it is as good
 };
 
-/// A value of x that is marked in every panel.
-struct Mark {
-  std::string label;  ///< for people
-  double value;       ///< in the unit of x
+/// Curves over one axis.
+struct Panel {
+  std::string label;             ///< for people
+  std::string unit;              ///< of its numbers
+  std::vector<Series> series;    ///< the curves
+  std::vector<Mark> marks = {};  ///< values of its own axis; one far beyond the curves is said and not drawn
 };
 
 /// Panels below one another, over the same axis.
@@ -121,7 +123,7 @@ struct Lines {
   std::vector<Panel> panels;     ///< from above
   bool log = false;              ///< of x
   std::size_t most = 8;          ///< series that are shown until the reader asks for more
-  std::vector<Mark> marks = {};  ///< may lie beyond the values of x
+  std::vector<Mark> marks = {};  ///< values of x, in every panel; may lie beyond those of the curves
 };
 
 /// Points with names: R options of the choice, P points.

@@ -6,6 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/files/version.h"
+#include "engine/report/html/printed_number.h"
 
 namespace poesy {
 namespace {
@@ -30,14 +31,43 @@ std::string column_heading(const Column& column) {
   return element("th", text, column.kind == Column::Kind::number ? "scope=\"col\" class=\"n\"" : "scope=\"col\"");
 }
 
+/// A column of numbers as a page writes them (printed_numbers), each with the length of what stands behind its whole
+/// part.
+struct NumberColumn {
+  std::vector<PrintedNumber> cells;
+  std::size_t longest_tail = 0;
+};
+
+NumberColumn column_of_numbers(const Table& table, std::size_t c) {
+  std::vector<Cell> cells;
+  for (const std::vector<Cell>& row : table.rows) cells.push_back(row[c]);
+  constexpr int kShareDigits = 3;  // of what is missing from 100 % it has more
+  const bool shares = table.columns[c].unit == "%";
+  NumberColumn column{printed_numbers(cells, shares ? kShareDigits : 0)};
+  for (const PrintedNumber& one : column.cells) column.longest_tail = std::max(column.longest_tail, one.tail);
+  return column;
+}
+
 /// A number with as much room behind it as brings its decimal point below the others; a point is half as wide as a
 /// digit.
-std::string number_element(const Cell& cell, std::size_t longest_tail) {
-  const std::size_t tail = tail_of(cell);
-  const double point = tail == 0 ? 0.5 : 0.0;
-  const double room = static_cast<double>(longest_tail - tail) - point;
-  if (!cell.value || !(room > 0.0)) return element("td", cell.text, "class=\"n\"");
+std::string number_element(const PrintedNumber& cell, std::size_t longest_tail) {
+  const double point = cell.tail == 0 ? 0.5 : 0.0;
+  const double room = static_cast<double>(longest_tail - cell.tail) - point;
+  if (!cell.is_number || !(room > 0.0)) return element("td", cell.text, "class=\"n\"");
   return element("td", cell.text, fmt::format("class=\"n\" style=\"--room:{}\"", room));
+}
+
+/// Short texts are not broken into lines; long ones get room for some words in each line.
+std::string_view width_class(const Table& table, std::size_t c) {
+  constexpr std::size_t kLong = 30;
+  const bool is_long =
+      std::ranges::any_of(table.rows, [&](const std::vector<Cell>& row) { return text_width(row[c].text) > kLong; });
+  return is_long ? "class=\"long\"" : "";
+}
+
+/// "+-0.1 mm", which terminals can show, with the sign that print has.
+std::string printed_text(std::string_view text) {
+  return text.starts_with("+-") ? "\u00b1" + std::string(text.substr(2)) : std::string(text);
 }
 
 /// The rows of a table; the first column of texts names them.
@@ -45,18 +75,19 @@ std::string body_html(const Table& table) {
   const std::size_t columns = table.columns.size();
   const auto texts = std::ranges::find(table.columns, Column::Kind::text, &Column::kind);
   const auto naming = texts == table.columns.end() ? 0 : static_cast<std::size_t>(texts - table.columns.begin());
-  std::vector<std::size_t> longest_tails(columns, 0);
-  for (const std::vector<Cell>& cells : table.rows) {
-    for (std::size_t c = 0; c < columns; ++c) longest_tails[c] = std::max(longest_tails[c], tail_of(cells[c]));
+  std::vector<NumberColumn> numbers(columns);
+  for (std::size_t c = 0; c < columns; ++c) {
+    if (table.columns[c].kind == Column::Kind::number) numbers[c] = column_of_numbers(table, c);
   }
   std::string html;
-  for (const std::vector<Cell>& cells : table.rows) {
+  for (std::size_t n = 0; n < table.rows.size(); ++n) {
+    const std::vector<Cell>& cells = table.rows[n];
     html += "<tr>";
     for (std::size_t c = 0; c < columns; ++c) {
       const bool number = table.columns[c].kind == Column::Kind::number;
       html += c == naming ? element("th", cells[c].text, "scope=\"row\"")
-              : number    ? number_element(cells[c], longest_tails[c])
-                          : element("td", cells[c].text);
+              : number    ? number_element(numbers[c].cells[n], numbers[c].longest_tail)
+                          : element("td", printed_text(cells[c].text), width_class(table, c));
     }
     html += "</tr>\n";
   }
@@ -85,6 +116,11 @@ std::string sections(const Page& page) {
     html += fmt::format("<section id=\"{0}\"{1} aria-labelledby=\"{0}-h\">\n<h2 id=\"{0}-h\">{2}</h2>\n{3}</section>\n",
                         section.id(), attributes, heading, body);
   };
+  if (!page.answer.empty()) {
+    Section answer("answer", "In short");
+    answer.definitions(page.answer);
+    add(answer, answer.body(), " class=\"answer\"");
+  }
   if (const std::size_t count = page.warnings.size(); count > 0) {
     std::string list;
     for (const std::string& warning : page.warnings) list += element("li", warning) + "\n";

@@ -61,10 +61,17 @@ class Section {
   std::string body_;
 };
 
+/// A line of what a report says first: "Answer", "How sure", "What to do", each with a sentence or two.
+using AnswerLine = std::pair<std::string, std::string>;
+
+/// The summary at the top of a report, made of the result's numbers: five lines at the most.
+using Answer = std::vector<AnswerLine>;
+
 /// What a report consists of.
 struct Page {
   std::string title;                  ///< of the study, or of the result
   std::string subtitle;               ///< below the title
+  Answer answer = {};                 ///< stands before everything else; empty: nothing does
   std::vector<std::string> warnings;  ///< what a reader must know first
   std::deque<Section> sections;       ///< in order
   FigureSet figures;                  ///< of all sections

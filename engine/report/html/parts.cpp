@@ -181,6 +181,32 @@ Section& add_how_sure(Page& page, std::string heading, double conf_level) {
                       percent_text(conf_level)));
 }
 
+std::vector<Mark> limit_marks(const StoredResult& result, std::size_t response, bool has_negative) {
+  const LimitVerdict* verdict = verdict_on(result, response);
+  if (verdict == nullptr) return {};
+  const double limit = verdict->limit / display(result.responses[response]).si;
+  std::vector<Mark> marks{{"limit", limit, "above"}};
+  if (has_negative) marks.push_back({"limit", -limit, "below"});
+  return marks;
+}
+
+std::string limits_text(const StoredResult& result) {
+  if (!result.verdicts) return {};
+  if (const std::optional<YieldVerdict>& yield = result.verdicts->yield) {
+    return fmt::format("{} of {} are within all limits at all poses ({} interval {} to {}).",
+                       percent_text(yield->value), counted(yield->machines, "machine", "machines"),
+                       percent_text(yield->conf_level), percent_text(yield->ci_low), percent_text(yield->ci_high));
+  }
+  std::string text;
+  for (const LimitVerdict& one : result.verdicts->limits) {
+    const NamedUnit& response = result.responses[one.response];
+    text += fmt::format("{}{} {} its limit of {} with {}.", text.empty() ? "" : " ", response.name,
+                        one.passed ? "keeps" : "does not keep", response_text(response, one.limit),
+                        response_text(response, one.value));
+  }
+  return text;
+}
+
 void add_limits(std::span<const Table> tables, Page& page) {
   for (const char* name : {"yield", "limits"}) {
     if (std::ranges::find(tables, name, &Table::name) == tables.end()) continue;

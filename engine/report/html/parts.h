@@ -115,6 +115,13 @@ Lines over_samples(const EstimateCourse& course, ArrayPool& pool);
 /// The section that says how sure quantities are, begun with what their intervals are. heading: "How sure are ...".
 Section& add_how_sure(Page& page, std::string heading, double conf_level);
 
+/// The limit of a response as marks across its distribution or its curves; on both sides of zero if it has values below
+/// zero. Empty where the study does not limit it.
+std::vector<Mark> limit_marks(const StoredResult& result, std::size_t response, bool has_negative);
+
+/// "gap keeps its limit of 12 mm with 3.05 mm.", for each limit, or what the yield is; empty where the study has none.
+std::string limits_text(const StoredResult& result);
+
 /// Adds the section on the study's limits, where it states any. tables: of the result.
 void add_limits(std::span<const Table> tables, Page& page);
 
@@ -179,6 +186,9 @@ struct Comparison {
 /// What there is to compare of two results of this kind and one mechanism. Throws InputError where they have nothing in
 /// common.
 Comparison comparison(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b);
+
+/// What a comparison says first.
+Answer comparison_answer(const Comparison& compared);
 
 /// Adds figures and tables of a comparison to a page, as sections.
 void add_comparison(const Comparison& compared, Page& page);

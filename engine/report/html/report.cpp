@@ -98,6 +98,22 @@ std::string subtitle(const StoredResult& result) {
   return result.metric.empty() ? text : text + "; metric: " + metric_text(result);
 }
 
+constexpr std::string_view kHowSure = "How sure";
+
+/// What the kind says first, with how the solves ended.
+Answer answer(const ReportKind& kind, const StoredResult& result) {
+  Answer lines = kind.answer(result);
+  const auto sure = std::ranges::find(lines, kHowSure, &AnswerLine::first);
+  if (sure == lines.end()) return lines;
+  const SolveCounts solves = kind.tally(result).total();
+  const std::string all = counted(solves.total(), "solve", "solves");
+  sure->second += solves.not_converged() == 0
+                      ? fmt::format(" All {} converged.", all)
+                      : fmt::format(" {} of {} did not converge ({}).", count_text(solves.not_converged()), all,
+                                    percent_text(share_not_converged(solves)));
+  return lines;
+}
+
 /// What the mechanism looks like, where its errors are, and its file.
 void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& page) {
   Section section("mechanism", "The mechanism");
@@ -112,6 +128,7 @@ Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
   page.title = result.stored.title.empty() ? result.path : result.stored.title;
   page.subtitle = subtitle(result.stored);
+  page.answer = answer(kind, result.stored);
   page.warnings = warnings(kind, result);
   add_responses(result.stored, page);
   add_mechanism(kind, result, page);
@@ -192,6 +209,7 @@ Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> res
   add_studies(a.stored, b.stored, page);
   add_responses(a.stored, page);
   const Comparison compared = comparison(kind, a, b);
+  page.answer = comparison_answer(compared);
   if (kind.compare != nullptr) {
     kind.compare(a, b, compared, page);
   } else {

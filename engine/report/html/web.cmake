@@ -5,8 +5,8 @@ set(bundled ${web_source}/bundled)
 set(POESY_WEB ${CMAKE_CURRENT_BINARY_DIR}/report/web)
 
 # In the order in which report.js joins them.
-set(scripts data.js numbers.js page.js drawing.js colours.js bars.js heatmap.js turning.js workspace.js lines.js scatter.js
-    robot.js main.js)
+set(scripts data.js numbers.js names.js page.js drawing.js colours.js bars.js heatmap.js turning.js workspace.js lines.js
+    scatter.js robot.js main.js)
 list(TRANSFORM scripts PREPEND ${web_source}/)
 set(styles ${web_source}/report.css ${web_source}/robot.css)
 set(assets_cpp ${POESY_WEB}/assets.cpp)

@@ -643,7 +643,7 @@ TEST_F(HtmlReport, OfTwoResultsSaysFirstHowTheStudiesDiffer) {
   b.stored.facts.host = "elsewhere";
   const std::string html = report(a, b);
   check_page(html);
-  EXPECT_EQ(all(body(html), "<section id=\"([^\"]*)\"").at(html.find("id=\"warnings\"") == std::string::npos ? 0 : 1),
+  EXPECT_EQ(all(body(html), "<section id=\"([^\"]*)\"").at(html.find("id=\"warnings\"") == std::string::npos ? 1 : 2),
             "studies");
   const std::string rows = table(html, "settings");
   EXPECT_NE(rows.find("<th scope=\"row\">errors.linear</th><td>sigma = 1 mm</td><td>sigma = 0.01 mm</td>"),
@@ -671,7 +671,8 @@ TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
   sensitivity_in(b.stored).mean.assign(16, 0.5e-3);
   const std::string rows = table(report(a, b), "totals");
   // Two errors: sqrt(2 (3^2 + 4^2 999 / 1000)) = 7.069 mm, and sqrt(2) 0.5 mm.
-  EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\">7.069</td>"), std::string::npos)
+  EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\" style=\"--room:1\">7.069</td>"),
+            std::string::npos)
       << rows;
   EXPECT_NE(rows.find(">0.7071</td><td>mm</td><td class=\"n\">0.1</td>"), std::string::npos) << rows;
 }

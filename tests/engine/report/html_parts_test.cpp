@@ -101,8 +101,8 @@ TEST(HtmlTable, PutsDecimalPointsBelowEachOther) {
                              {{"d", {}}, {"-", {}}}},
                     .notes = {}};
   const std::string html = html_table(table);
-  for (const char* part : {"<td class=\"n\">2.616</td>", "<td class=\"n\" style=\"--room:2\">0.4</td>",
-                           "<td class=\"n\" style=\"--room:3.5\">0</td>", "<td class=\"n\">-</td>"}) {
+  for (const char* part : {"<td class=\"n\" style=\"--room:1\">2.616</td>", "<td class=\"n\">0.4000</td>",
+                           "<td class=\"n\" style=\"--room:4.5\">0</td>", "<td class=\"n\">-</td>"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
   }
 }

@@ -178,7 +178,7 @@ function barAxis(rows, unit, log) {
   const whole = range[0] < range[1] ? range : [0, 1];
   const axis = unit === undefined ? { factor: 1, unit: "" } : axisUnit(whole, unit);
   const domain = whole.map((v) => v / axis.factor);
-  const options = (width) => ({ domain, ticks: Math.max(2, Math.floor(width / 90)) });
+  const options = (width) => ({ domain, ticks: Math.max(3, Math.floor(width / 90)) });
   return { ...axis, options, start: 0, at: (v) => v / axis.factor };
 }
 

@@ -3,15 +3,19 @@
 /// An entry of a legend: a patch of colour and what it stands for.
 function swatch(fill, stroke, text) {
   const patch = element("i", { class: "swatch", style: `background:${fill};border-color:${stroke}` });
-  return element("span", { class: "entry" }, patch, text);
+  return element("span", { class: "entry" }, patch, element("span", {}, ...named(text)));
 }
+
+/// Like PuOr, but 0 is near the dark paper, so that what differs stands out there too.
+const DARK_DIFFERENCES = d3.piecewise(d3.interpolateRgb, ["#d3c2ff", "#9276dd", "#2a2f37", "#c9771f", "#ffcb8a"]);
 
 /// The colours of a field: colour(value), null where it is not known, and legend(width) with its label and unit.
 /// A field with both signs, and a difference whatever its values, has two hues that meet at 0; another one has the
 /// colours of viridis.
 function fieldColours(array, { label, unit, signed }) {
   const domain = symmetric(valueExtent(array), signed);
-  const interpolate = domain[0] < 0 && domain[1] > 0 ? d3.interpolatePuOr : d3.interpolateViridis;
+  const differs = domain[0] < 0 && domain[1] > 0;
+  const interpolate = !differs ? d3.interpolateViridis : isDark() ? DARK_DIFFERENCES : d3.interpolatePuOr;
   const scale = d3.scaleSequential(domain, interpolate);
   const colour = (value) => (Number.isFinite(value) ? scale(value) : null);
   const unknown = known(array).length < array.length ? [swatch("var(--unknown)", "var(--unknown)", "unknown")] : [];
@@ -28,11 +32,13 @@ function fieldColours(array, { label, unit, signed }) {
       marginLeft: 14,
       marginRight: 26,
       ticks: 4,
+      tickFormat: (value, k) => tickText(value, k, d3.ticks(...ends, 4)),
       style: FIGURE_STYLE,
     });
+    setNames(ramp);
     const [low, high] = domain.map((v) => withUnit(number(v), unit));
     describe(ramp, `Colours from ${low} to ${high}.`);
-    return element("div", { class: "legend" }, element("span", {}, labelled(label, axis.unit)), ramp, ...unknown);
+    return element("div", { class: "legend" }, element("span", {}, ...named(labelled(label, axis.unit))), ramp, ...unknown);
   };
   return { colour, legend };
 }

@@ -7,7 +7,9 @@ const measuring = document.createElement("canvas").getContext("2d");
 /// The width of the widest text in the font of figures, in px.
 function textWidth(...texts) {
   measuring.font = `${FONT_SIZE}px ${getComputedStyle(document.body).getPropertyValue("--sans") || "sans-serif"}`;
-  return d3.max(texts, (text) => measuring.measureText(text).width) ?? 0;
+  const width = (text) => measuring.measureText(text).width;
+  const set = ({ text, letter, index }) => (letter ? width(letter) + SUB_SIZE * width(index) : width(text));
+  return d3.max(texts, (text) => d3.sum(pieces(text), set)) ?? 0;
 }
 
 /// The text, its end left out where it is wider than the width in px.
@@ -20,9 +22,17 @@ function shortened(text, width) {
 
 /// Plot.plot with what all figures share: an SVG that is one picture to a screen reader, described by one sentence.
 function draw(description, options) {
-  const svg = Plot.plot({ ...options, style: FIGURE_STYLE });
+  const [x, y] = [options.x, options.y].map(withTicks);
+  const svg = Plot.plot({ ...options, x, y, style: FIGURE_STYLE });
+  setNames(svg);
   describe(svg, description);
   return svg;
+}
+
+/// A linear scale whose ticks are written as all numbers are.
+function withTicks(scale) {
+  const written = !scale || scale.axis === null || scale.tickFormat || (scale.type ?? "linear") !== "linear";
+  return written ? scale : { ...scale, tickFormat: tickText };
 }
 
 /// Makes an SVG of Plot's one picture with one description, not a group of unnamed parts with labels.
@@ -41,7 +51,7 @@ function tip(items, options, pointer = Plot.pointer) {
 }
 
 function title(text) {
-  return element("p", { class: "plot-title" }, text);
+  return element("p", { class: "plot-title" }, ...named(text));
 }
 
 /// What stands where there is nothing to draw.

@@ -97,6 +97,8 @@ function heatmap(figure, data) {
   /// Columns that are numbered below the map.
   function ticksAt(poses, width) {
     const { by } = orderedBy;
+    const square = !coordinates.length && count === rows.length; // its columns are its rows
+    if (square && width / count > textWidth(...rows) + 8) return rows.map((name, c) => ({ at: c + 0.5, text: name }));
     if (!by)
       return d3
         .ticks(0, count - 1, Math.min(count, width / 70))

@@ -17,7 +17,7 @@ function lines(figure, data) {
   const names = [...new Set(data.panels.flatMap(({ series }) => series.map(({ label }) => label)))];
   const x = values(data.x.value);
   const joined = data.x.label !== UNORDERED;
-  const xMarks = data.marks ?? [];
+  const xMarks = (data.marks ?? []).map((mark) => ({ ...mark, unit: data.x.unit }));
   const ticked = new Set(names.slice(0, data.most ?? names.length));
   let panel = 0;
 
@@ -49,7 +49,7 @@ function lines(figure, data) {
           redraw();
         },
       });
-      return element("label", {}, box, element("span", {}, name));
+      return element("label", {}, box, element("span", {}, ...named(name)));
     });
     return element(
       "fieldset",
@@ -90,11 +90,13 @@ function lines(figure, data) {
       .flatMap(({ points }) => points.flatMap(({ y, low, high }) => [y, low, high]))
       .filter(Number.isFinite);
     if (!numbers.length) return element("div", { class: "panel" }, title(one.label), nothing(whyEmpty(one, shown)));
-    const domain = valueExtent(numbers);
+    const yMarks = (one.marks ?? []).filter(({ value }) => isNear(value, numbers));
+    const domain = valueExtent([...numbers, ...yMarks.map(({ value }) => value)]);
     const axis = axisUnit(domain, unit);
+    const alone = names.length === 1; // named in the title
     const labelWidth = textWidth(...shown.map(({ label }) => label)) + 16;
     const below = !joined || labelWidth > width * 0.4;
-    const marginRight = below ? 16 : labelWidth;
+    const marginRight = below || alone ? 16 : labelWidth;
     const height = below ? 240 : Math.max(240, shown.length * LABEL_STEP + 60);
     const scaled = (key) => (point) => point[key] / axis.factor;
     const log = Boolean(data.x.log);
@@ -117,7 +119,9 @@ function lines(figure, data) {
         }),
       ].flat(),
     );
-    const xDomain = extent([...x, ...xMarks.map(({ value }) => value)]);
+    const [from, to] = extent([...x, ...xMarks.map(({ value }) => value)]);
+    const room = ({ value, beyond }) => value + { above: 0.04, below: -0.04 }[beyond] * (to - from); // for the tint
+    const xDomain = d3.extent([from, to, ...xMarks.filter(({ beyond }) => beyond).map(room)]);
     const svg = draw(sentence(one, shown, unit), {
       width,
       height,
@@ -134,7 +138,8 @@ function lines(figure, data) {
         labelArrow: "none",
         ...(log
           ? { ticks: logTicks(xDomain, (width - marginRight - 56) / 60), tickFormat: logTick }
-          : { ticks: Math.max(3, Math.floor((width - marginRight) / 90)) }),
+          : { ticks: Math.max(4, Math.floor((width - marginRight) / 90)) }),
+        grid: true,
       },
       y: {
         domain: domain.map((v) => v / axis.factor),
@@ -143,10 +148,17 @@ function lines(figure, data) {
         label: null,
         ticks: Math.floor(height / 50),
       },
-      marks: [...marks, markedValues(xMarks, xDomain), below ? [] : endLabels(shown, axis.factor)],
+      marks: [
+        beyondLimits(xMarks, data.x.unit),
+        levels(yMarks, axis.factor, unit),
+        ...marks,
+        markedValues(xMarks, xDomain, data.x.unit),
+        below || alone ? [] : endLabels(shown, axis.factor),
+      ],
     });
-    const legend = below ? [seriesLegend(shown, joined)] : [];
-    return element("div", { class: "panel" }, title(labelled(one.label, axis.unit)), svg, ...legend);
+    const legend = below && !alone ? [seriesLegend(shown, joined)] : [];
+    const what = alone && !one.label.includes(names[0]) ? `${one.label}, ${names[0]}` : one.label;
+    return element("div", { class: "panel" }, title(labelled(what, axis.unit)), svg, ...legend);
   }
 
   function whyEmpty({ series }, shown) {
@@ -161,10 +173,11 @@ function lines(figure, data) {
     }));
     const best = telling[d3.maxIndex(telling, ({ y }) => y)] ?? telling[0];
     const highest = `${best.label} with ${withUnit(number(best.y), unit)}`;
+    const marked = [...xMarks, ...(one.marks ?? [])].map((mark) => ` Marked: ${markText(mark, mark.unit)}.`).join("");
     const over = `${one.label} over ${data.x.label}, ${shown.length}`;
     return joined
-      ? `Lines: ${over} lines. At its end the highest is ${highest}.`
-      : `Dots: ${over} series. The highest is ${highest}.`;
+      ? `Lines: ${over} lines. At its end the highest is ${highest}.${marked}`
+      : `Dots: ${over} series. The highest is ${highest}.${marked}`;
   }
 
   return place;
@@ -184,13 +197,54 @@ function line(points, scaled, colour, style) {
   ].flat();
 }
 
+/// A level that is so far from the numbers that they would be pressed together is not drawn.
+function isNear(value, numbers) {
+  return Math.abs(value) <= 3 * d3.max(numbers, Math.abs);
+}
+
+/// "limit 0.03 mm"; a pure number says less than its label.
+function markText({ label, value }, unit) {
+  return isUnit(unit) ? `${label} ${withUnit(plain(value), unit)}` : label;
+}
+
+/// Limits stand out from other values that are marked.
+function markColour({ beyond }) {
+  return beyond ? "var(--limit)" : "var(--ink)";
+}
+
+const MARK = { stroke: markColour, strokeWidth: 1.5, strokeDasharray: "5 3" };
+
+/// What lies beyond limits of x, which is not allowed, in a tint over the whole height.
+function beyondLimits(xMarks) {
+  return (index, scales, channels, { marginTop, marginBottom, marginLeft, width, marginRight, height }) => {
+    const group = svgElement("g", { fill: "var(--limit)", "fill-opacity": 0.09 });
+    for (const { value, beyond } of xMarks) {
+      if (!beyond) continue;
+      const at = scales.x(value);
+      const [from, to] = beyond === "above" ? [at, width - marginRight] : [marginLeft, at];
+      if (to > from) group.append(svgElement("rect", { x: from, y: marginTop, width: to - from, height: height - marginTop - marginBottom }));
+    }
+    return group;
+  };
+}
+
+/// Levels of y, each named above its line.
+function levels(yMarks, factor, unit) {
+  const y = ({ value }) => value / factor;
+  const text = (mark) => markText(mark, unit);
+  const place = { frameAnchor: "left", textAnchor: "start", dx: 4, dy: -8, fontWeight: 600, fill: markColour };
+  return [Plot.ruleY(yMarks, { y, ...MARK }), Plot.text(yMarks, { y, text, ...place, stroke: "var(--paper)", strokeWidth: 3 })];
+}
+
 /// A rule at each value, named on the side where there is more room.
-function markedValues(xMarks, [from, to]) {
+function markedValues(xMarks, [from, to], unit) {
   const onTheRight = ({ value }) => value > (from + to) / 2;
+  const text = (mark) => markText(mark, unit);
+  const halo = { fill: markColour, stroke: "var(--paper)", strokeWidth: 3, fontWeight: 600 };
   const name = (some, side, dx) =>
-    Plot.text(some, { x: "value", text: "label", frameAnchor: "top", textAnchor: side, dx, dy: 2, fontWeight: 600 });
+    Plot.text(some, { x: "value", text, frameAnchor: "top", textAnchor: side, dx, dy: 2, ...halo });
   return [
-    Plot.ruleX(xMarks, { x: "value", stroke: "currentColor", strokeWidth: 1.5, strokeDasharray: "3 3" }),
+    Plot.ruleX(xMarks, { x: "value", ...MARK }),
     name(xMarks.filter(onTheRight), "end", -5),
     name(xMarks.filter((mark) => !onTheRight(mark)), "start", 5),
   ];
@@ -212,7 +266,7 @@ function seriesLegend(shown, joined) {
     joined
       ? element("i", { class: "stroke", style: `border-top-color:${colour};border-top-style:${style}` })
       : element("i", { class: "sign", style: `color:${colour}`, "aria-hidden": "true" }, STYLES[style].sign);
-  const entries = shown.map((one) => element("span", { class: "entry" }, piece(one), element("span", {}, one.label)));
+  const entries = shown.map((one) => element("span", { class: "entry" }, piece(one), element("span", {}, ...named(one.label))));
   return element("p", { class: "swatches below" }, ...entries);
 }
 

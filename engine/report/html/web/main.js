@@ -12,4 +12,4 @@ for (const figure of document.querySelectorAll("figure[data-figure]")) {
   }
 }
 
-keepNumbersWhole();
+setTexts(document.body);

@@ -70,6 +70,21 @@ function logTicks([low, high], most) {
   return tens.filter((_, k) => k % step === 0);
 }
 
+/// A tick of a linear axis, with as many decimals as the distance between ticks asks for.
+function tickText(value, k, ticks) {
+  const step = ticks?.length > 1 ? Math.abs(ticks[1] - ticks[0]) : Math.abs(value) || 1;
+  const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9) + (isRound(step) ? 0 : 1));
+  const [whole, part] = Math.abs(value).toFixed(Math.min(decimals, 12)).split(".");
+  const text = (whole.length > 3 ? grouped(whole) : whole) + (part ? `.${part}` : "");
+  return value < 0 && Number(text.replace(/\s/g, "")) !== 0 ? `−${text}` : text;
+}
+
+/// Whether a step has one significant digit.
+function isRound(step) {
+  const digits = step / 10 ** Math.floor(Math.log10(step) + 1e-9);
+  return Math.abs(digits - Math.round(digits)) < 1e-6;
+}
+
 function logTick(value) {
   const exponent = Math.floor(Math.log10(value) + 1e-9);
   if (exponent >= -2 && exponent <= 5) {

@@ -20,7 +20,7 @@ function select(label, options, change, first = 0) {
   return element(
     "label",
     { class: "control", ...(options.length < 2 && { hidden: "" }) },
-    element("span", {}, label),
+    element("span", {}, ...named(label)),
     made,
   );
 }
@@ -45,6 +45,16 @@ class Choices {
   }
 }
 
+// Paper is light whatever the screen is.
+const darkScheme = matchMedia("(prefers-color-scheme: dark)");
+let printing = false;
+addEventListener("beforeprint", () => (printing = true));
+addEventListener("afterprint", () => (printing = false));
+
+function isDark() {
+  return darkScheme.matches && !printing;
+}
+
 /// Where a figure is drawn: controls above, then the plot, drawn by draw(width): at first by fit(), when the figure is
 /// whole, and again whenever its width changes.
 class Place {
@@ -58,6 +68,7 @@ class Place {
     new ResizeObserver(() => requestAnimationFrame(() => this.fit())).observe(this.plot);
     addEventListener("beforeprint", () => this.redraw(PRINT_WIDTH));
     addEventListener("afterprint", () => this.redraw());
+    darkScheme.addEventListener("change", () => this.redraw());
   }
   fit() {
     const width = Math.floor(this.plot.clientWidth);
@@ -72,17 +83,4 @@ const PRINT_WIDTH = 680;
 /// A line for the value under the cursor, which a screen reader says when it changes.
 function readout(hint) {
   return element("p", { class: "readout", role: "status" }, hint);
-}
-
-/// A number whose digits stand in groups is not broken between them; its text stays what it is.
-function keepNumbersWhole() {
-  const numbers = /(\d{1,3}(?: \d{3})+(?!\d))/;
-  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  const found = [];
-  while (texts.nextNode()) {
-    const inProse = texts.currentNode.parentElement.matches("p, li, td, dd");
-    if (inProse && numbers.test(texts.currentNode.data)) found.push(texts.currentNode);
-  }
-  const whole = (part, k) => (k % 2 ? element("span", { class: "whole" }, part) : part);
-  for (const text of found) text.replaceWith(...text.data.split(numbers).map(whole));
 }

@@ -1,0 +1,154 @@
+#include "engine/kinds/sensitivity/answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/kinds/sensitivity/fidelity.h"
+#include "engine/kinds/sensitivity/figures.h"
+#include "engine/kinds/sensitivity/indices.h"
+#include "engine/kinds/sensitivity/linearity.h"
+#include "engine/kinds/sensitivity/ranking.h"
+#include "engine/kinds/sensitivity/result.h"
+#include "engine/kinds/sensitivity/tolerances.h"
+#include "engine/report/display.h"
+#include "engine/report/tables.h"
+#include "engine/stats/tolerance.h"
+
+namespace poesy {
+namespace {
+
+/// Which errors make most of the mean square, and which together make next to none.
+struct FewMatter {
+  std::vector<std::string> names;   ///< of those that make most, the largest first
+  double sum = 0.0;                 ///< their share
+  std::vector<std::string> hardly;  ///< of those that together make less than kHardly
+};
+
+constexpr double kMost = 0.8;
+constexpr double kHardly = 0.01;
+
+/// None where not all effects are known, or none has one.
+std::optional<FewMatter> few_matter(const StoredResult& result) {
+  if (!has_tolerances(result)) return std::nullopt;
+  const std::size_t response = response_named(result, default_ranking(result));
+  const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
+  const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
+  if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return std::nullopt;
+  std::vector<std::size_t> order = positions(shares.size());
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t p) { return shares[p]; });
+  FewMatter few;
+  while (few.sum < kMost && few.names.size() < order.size()) {
+    const std::size_t p = order[few.names.size()];
+    few.names.push_back(result.factors[p].name);
+    few.sum += shares[p];
+  }
+  double tail = 0.0;
+  for (std::size_t n = order.size(); n-- > 0;) {
+    tail += shares[order[n]];
+    if (tail >= kHardly) break;
+    few.hardly.push_back(result.factors[order[n]].name);
+  }
+  return few;
+}
+
+/// The error of the largest effect on the response that ranks, with its interval.
+std::string largest_text(const StoredResult& result, const RankedErrors& ranked) {
+  const std::size_t p = ranked.rows.front();
+  const std::size_t at = ranked.response * result.factors.size() + p;
+  const NamedUnit& response = result.responses[ranked.response];
+  const GlobalIndices shown = shown_indices(result);
+  const double sigma = result.factor_sigma[p];
+  return fmt::format("{} scatters {} most, by {} at its sigma of {} ({} interval {} to {}).", result.factors[p].name,
+                     response.name, response_text(response, shown.value[at] * sigma),
+                     response_text(result.factors[p], sigma), percent_text(sensitivity_of(result).conf_level),
+                     response_text(response, shown.low[at] * sigma), response_text(response, shown.high[at] * sigma));
+}
+
+/// How far the intervals of the errors that matter reach, and for which sizes the indices hold.
+std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
+  const GlobalIndices shown = shown_indices(result);
+  double widest = 0.0;
+  for (const std::size_t p : ranked.rows) {
+    const std::size_t at = ranked.response * result.factors.size() + p;
+    if (!has_effect(result, ranked.response, p)) continue;
+    const double reach = std::max(shown.high[at] - shown.value[at], shown.value[at] - shown.low[at]);
+    widest = std::max(widest, reach / shown.value[at]);
+  }
+  std::string text = fmt::format("Intervals reach at most {:.2g} % away from their index.", 100.0 * widest);
+  if (!has_index_changes(result)) return text;
+  const std::size_t changing = changing_errors(result, ranked.response).size();
+  return text + (changing == 0
+                     ? " The indices hold at a tenth of the sizes as well."
+                     : fmt::format(" {} at other sizes.", counted(changing, "index is another", "indices are others")));
+}
+
+std::string advice(const std::optional<FewMatter>& few) {
+  std::string text;
+  if (few && !few->names.empty()) text = fmt::format("Hold {} to tight tolerances. ", some_names(few->names, 3));
+  if (few && !few->hardly.empty()) {
+    text += fmt::format("{} may be loose: together below 1 % ({}). ", counted(few->hardly.size(), "error", "errors"),
+                        some_names(few->hardly, 3));
+  }
+  return text + "'poesy tolerances' gives sizes that keep a limit; a study of kind allocation, those of least cost.";
+}
+
+}  // namespace
+
+std::string few_matter_text(const StoredResult& result) {
+  const std::optional<FewMatter> few = few_matter(result);
+  if (!few) return {};
+  const std::size_t hardly = few->hardly.size();
+  std::string text = fmt::format(
+      "{} of {} {} {:.0f} % of what the study's sizes add to the mean square of {} over samples and poses: {}.",
+      few->names.size(), counted(result.factors.size(), "error", "errors"), few->names.size() == 1 ? "makes" : "make",
+      100.0 * few->sum, default_ranking(result), some_names(few->names));
+  if (hardly > 0)
+    text += fmt::format(" {} hardly {} (below 1 % together).", hardly, hardly == 1 ? "matters" : "matter");
+  return text;
+}
+
+std::string worst_place_text(const StoredResult& result) {
+  constexpr double kHardlyDiffers = 1.05;
+  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
+  if (ranked.rows.empty()) return {};
+  const std::size_t error = ranked.rows.front();
+  const std::vector<double> all = local_effects(result, ranked.response);
+  const auto effects = std::span(all).subspan(error * result.poses.size(), result.poses.size());
+  std::size_t worst = 0;
+  double sum = 0.0;
+  for (std::size_t m = 0; m < effects.size(); ++m) {
+    sum += effects[m];
+    if (effects[m] > effects[worst]) worst = m;
+  }
+  const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
+  if (!(ratio >= kHardlyDiffers)) return {};  // neither where an effect is not known
+  return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
+                     result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),
+                     ratio);
+}
+
+Answer sensitivity_answer(const StoredResult& result) {
+  const RankedErrors ranked = ranked_errors(result, default_ranking(result));
+  if (ranked.rows.empty() || !has_effect(result, ranked.response, ranked.rows.front())) {
+    return {{"Answer", fmt::format("No error has an effect on {}.", default_ranking(result))}};
+  }
+  const std::optional<FewMatter> few = few_matter(result);
+  Answer lines{{"Answer", largest_text(result, ranked)}};
+  if (few) {
+    lines.emplace_back(
+        "How many matter",
+        fmt::format("{} of {} make {:.0f} % of the mean square: {}.", few->names.size(),
+                    counted(result.factors.size(), "error", "errors"), 100.0 * few->sum, some_names(few->names)));
+  }
+  if (std::string where = worst_place_text(result); !where.empty()) lines.emplace_back("Where", std::move(where));
+  lines.emplace_back("How sure", sure_text(result, ranked));
+  lines.emplace_back("What to do", advice(few));
+  return lines;
+}
+
+}  // namespace poesy
