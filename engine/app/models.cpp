@@ -71,8 +71,8 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
                      "pictures are of mechanisms from files");
   }
   const auto is_picture = [](const std::string& existing) { return is_marked(existing, kPictureMark); };
-  check_output_path(path, {"picture", is_picture}, {{entry.file}});
-  write_text(path, mechanism_picture(*sketch, entry.description.title));
+  const std::string output = check_output_path(path, {"picture", is_picture}, {{entry.file}});
+  write_text(output, mechanism_picture(*sketch, entry.description.title));
 }
 
 struct ModelsOptions {

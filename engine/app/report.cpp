@@ -42,8 +42,8 @@ ReportedResult reported(const std::string& path) {
 }
 
 int report(const ReportOptions& options) {
-  const std::string path = options.report.empty() ? default_path(options.results) : options.report;
-  check_output_path(path, {"report", may_be_replaced}, options.results);
+  const std::string named = options.report.empty() ? default_path(options.results) : options.report;
+  const std::string path = check_output_path(named, {"report", may_be_replaced}, options.results);
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back(reported(result));
   write_text(path, html_report(kind_of(results.front().stored).report, results));
