@@ -53,7 +53,7 @@ endif()
 if(POESY_SANITIZE)
   # Runs take ten times as long there.
   set_property(TEST program.kill APPEND PROPERTY ENVIRONMENT POESY_KILLS=6)
-  set_tests_properties(program.kill program.resume program.full_disk PROPERTIES TIMEOUT 1800)
+  set_tests_properties(program.kill program.resume program.full_disk program.hostile_files PROPERTIES TIMEOUT 1800)
 endif()
 program_test(tolerances unit)
 program_test(trajectory unit)
