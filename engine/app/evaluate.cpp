@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "engine/app/command_line.h"
@@ -13,6 +14,7 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/files/checkpoint.h"
 #include "engine/files/result_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/study_file.h"
@@ -92,8 +94,11 @@ int evaluate(const EvaluateOptions& options) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");
   }
+  std::string path;  // of the result; empty: none is kept
+  std::optional<RunLock> lock;
   if (!options.result.empty()) {
-    check_result_path(options.result, std::array{options.study, options.poses, options.errors});
+    path = check_result_path(options.result, std::array{options.study, options.poses, options.errors});
+    lock.emplace(path);
   }
   const Pairing pairing = options.paired ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
   const auto start = std::chrono::steady_clock::now();
@@ -117,9 +122,8 @@ int evaluate(const EvaluateOptions& options) {
   }
   StoredResult shown = with_verdicts(study, poses, result->verdicts, row_names(errors.labels, pairing, errors.rows));
   for (std::size_t r = 0; r < shown.responses.size(); ++r) shown.headline.push_back(r);
-  if (!options.result.empty()) {
-    write_evaluation(options.result, study, poses, errors, pairing, *result,
-                     run_facts(seconds, threads, total.total()));
+  if (!path.empty()) {
+    write_evaluation(path, study, poses, errors, pairing, *result, run_facts(seconds, threads, total.total()));
   }
   StoredEvaluation found;
   found.evaluation = std::move(*result);
@@ -128,13 +132,12 @@ int evaluate(const EvaluateOptions& options) {
   shown.found = std::move(found);
   print(fmt::format("{} solves, {} not converged\n\n{}", total.total(), total.not_converged(),
                     text_of(evaluation_table(shown), output_width())));
-  if (options.result.empty()) {
+  if (path.empty()) {
     return judge(study, total, shown, options.study,
                  {"-o RESULT.h5 keeps the result", "run it again with -o RESULT.h5 to see which failed"});
   }
   return judge(study, total, shown, options.study,
-               {"the result is kept; see /limits in " + options.result,
-                "the result is kept: see /evaluate/status in " + options.result});
+               {"the result is kept; see /limits in " + path, "the result is kept: see /evaluate/status in " + path});
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ constexpr std::array kExitCodes{
 constexpr std::array kFiles{Entry{"STUDY.toml", "what to compute; poesy template writes one to start from"},
                             Entry{"RESULT.h5", "what was found; HDF5, whole or absent"},
                             Entry{"RESULT.h5.part", "checkpoint of a run; the one before it is RESULT.h5.part.1"},
-                            Entry{"RESULT.h5.lock", "there while a run writes to this result"}};
+                            Entry{"RESULT.h5.lock", "there while a run writes to this result"},
+                            Entry{"RESULT.h5.tmp.*", "left by a kill; the next run removes it"}};
 constexpr std::array kEnvironment{
     Entry{"NO_COLOR", "if it is set and not empty, nothing is coloured"},
     Entry{"TERM", "if it is unset or 'dumb', nothing is coloured, and progress comes line by line"},

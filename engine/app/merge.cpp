@@ -3,6 +3,7 @@
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
 #include "engine/base/error.h"
+#include "engine/files/checkpoint.h"
 #include "engine/files/result_file.h"
 #include "engine/files/shard_file.h"
 #include "engine/kinds/study_file.h"
@@ -34,7 +35,8 @@ std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*
 }
 
 int merge(const MergeOptions& options) {
-  check_result_path(options.result, options.shards);
+  const std::string path = check_result_path(options.result, options.shards);
+  const RunLock lock(path);
   std::vector<StoredShard> shards;
   for (const std::string& path : options.shards) shards.push_back(read_shard(path));
   std::vector<Bytes> merged = merge_shards(shards);
@@ -47,13 +49,13 @@ int merge(const MergeOptions& options) {
   const Job job{.study = study,
                 .model = *model,
                 .poses = whole.poses,
-                .path = options.result,
+                .path = path,
                 .options = {.checkpoints = &done},
                 .time = [time = time_of(shards)] { return time; },
                 .threads = most(shards, &RunFacts::threads),
                 .ranks = most(shards, &RunFacts::ranks)};
   try {
-    return report_outcome(job, options.result, run_to_file(job).value());
+    return report_outcome(job, path, run_to_file(job).value());
   } catch (const BytesError& error) {
     throw FileError(first.path, std::string("or another shard ") + error.what(), "run the shards again");
   }

@@ -74,8 +74,8 @@ void write_picture(const CatalogEntry& entry, const std::string& path) {
     throw InputError({}, "there is no picture of '" + entry.description.name + "'", "its model has no sketch");
   }
   const auto is_picture = [](const std::string& existing) { return is_marked(existing, kPictureMark); };
-  check_output_path(path, {"picture", is_picture}, {{entry.file}});
-  write_text(path, mechanism_picture(*sketch, entry.description.title));
+  const std::string output = check_output_path(path, {"picture", is_picture}, {{entry.file}});
+  write_text(output, mechanism_picture(*sketch, entry.description.title));
 }
 
 /// Folder of the mechanisms' files that are installed with this program; empty when there is none, as where the program

@@ -41,9 +41,9 @@ ReportedResult reported(const std::string& path) {
 }
 
 int report(const ReportOptions& options) {
-  const std::string path = options.report.empty() ? default_path(options.results) : options.report;
-  const bool pdf = is_pdf(path);
-  check_output_path(path, {"report", pdf ? is_pdf_report : may_be_replaced}, options.results);
+  const std::string named = options.report.empty() ? default_path(options.results) : options.report;
+  const bool pdf = is_pdf(named);
+  const std::string path = check_output_path(named, {"report", pdf ? is_pdf_report : may_be_replaced}, options.results);
   const std::string browser = pdf ? printing_browser(path) : std::string();
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back(reported(result));

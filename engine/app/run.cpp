@@ -155,8 +155,8 @@ int leave_before_the_start(const Team& team, ResumableRun& resumable) {
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
-  const std::string path = options.result.empty() ? default_result(options) : options.result;
-  check_result_path(path, std::span(&options.study, 1));
+  const std::string named = options.result.empty() ? default_result(options) : options.result;
+  const std::string path = check_result_path(named, std::span(&options.study, 1));
   if (kind_of(study).run.confirms) check_path_beside(path, options.study);
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);

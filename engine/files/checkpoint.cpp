@@ -22,7 +22,6 @@
 #include "engine/files/version.h"
 #include "engine/study/study_file.h"
 #include "engine/study/study_kind.h"
-#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
@@ -185,7 +184,7 @@ Checkpoint decode_checkpoint(std::span<const std::byte> file) {
 }
 
 CheckpointFiles::CheckpointFiles(const std::string& result_path)
-    : newer_(result_path + ".part"), older_(newer_ + ".1"), temporary_(newer_ + ".tmp") {}
+    : result_(result_path), newer_(result_path + ".part"), older_(newer_ + ".1") {}
 
 bool CheckpointFiles::exist() const { return stands(newer_) || stands(older_); }
 
@@ -204,7 +203,7 @@ std::optional<FoundCheckpoint> CheckpointFiles::find() {
 
 void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages) {
   const CheckpointPieces pieces(identity, time, stages);
-  FileWriter writer(newer_, temporary_);
+  FileWriter writer(newer_, result_);
   writer.expect(pieces.size());
   pieces.for_each([&](std::span<const std::byte> piece) { writer.write(piece); });
   writer.sync();
@@ -215,7 +214,7 @@ void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& t
 
 void CheckpointFiles::remove() {
   // The newest last, so that what is left of a removal that was cut short is the newest.
-  for (const std::string* path : {&temporary_, &older_, &newer_}) {
+  for (const std::string* path : {&older_, &newer_}) {
     std::error_code error;
     fs::remove(*path, error);
     if (error) throw FileError(*path, "cannot be removed (" + error.message() + ")", "remove it by hand");
@@ -224,27 +223,43 @@ void CheckpointFiles::remove() {
 }
 
 RunLock::RunLock(const std::string& result_path) : path_(result_path + ".lock") {
-  for (;;) {
-    descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) return;
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      const bool taken = errno == EWOULDBLOCK;
-      ::close(std::exchange(descriptor_, -1));
-      if (!taken) return;
-      throw InputError({.file = result_path}, "another run is computing this result",
-                       "wait for it, or give each run its own -o");
-    }
-    struct stat file {};
-    // A run that ended in between has removed the file: a lock on that keeps nobody away.
-    if (::fstat(descriptor_, &file) == 0 && file.st_nlink > 0) return;
-    ::close(std::exchange(descriptor_, -1));
+  while (!take(result_path)) {
   }
+  if (descriptor_ < 0) return;
+  const CheckpointFiles checkpoints(result_path);
+  for (const std::string& path : {result_path, checkpoints.newer(), checkpoints.older()}) remove_left_over(path);
+}
+
+bool RunLock::take(const std::string& result_path) {
+  // A FIFO that somebody put there is opened at once, and refused.
+  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+  struct stat file {};
+  const int looked = descriptor_ < 0 ? ::lstat(path_.c_str(), &file) : ::fstat(descriptor_, &file);
+  if (looked == 0 && !S_ISREG(file.st_mode)) {
+    close();
+    throw FileError(path_, "is not a plain file, and a run keeps its lock in one", "remove it");
+  }
+  if (descriptor_ < 0) return true;
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    const bool taken = errno == EWOULDBLOCK;
+    close();
+    if (!taken) return true;
+    throw InputError({.file = result_path}, "another run is computing this result",
+                     "wait for it, or give each run its own -o");
+  }
+  // A run that ended in between has removed the file: a lock on that keeps nobody away.
+  if (::fstat(descriptor_, &file) == 0 && file.st_nlink > 0) return true;
+  close();
+  return false;
+}
+
+void RunLock::close() {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
 }
 
 RunLock::~RunLock() {
-  if (descriptor_ < 0) return;
-  ::unlink(path_.c_str());
-  ::close(descriptor_);
+  if (descriptor_ >= 0) ::unlink(path_.c_str());
+  close();
 }
 
 }  // namespace poesy

@@ -101,14 +101,15 @@ struct FoundCheckpoint {
 };
 
 /// The checkpoints of an unfinished run beside its result: RESULT.h5.part, and the one before it as RESULT.h5.part.1.
-/// Each has its own digest and comes into being whole: written as RESULT.h5.part.tmp and synced; then the newer one
-/// gets the older one's name as well, and the new one is renamed to take its place. Once there is a RESULT.h5.part, it
-/// is there at any moment.
+/// Each has its own digest and comes into being whole: written under a temporary name (FileWriter) and synced; then the
+/// newer one gets the older one's name as well, and the new one is renamed to take its place. Once there is a
+/// RESULT.h5.part, it is there at any moment. Who may not read a result that is there may not read its checkpoints.
 class CheckpointFiles {
  public:
   explicit CheckpointFiles(const std::string& result_path);  ///< Beside this result.
 
   const std::string& newer() const { return newer_; }  ///< Path of the newer one, RESULT.h5.part.
+  const std::string& older() const { return older_; }  ///< Path of the one before, RESULT.h5.part.1.
   bool exist() const;                                  ///< Whether there is a file, sound or not.
   /// The newest one that is sound, if there is a file at all. Throws FileError when there is and none is sound.
   std::optional<FoundCheckpoint> find();
@@ -117,22 +118,29 @@ class CheckpointFiles {
   void remove();  ///< Removes all of them. Throws FileError.
 
  private:
+  std::string result_;
   std::string newer_;
   std::string older_;
-  std::string temporary_;
   bool newer_is_sound_ = false;  ///< only then it may replace the older one
 };
 
 /// Keeps other runs from the same result, and so from its checkpoints, while it lives: an advisory lock on
 /// RESULT.h5.lock, which goes with the process however that ends. Where the file system knows no locks there is none.
+/// Who has it removes what killed runs left of the result and its checkpoints under temporary names.
 class RunLock {
  public:
-  explicit RunLock(const std::string& result_path);  ///< Throws InputError when another run has it.
+  /// result_path: where links end (check_output_path), so that a link and what it leads to are one result. Throws
+  /// InputError when another run has the lock, FileError when something other than a plain file has its name.
+  explicit RunLock(const std::string& result_path);
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
   ~RunLock();
 
  private:
+  /// Whether the lock is had, or none is to be had; not when a run that ended has removed the file meanwhile.
+  bool take(const std::string& result_path);
+  void close();
+
   std::string path_;
   int descriptor_ = -1;
 };

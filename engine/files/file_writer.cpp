@@ -2,16 +2,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "engine/base/error.h"
 
@@ -42,6 +46,51 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
                    "name another file with -o, or remove it");
 }
 
+/// Where a symbolic link leads, through further ones.
+std::string end_of_links(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as the system itself
+  fs::path at(path);
+  std::error_code ignored;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(at, ignored)); ++links) {
+    const fs::path to = fs::read_symlink(at, ignored);
+    if (links == kMostLinks || to.empty()) {
+      throw InputError({.file = path}, "is a symbolic link that leads nowhere, or in a circle", "name another file");
+    }
+    at = to.is_absolute() ? to : at.parent_path() / to;
+  }
+  return at.string();
+}
+
+constexpr std::string_view kTemporary = ".tmp.";
+constexpr std::size_t kRandomBytes = 6;
+constexpr std::string_view kDigits = "0123456789abcdef";
+
+/// Empty where the system has no random numbers; then errno says why.
+std::string temporary_name(const std::string& path) {
+  std::array<unsigned char, kRandomBytes> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return {};
+  std::string name = path + std::string(kTemporary);
+  for (const unsigned char byte : bytes) name += fmt::format("{:02x}", byte);
+  return name;
+}
+
+bool is_temporary_name(std::string_view name, std::string_view of_file) {
+  if (!name.starts_with(of_file)) return false;
+  name.remove_prefix(of_file.size());
+  if (!name.starts_with(kTemporary)) return false;
+  name.remove_prefix(kTemporary.size());
+  return name.size() == 2 * kRandomBytes && name.find_first_not_of(kDigits) == std::string_view::npos;
+}
+
+/// What a new file at `path` is to be like: the plain file there, or else `like`.
+std::optional<struct stat> model_of(const std::string& path, const std::string& like) {
+  for (const std::string& file : {path, like}) {
+    struct stat found {};
+    if (::lstat(file.c_str(), &found) == 0 && S_ISREG(found.st_mode)) return found;
+  }
+  return std::nullopt;
+}
+
 /// Makes the rename survive a crash. Some file systems cannot sync a folder: the file itself is safe there.
 bool sync_folder(const std::string& path) {
   const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -65,7 +114,8 @@ bool is_marked(const std::string& path, std::string_view mark) {
   return head.empty() || head.find(mark) != std::string::npos;
 }
 
-void check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs) {
+std::string check_output_path(const std::string& named, const OutputKind& kind, std::span<const std::string> inputs) {
+  const std::string path = end_of_links(named);
   const fs::path folder = folder_of(path);
   check_present(path, kind, inputs);
   if (std::error_code ignored; !fs::is_directory(folder, ignored)) {
@@ -78,6 +128,7 @@ void check_output_path(const std::string& path, const OutputKind& kind, std::spa
     const std::string reason = std::generic_category().message(errno);
     throw FileError(path, "cannot be written into its folder (" + reason + ")", "choose another folder");
   }
+  return path;
 }
 
 bool stands(const std::string& path) {
@@ -85,16 +136,44 @@ bool stands(const std::string& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
-FileWriter::FileWriter(std::string path, std::string temporary)
-    : path_(std::move(path)), temporary_(std::move(temporary)) {
-  if (temporary_.empty()) temporary_ = path_ + ".tmp." + std::to_string(::getpid());
+void remove_left_over(const std::string& path) {
+  std::error_code error;
+  const std::string name = fs::path(path).filename().string();
+  std::vector<fs::path> found;  // a folder is not changed while it is listed
+  for (fs::directory_iterator at(folder_of(path), error), end; !error && at != end; at.increment(error)) {
+    if (is_temporary_name(at->path().filename().string(), name)) found.push_back(at->path());
+  }
+  for (const fs::path& one : found) ::unlink(one.c_str());
+}
+
+FileWriter::FileWriter(std::string path, const std::string& like)
+    : path_(std::move(path)), temporary_(temporary_name(path_)) {
+  if (temporary_.empty()) fail("cannot be created", errno);
   struct stat there {};
   if (::stat(path_.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
     throw FileError(path_, "is not a plain file and will not be replaced", "choose another name");
   }
+  const std::optional<struct stat> model = model_of(path_, like);
   constexpr mode_t kReadableByAll = 0666;  // before the umask
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadableByAll);
+  constexpr mode_t kPrivate = 0600;        // until it has the permissions that it is to have
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+                       model ? kPrivate : kReadableByAll);
   if (descriptor_ == kClosed) fail("cannot be created", errno);
+  if (model) give_permissions(*model);
+}
+
+/// Owner and group as far as this user may give them. Where the group cannot be had, the one that the file has instead
+/// may do no more than everybody.
+void FileWriter::give_permissions(const struct stat& like) {
+  constexpr mode_t kAll = 0777;
+  constexpr mode_t kOthers = 07;
+  mode_t mode = like.st_mode & kAll;
+  constexpr auto kSame = static_cast<uid_t>(-1);
+  if (::fchown(descriptor_, like.st_uid, like.st_gid) != 0 && ::fchown(descriptor_, kSame, like.st_gid) != 0) {
+    const mode_t others = mode & kOthers;
+    mode = (mode & ~mode_t{070}) | (others << 3U);
+  }
+  ::fchmod(descriptor_, mode);  // a file system without permissions has none to keep
 }
 
 FileWriter::~FileWriter() {
@@ -169,6 +248,35 @@ void write_text(const std::string& path, std::string_view text) {
   file.expect(text.size());
   file.write(text);
   file.commit();
+}
+
+void put_at_second_name(const std::string& path, const std::string& second, LinkFile link_file) {
+  const auto fail = [&](const std::error_code& error) {
+    throw FileError(second, "cannot be put in place (" + error.message() + ")", "check the folder");
+  };
+  const std::string temporary = temporary_name(second);
+  std::error_code error;
+  if (!temporary.empty() && link_file(path.c_str(), temporary.c_str()) == 0) {
+    fs::rename(temporary, second, error);
+    ::unlink(temporary.c_str());  // between two names of one file a rename does nothing
+    if (error) fail(error);
+    return;
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(std::error_code(errno, std::generic_category()));
+  constexpr std::size_t kPart = 1 << 16;
+  std::array<char, kPart> part{};
+  FileWriter copy(second, path);
+  while (file) {
+    file.read(part.data(), part.size());
+    copy.write(std::string_view(part.data(), static_cast<std::size_t>(file.gcount())));
+  }
+  if (!file.eof()) fail(std::make_error_code(std::errc::io_error));
+  copy.commit();
+}
+
+void put_at_second_name(const std::string& path, const std::string& second) {
+  put_at_second_name(path, second, ::link);
 }
 
 }  // namespace poesy

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+struct stat;
+
 namespace poesy {
 
 /// A kind of file that the program writes.
@@ -16,21 +18,28 @@ struct OutputKind {
 /// Whether a file is empty, or has this mark in its first kilobyte.
 bool is_marked(const std::string& path, std::string_view mark);
 
-/// Throws when no such file can come into being at this path, before anything is computed: InputError when its folder
-/// does not exist, when what stands there is one of the inputs or must not be replaced, FileError when the folder
-/// cannot be written.
-void check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs);
+/// Gives the path to write to: where a symbolic link leads, whether there is a file yet or not; else the path itself.
+/// Throws when no such file can come into being there, before anything is computed: InputError when its folder does not
+/// exist, when what stands there is one of the inputs or must not be replaced, or for links in a circle, FileError when
+/// the folder cannot be written.
+std::string check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs);
 
 bool stands(const std::string& path);  ///< Whether anything has this name, a link that leads nowhere too.
 
-/// Writes a file that appears whole or not at all under its name: beside it under a temporary name, and at the end
-/// synced and renamed. Destroyed before commit, it removes the temporary file; what stood under the name stays.
+/// Removes what killed programs left of files that were to become this one: PATH.tmp. and twelve digits, as FileWriter
+/// names them. What cannot be removed stays. Precondition: nobody is writing this file.
+void remove_left_over(const std::string& path);
+
+/// Writes a file that appears whole or not at all under its name: beside it under a temporary name that nobody can
+/// guess, and at the end synced and renamed. Destroyed before commit, it removes the temporary file; what stood under
+/// the name stays. A symbolic link of that name is replaced, not followed: check_output_path() gives where it leads.
 /// Every member throws FileError with the system's reason.
 class FileWriter {
  public:
-  /// Refuses a path where something other than a plain file stands (a folder, a device). temporary: a path in the same
-  /// folder, where a file that stands there is lost; by default one that no other process uses.
-  explicit FileWriter(std::string path, std::string temporary = {});
+  /// Refuses a path where something other than a plain file stands (a folder, a device). The file gets the permissions
+  /// of the one that it replaces; if there is none, those of the file `like`, and without that either those of the
+  /// umask.
+  explicit FileWriter(std::string path, const std::string& like = {});
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
   ~FileWriter();
@@ -43,6 +52,7 @@ class FileWriter {
   void commit();                                 ///< Syncs, unless that was done, and puts the file in its place.
 
  private:
+  void give_permissions(const struct stat& like);
   [[noreturn]] void fail(std::string_view action, int error) const;
   std::string remedy(int error) const;
   std::string missing_space() const;
@@ -55,5 +65,14 @@ class FileWriter {
 
 /// Writes a whole file, or nothing. Throws FileError.
 void write_text(const std::string& path, std::string_view text);
+
+/// Gives a file a second name: POSIX link(), or what stands for it in a test. 0, or -1 and errno.
+using LinkFile = int (*)(const char* existing, const char* second);
+
+/// Puts the file at `path` at `second` as well, in place of what is there. `path` stays all the while, and `second`
+/// is replaced at once. A file system without hard links gets a copy. Throws FileError; then both are as they were.
+void put_at_second_name(const std::string& path, const std::string& second, LinkFile link_file);
+
+void put_at_second_name(const std::string& path, const std::string& second);  ///< The same with POSIX link().
 
 }  // namespace poesy

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <set>
 #include <type_traits>
 #include <utility>
 
@@ -227,6 +228,59 @@ herr_t add_name(hid_t, const char* name, const Info*, void* names) {
   return 0;
 }
 
+/// A link in a group.
+struct Link {
+  std::string name;
+  H5L_type_t type;
+};
+
+herr_t add_link(hid_t, const char* name, const H5L_info_t* info, void* links) {
+  static_cast<std::vector<Link>*>(links)->push_back({name, info->type});
+  return 0;
+}
+
+std::vector<Link> links_in(hid_t file, const std::string& path) {
+  const Handle group = open_object(file, path);
+  std::vector<Link> links;
+  checked(H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_link, &links), "list", path);
+  return links;
+}
+
+void expect_hard(const Link& link, const std::string& path) {
+  if (link.type == H5L_TYPE_SOFT) throw StrangeFile(path + " is a soft link");
+  if (link.type == H5L_TYPE_EXTERNAL) throw StrangeFile(path + " is a link to another file");
+  if (link.type != H5L_TYPE_HARD) throw StrangeFile(path + " is a link of another program's own kind");
+  // HDF5 would look for the parts of such a name one by one, through links that were not looked at.
+  if (link.name.find('/') != std::string::npos || link.name == ".") throw StrangeFile(path + " has no name of its own");
+}
+
+void expect_own_storage(hid_t dataset, const std::string& path) {
+  const Handle storage(H5Dget_create_plist(dataset), H5Pclose, "read the storage of", path);
+  if (checked(H5Pget_layout(storage.get()), "read the layout of", path) == H5D_VIRTUAL) {
+    throw StrangeFile(path + " is a virtual dataset, whose values are elsewhere");
+  }
+  if (checked(H5Pget_external_count(storage.get()), "read the storage of", path) > 0) {
+    throw StrangeFile(path + " has its values in other files (external storage)");
+  }
+  const int filters = checked(H5Pget_nfilters(storage.get()), "read the filters of", path);
+  for (int k = 0; k < filters; ++k) {
+    std::size_t no_values = 0;
+    const H5Z_filter_t filter = checked(
+        H5Pget_filter2(storage.get(), static_cast<unsigned>(k), nullptr, &no_values, nullptr, 0, nullptr, nullptr),
+        "read the filters of", path);
+    // HDF5 would look for it among the plugins of this machine, and run what it finds.
+    if (filter >= H5Z_FILTER_RESERVED) throw StrangeFile(fmt::format("{} needs the filter {}", path, filter));
+  }
+}
+
+/// get: H5Oget_info2, whose struct has another name from HDF5 1.12 on.
+template <class Info>
+haddr_t address_of(hid_t object, const std::string& path, herr_t (*get)(hid_t, Info*, unsigned)) {
+  Info info{};
+  checked(get(object, &info, H5O_INFO_BASIC), "look at", path);
+  return info.addr;
+}
+
 // netCDF readers want to know in which order things came into being.
 constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
 // Links and attributes stay in the object's header, which has a checksum, rather than move to a heap when there are
@@ -339,6 +393,34 @@ void File::attach_scale(const std::string& dataset, std::size_t axis, const std:
 
 void File::link(const std::string& existing, const std::string& second) {
   checked(H5Lcreate_hard(id_, existing.c_str(), id_, second.c_str(), H5P_DEFAULT, H5P_DEFAULT), "link", second);
+}
+
+void File::expect_plain_tree() const {
+  constexpr int kDeepest = 16;  // results have three levels
+  struct Group {
+    std::string path;
+    int depth;
+  };
+  std::set<haddr_t> seen{address_of(open_object(id_, "/").get(), "/", H5Oget_info2)};
+  for (std::vector<Group> groups{{"/", 0}}; !groups.empty();) {
+    const Group group = std::move(groups.back());
+    groups.pop_back();
+    for (const Link& link : links_in(id_, group.path)) {
+      const std::string path = (group.depth == 0 ? "" : group.path) + "/" + link.name;
+      expect_hard(link, path);
+      const Handle object = open_object(id_, path);
+      const H5I_type_t type = H5Iget_type(object.get());
+      if (type == H5I_DATASET) {
+        expect_own_storage(object.get(), path);
+        continue;
+      }
+      if (type != H5I_GROUP) throw StrangeFile(path + " is neither a group nor a dataset");
+      const bool is_new = seen.insert(address_of(object.get(), path, H5Oget_info2)).second;
+      if (!is_new) throw StrangeFile(path + " is a group that has two names, or is in itself");
+      if (group.depth == kDeepest) throw StrangeFile(path + " is too deep");
+      groups.push_back({path, group.depth + 1});
+    }
+  }
 }
 
 bool File::exists(const std::string& path) const {

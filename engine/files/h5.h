@@ -18,6 +18,13 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A file holds what no file of poesy does: more than its own bytes to be read, or a shape that is not a tree. what()
+/// is a clause that names the object, which a stranger may have named.
+class StrangeFile : public Error {
+ public:
+  using Error::Error;
+};
+
 template <class T>
 concept Element = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t> ||
     std::same_as<T, std::uint32_t> || std::same_as<T, std::uint8_t> || std::same_as<T, std::string>;
@@ -66,6 +73,12 @@ class File {
   /// Lets a scale name the positions along one axis of a dataset.
   void attach_scale(const std::string& dataset, std::size_t axis, const std::string& scale);
   void link(const std::string& existing, const std::string& second);  ///< Gives an object a second name (hard link).
+
+  /// Throws StrangeFile unless all that can be reached from the root is in this file: links are hard links, values are
+  /// neither in other files nor views of other datasets, and only HDF5's own filters unpack them; and unless groups
+  /// form a tree that is not deep, so that whoever follows links comes to an end. Looks at no value. To be called
+  /// before anything but the root's attributes is read of a file that a stranger may have made.
+  void expect_plain_tree() const;
 
   bool exists(const std::string& path) const;    ///< Whether there is an object.
   bool is_group(const std::string& path) const;  ///< Whether this object is a group.

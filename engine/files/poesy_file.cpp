@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,17 +11,21 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "engine/files/checkpoint.h"
+#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
 
 constexpr const char* kOther = "give a result file written by poesy";
+constexpr std::uintmax_t kMebibyte = std::uintmax_t{1} << 20U;
 
 bool is_checkpoint(const std::string& path) {
   std::array<char, kCheckpointMagic.size()> begin{};
@@ -108,7 +113,7 @@ void confine(rlim_t file_bytes) {
   ::dup2(nothing, STDOUT_FILENO);
   ::dup2(nothing, STDERR_FILENO);
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, kTrialSeconds + file_bytes / (1U << 20U));
+  limit(RLIMIT_CPU, kTrialSeconds + file_bytes / kMebibyte);
   if (const rlim_t had = address_space(); had > 0) limit(RLIMIT_AS, had + kTrialBytes + 16 * file_bytes);
 }
 
@@ -134,15 +139,23 @@ void send(const Descriptor& to, std::string_view text) {
   ::_exit(0);
 }
 
-/// What comes out of a pipe until its other end is closed.
-std::string receive(const Descriptor& from) {
+/// What comes out of a pipe until its other end is closed; none when that does not happen in this time. The time while
+/// this process is stopped does not count.
+std::optional<std::string> receive(const Descriptor& from, std::uintmax_t seconds) {
+  constexpr std::uintmax_t kInASecond = 10;
+  constexpr int kMilliseconds = 1000 / static_cast<int>(kInASecond);
   std::string text;
   std::array<char, 4096> part{};
-  for (;;) {
+  for (std::uintmax_t waited = 0; waited < seconds * kInASecond;) {
+    pollfd pipe{.fd = from.number(), .events = POLLIN, .revents = 0};
+    const int ready = ::poll(&pipe, 1, kMilliseconds);
+    if (ready == 0 || (ready < 0 && errno != EINTR)) ++waited;
+    if (ready <= 0) continue;
     const ssize_t bytes = ::read(from.number(), part.data(), part.size());
     if (bytes > 0) text.append(part.data(), static_cast<std::size_t>(bytes));
     if (bytes == 0 || (bytes < 0 && errno != EINTR)) return text;
   }
+  return std::nullopt;
 }
 
 /// The status of a child that ended; 0 where this process lets nobody know.
@@ -156,7 +169,7 @@ int status_of(pid_t child) {
 
 }  // namespace
 
-void trial_read(const std::string& path, const std::function<void()>& read) {
+void trial_read(const std::string& path, const std::function<void()>& read, unsigned long wait_seconds) {
   std::error_code ignored;
   const auto file_bytes = static_cast<rlim_t>(std::filesystem::file_size(path, ignored));
   std::array<int, 2> pipe{};
@@ -167,10 +180,17 @@ void trial_read(const std::string& path, const std::function<void()>& read) {
   if (child < 0) fail_to_start(path, errno);
   if (child == 0) live_as_child(to_parent, file_bytes, read);
   to_parent.close();
-  const std::string said = receive(from_child);
+  const std::uintmax_t seconds = wait_seconds + 2 * (file_bytes / kMebibyte);
+  const std::optional<std::string> said = receive(from_child, seconds);
+  if (!said) ::kill(child, SIGKILL);
   const int status = status_of(child);
-  if (said == kEndedWell) return;
-  if (!said.empty()) throw FileError("", said, "");
+  if (!said) {
+    throw FileError(path,
+                    fmt::format("cannot be read within {} s: it is damaged, or its disk does not answer", seconds),
+                    "try again, or take another copy");
+  }
+  if (*said == kEndedWell) return;
+  if (!said->empty()) throw FileError("", *said, "");
   const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
   throw FileError(path, slow ? "is damaged: reading it does not end" : "is damaged: reading it crashes",
                   kDamagedRemedy);
@@ -183,8 +203,9 @@ std::string text_attribute(const h5::File& file, const std::string& name) {
 }
 
 void check_readable(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw FileError(path, "is a folder", kOther);
+  if (const std::string_view other = other_than_file(path); !other.empty()) {
+    throw FileError(path, "is " + std::string(other), kOther);
+  }
   errno = 0;
   if (!std::ifstream(path)) {
     throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
@@ -198,6 +219,12 @@ h5::File open_poesy_file(const std::string& path) {
     throw FileError(path, "is an HDF5 file, but not a result of poesy", kOther);
   }
   check_version(path, file);
+  try {
+    file.expect_plain_tree();
+  } catch (const h5::StrangeFile& strange) {
+    throw FileError(path, printable(strange.what(), 300) + ", and a result is one tree that reads nothing but itself",
+                    "do not trust it; take another copy, or run the study again");
+  }
   return file;
 }
 

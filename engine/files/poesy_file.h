@@ -21,26 +21,30 @@ inline constexpr std::int64_t kMajorVersion = 1;
 /// From the first release on it grows with what older programs may pass over.
 inline constexpr std::int64_t kMinorVersion = 0;
 
-/// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, or of a newer major
-/// version; h5::Error when it is damaged in a way that HDF5 reports.
+/// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, of a newer major version,
+/// or not a plain tree (h5::File::expect_plain_tree): whoever reads it reads nothing else. Throws h5::Error when it is
+/// damaged in a way that HDF5 reports.
 h5::File open_poesy_file(const std::string& path);
 
 /// What to do about a damaged file.
 inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
 
 inline constexpr unsigned long kTrialSeconds = 5;         ///< processor time that a child may take to read a file
+inline constexpr unsigned long kTrialWaitSeconds = 9;     ///< time that it may take by the clock
 inline constexpr unsigned long kTrialBytes = 1UL << 28U;  ///< memory that it may take besides what the program has
 
 /// Calls read() in a child process, so that nothing that comes of it reaches this one; returns if it ended well there.
 ///
 /// HDF5 1.10 may crash, loop or ask for all memory over a damaged file before it reports an error, or spoil its own
 /// heap and crash later. The child is a copy of this process at this moment, so what ended well there ends well here.
-/// It may take kTrialSeconds of processor time and one more for each MiB of the file, and kTrialBytes of memory and 16
-/// more for each byte of the file (where /proc tells how much it has already); it says nothing to the terminal.
+/// It may take kTrialSeconds of processor time and one more for each MiB of the file, wait_seconds by the clock
+/// and two more for each MiB, and kTrialBytes of memory and 16 more for each byte of the file (where /proc tells how
+/// much it has already); it says nothing to the terminal.
 ///
 /// Throws FileError as read() did, FileError when the child did not come to an end of read(), or when there can be no
 /// child. Precondition: no other thread holds a lock that read() takes (the allocator's own may be held).
-void trial_read(const std::string& path, const std::function<void()>& read);
+void trial_read(const std::string& path, const std::function<void()>& read,
+                unsigned long wait_seconds = kTrialWaitSeconds);
 
 /// The root's attribute of this name, which holds one text.
 std::string text_attribute(const h5::File& file, const std::string& name);
@@ -51,7 +55,7 @@ std::string mechanism_text(const h5::File& file);
 /// Throws FileError, which says what it is instead, when the file's type is not this one.
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype);
 
-/// Throws FileError when there is no such file to read.
+/// Throws FileError when there is no such file to read. A FIFO or a device is none, and said at once.
 void check_readable(const std::string& path);
 
 /// Opens a file that poesy wrote and gives what `use(file)` gives. Because HDF5 fails over a damaged file in other ways

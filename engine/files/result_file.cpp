@@ -302,8 +302,8 @@ void write_result(const std::string& path, std::string_view name, const FileKind
                [&](ResultBuilder& result) { kind.write(result, study, found); });
 }
 
-void check_result_path(const std::string& path, std::span<const std::string> inputs) {
-  check_output_path(path, {"result", may_be_replaced}, inputs);
+std::string check_result_path(const std::string& path, std::span<const std::string> inputs) {
+  return check_output_path(path, {"result", may_be_replaced}, inputs);
 }
 
 StoredResult read_result(const std::string& path, FindFileKind find_kind) {

@@ -45,10 +45,10 @@ using FindFileKind = const FileKind* (*)(std::string_view name);
 void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
                   const SelectedPoses& poses, const std::any& found, const RunFacts& facts);
 
-/// Throws when no result file can come into being at this path, before anything is computed: InputError when its
-/// folder does not exist, when the file there is one of the inputs, or neither named like a result (.h5) nor an HDF5
-/// file, FileError when the folder cannot be written.
-void check_result_path(const std::string& path, std::span<const std::string> inputs = {});
+/// Gives the path to write to: where a symbolic link leads; else the path itself. Throws when no result file can come
+/// into being there, before anything is computed: InputError when its folder does not exist, when the file there is one
+/// of the inputs, or neither named like a result (.h5) nor an HDF5 file, FileError when the folder cannot be written.
+std::string check_result_path(const std::string& path, std::span<const std::string> inputs = {});
 
 /// A pose coordinate or response or factor as a result file names it.
 struct NamedUnit {

@@ -1,7 +1,5 @@
 #include "engine/study/text_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -28,10 +26,26 @@ constexpr std::size_t kMostCsvBytes = std::size_t{1} << 31;
 
 }  // namespace
 
-std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes) {
+std::string_view other_than_file(const std::string& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError({path}, "is a folder, not a " + std::string(what), "name a file");
+  switch (std::filesystem::status(path, ignored).type()) {
+    case std::filesystem::file_type::directory:
+      return "a folder";
+    case std::filesystem::file_type::fifo:
+      return "a FIFO";
+    case std::filesystem::file_type::character:
+    case std::filesystem::file_type::block:
+      return "a device";
+    case std::filesystem::file_type::socket:
+      return "a socket";
+    default:
+      return {};
+  }
+}
+
+std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes) {
+  if (const std::string_view other = other_than_file(path); !other.empty()) {
+    throw InputError({path}, "is " + std::string(other) + ", not a " + std::string(what), "name a file");
   }
   const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
   if (!file) unreadable(path, errno);
@@ -76,25 +90,6 @@ std::vector<CsvCell> CsvLines::next() {
     begin = end + 1;
   }
   return cells;
-}
-
-void put_at_second_name(const std::string& path, const std::string& second, LinkFile link_file) {
-  namespace fs = std::filesystem;
-  const std::string temporary = second + ".tmp";
-  std::error_code error;
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  if (link_file(path.c_str(), temporary.c_str()) != 0) {
-    fs::copy_file(path, temporary, fs::copy_options::overwrite_existing, error);
-  }
-  if (!error) fs::rename(temporary, second, error);
-  // Between two names of one file a rename does nothing, and a copy may have failed halfway.
-  fs::remove(temporary, ignored);
-  if (error) throw FileError(second, "cannot be put in place (" + error.message() + ")", "check the folder");
-}
-
-void put_at_second_name(const std::string& path, const std::string& second) {
-  put_at_second_name(path, second, ::link);
 }
 
 }  // namespace poesy

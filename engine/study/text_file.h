@@ -9,8 +9,12 @@
 
 namespace poesy {
 
+/// What there is at a path in place of a plain file: "a folder", "a FIFO", "a device", "a socket". Empty for a plain
+/// file, and where nothing can be looked at. Opens nothing: to open a FIFO is to wait for whoever writes to it.
+std::string_view other_than_file(const std::string& path);
+
 /// Reads a whole file. `what` names what it should be, for messages ("study").
-/// Throws InputError for a folder or a file of more than most_bytes, FileError when it cannot be read.
+/// Throws InputError for what is no plain file or has more than most_bytes, FileError when it cannot be read.
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes);
 
 /// One comma-separated part of a line, without the spaces around it.
@@ -23,8 +27,8 @@ struct CsvCell {
 /// mark and line ends of Windows are passed over.
 class CsvLines {
  public:
-  /// `what` names what the file should be, for messages ("table of poses"). Throws InputError for an empty file or a
-  /// folder, FileError when it cannot be read.
+  /// `what` names what the file should be, for messages ("table of poses"). Throws InputError for an empty file or
+  /// what is no plain file, FileError when it cannot be read.
   CsvLines(const std::string& path, std::string_view what);
   CsvLines(const CsvLines&) = delete;
   CsvLines& operator=(const CsvLines&) = delete;
@@ -40,14 +44,5 @@ class CsvLines {
   std::string_view rest_;
   std::size_t line_ = 0;
 };
-
-/// Gives a file a second name: POSIX link(), or what stands for it in a test. 0, or -1 and errno.
-using LinkFile = int (*)(const char* existing, const char* second);
-
-/// Puts the file at `path` at `second` as well, in place of what is there. `path` stays all the while, and `second`
-/// is replaced at once. A file system without hard links gets a copy. Throws FileError; then both are as they were.
-void put_at_second_name(const std::string& path, const std::string& second, LinkFile link_file);
-
-void put_at_second_name(const std::string& path, const std::string& second);  ///< The same with POSIX link().
 
 }  // namespace poesy

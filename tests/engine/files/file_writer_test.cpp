@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <regex>
+#include <set>
+
 #include "engine/base/error.h"
 #include "tests/support/temp_folder.h"
 
@@ -40,6 +43,82 @@ TEST(FileWriter, GivesTheRightsThatTheUmaskAllows) {
   struct stat facts {};
   ASSERT_EQ(::stat((folder / "f").c_str(), &facts), 0);
   EXPECT_EQ(facts.st_mode & 0777U, 0644U);
+}
+
+/// The only name in a folder.
+std::string only_name(const TempFolder& folder) {
+  EXPECT_EQ(files_in(folder.path()), 1U);
+  return std::filesystem::directory_iterator(folder.path())->path().filename().string();
+}
+
+TEST(FileWriter, HasATemporaryNameThatNobodyCanGuess) {
+  std::set<std::string> names;
+  for (int k = 0; k < 20; ++k) {
+    const TempFolder folder;
+    const FileWriter writer(folder / "f");
+    const std::string name = only_name(folder);
+    EXPECT_TRUE(std::regex_match(name, std::regex("f\\.tmp\\.[0-9a-f]{12}"))) << name;
+    names.insert(name);
+  }
+  EXPECT_EQ(names.size(), 20U);
+}
+
+TEST(FileWriter, ReplacesALinkAndLeavesWhatItLeadsTo) {
+  const TempFolder folder;
+  const std::string victim = folder.write("victim", "precious");
+  std::filesystem::create_symlink(victim, folder / "f");
+  write_text(folder / "f", "new");
+  EXPECT_EQ(read_bytes(victim), "precious");
+  EXPECT_FALSE(std::filesystem::is_symlink(folder / "f"));
+  EXPECT_EQ(read_bytes(folder / "f"), "new");
+}
+
+mode_t mode_of(const std::string& path) {
+  struct stat facts {};
+  EXPECT_EQ(::stat(path.c_str(), &facts), 0);
+  return facts.st_mode & 0777U;
+}
+
+TEST(FileWriter, KeepsThePermissionsOfWhatItReplaces) {
+  const TempFolder folder;
+  folder.write("like", "");
+  for (const mode_t mode : {0600U, 0640U, 0400U, 0666U}) {
+    write_bytes(folder / "f", "old");
+    ::chmod((folder / "f").c_str(), mode);
+    ::chmod((folder / "like").c_str(), 0604);
+    FileWriter writer(folder / "f", folder / "like");
+    writer.commit();
+    EXPECT_EQ(mode_of(folder / "f"), mode);
+    std::filesystem::remove(folder / "f");
+  }
+  FileWriter writer(folder / "f", folder / "like");
+  writer.commit();
+  EXPECT_EQ(mode_of(folder / "f"), 0604U);
+}
+
+TEST(LeftOver, IsRemovedAndNothingElse) {
+  const TempFolder folder;
+  for (const char* name : {"f", "f.tmp.0123456789ab", "f.tmp.ffffffffffff"}) folder.write(name, "x");
+  for (const char* name : {"f.tmp.012", "f.tmp.0123456789aX", "g.tmp.0123456789ab"}) folder.write(name, "x");
+  remove_left_over(folder / "f");
+  EXPECT_EQ(files_in(folder.path()), 4U);
+  EXPECT_FALSE(std::filesystem::exists(folder / "f.tmp.ffffffffffff"));
+  remove_left_over(folder / "no/such/folder");
+}
+
+TEST(OutputPath, IsWhereLinksEnd) {
+  const TempFolder folder;
+  const auto path_of = [&](const std::string& name) {
+    return check_output_path(folder / name, {"result", [](const std::string&) { return true; }}, {});
+  };
+  std::filesystem::create_directory(folder / "disk");
+  std::filesystem::create_symlink("disk/new", folder / "one");
+  std::filesystem::create_symlink(folder / "one", folder / "two");
+  std::filesystem::create_symlink("three", folder / "three");
+  EXPECT_EQ(path_of("plain"), folder / "plain");
+  EXPECT_EQ(path_of("one"), folder / "disk/new");
+  EXPECT_EQ(path_of("two"), folder / "disk/new");
+  EXPECT_THROW(path_of("three"), InputError);
 }
 
 TEST(FileWriter, RefusesAFolder) {

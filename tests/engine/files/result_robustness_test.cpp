@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 
 #include "engine/base/error.h"
 #include "engine/files/h5.h"
 #include "engine/files/result_file.h"
+#include "engine/files/shard_file.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
@@ -279,6 +281,81 @@ TEST(OlderResult, WithoutDescriptionsIsRead) {
   EXPECT_FALSE(stored.factors[0].name.empty());
   EXPECT_TRUE(stored.factors[0].description.empty());
   EXPECT_TRUE(stored.responses[0].description.empty());
+}
+
+/// What is said of a result in which `change` put something at /strange.
+std::string refusal_of(const std::function<void(hid_t file)>& change) {
+  const TempFolder folder;
+  const std::string path = folder / "r.h5";
+  Example().write_sensitivity(path);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  change(file);
+  H5Fclose(file);
+  const std::string of_verify = file_error([&] { verify_result(path); });
+  EXPECT_EQ(file_error([&] { read_result(path); }), of_verify);
+  EXPECT_EQ(file_error([&] { read_shard(path); }), of_verify);
+  EXPECT_NE(of_verify.find("a result is one tree that reads nothing but itself; do not trust it"), std::string::npos);
+  return of_verify;
+}
+
+/// A dataset of three bytes with these properties.
+void make_strange(hid_t file, hid_t properties) {
+  constexpr hsize_t kLength = 3;
+  const hid_t space = H5Screate_simple(1, &kLength, nullptr);
+  EXPECT_GE(H5Dclose(H5Dcreate2(file, "/strange", H5T_STD_U8LE, space, H5P_DEFAULT, properties, H5P_DEFAULT)), 0);
+  H5Sclose(space);
+  H5Pclose(properties);
+}
+
+TEST(StrangeResult, ThatReadsOtherFilesIsRefusedByName) {
+  expect_contains(refusal_of([](hid_t file) {
+                    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+                    H5Pset_external(properties, "/etc/passwd", 0, 3);
+                    make_strange(file, properties);
+                  }),
+                  "/strange has its values in other files (external storage)");
+  expect_contains(refusal_of([](hid_t file) {
+                    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+                    constexpr hsize_t kLength = 3;
+                    const hid_t space = H5Screate_simple(1, &kLength, nullptr);
+                    H5Pset_virtual(properties, space, "other.h5", "/x", space);
+                    H5Sclose(space);
+                    make_strange(file, properties);
+                  }),
+                  "/strange is a virtual dataset");
+  expect_contains(
+      refusal_of([](hid_t file) { H5Lcreate_external("other.h5", "/", file, "/strange", H5P_DEFAULT, H5P_DEFAULT); }),
+      "/strange is a link to another file");
+  expect_contains(refusal_of([](hid_t file) {
+                    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+                    constexpr hsize_t kChunk = 3;
+                    H5Pset_chunk(properties, 1, &kChunk);
+                    H5Pset_filter(properties, 32001, H5Z_FLAG_OPTIONAL, 0, nullptr);
+                    make_strange(file, properties);
+                  }),
+                  "/strange needs the filter 32001");
+}
+
+TEST(StrangeResult, ThatIsNoTreeIsRefusedByName) {
+  expect_contains(refusal_of([](hid_t file) { H5Lcreate_soft("/poses", file, "/strange", H5P_DEFAULT, H5P_DEFAULT); }),
+                  "/strange is a soft link");
+  expect_contains(
+      refusal_of([](hid_t file) { H5Lcreate_hard(file, "/", file, "/poses/strange", H5P_DEFAULT, H5P_DEFAULT); }),
+      "/poses/strange is a group that has two names, or is in itself");
+  expect_contains(refusal_of([](hid_t file) {
+                    const hid_t type = H5Tcopy(H5T_IEEE_F64LE);
+                    H5Tcommit2(file, "/strange", type, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+                    H5Tclose(type);
+                  }),
+                  "/strange is neither a group nor a dataset");
+  expect_contains(refusal_of([](hid_t file) {
+                    std::string path;
+                    for (int level = 0; level < 20; ++level) {
+                      path += "/strange";
+                      H5Gclose(H5Gcreate2(file, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+                    }
+                  }),
+                  "/strange is too deep");
 }
 
 TEST(DamagedResult, WithADatasetMissingIsRefused) {

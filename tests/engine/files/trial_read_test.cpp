@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -22,9 +23,9 @@ namespace {
 class TrialRead : public testing::Test {
  protected:
   /// What the FileError says that comes of reading so; empty when there is none.
-  std::string message(const std::function<void()>& read) const {
+  std::string message(const std::function<void()>& read, unsigned long wait_seconds = kTrialWaitSeconds) const {
     try {
-      trial_read(path_, read);
+      trial_read(path_, read, wait_seconds);
     } catch (const FileError& error) {
       return error.what();
     }
@@ -80,6 +81,24 @@ TEST_F(TrialRead, EndsWhatDoesNotEnd) {
     for (std::atomic<bool> ever{true}; ever;) {
     }
   });
+}
+
+TEST_F(TrialRead, EndsWhatWaitsForEver) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto wait = [] {
+    sigset_t all;
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, nullptr);
+    for (;;) ::pause();
+  };
+  const std::string found = message(wait, 1);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(found, path_ +
+                       ": cannot be read within 1 s: it is damaged, or its disk does not answer; try again, or take "
+                       "another copy");
+  EXPECT_GE(took.count(), 1.0);
+  EXPECT_LT(took.count(), 20.0);
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 
 TEST_F(TrialRead, HasSoMuchMemoryAndNoMore) {
