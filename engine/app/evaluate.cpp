@@ -19,6 +19,7 @@
 #include "engine/run/evaluation.h"
 #include "engine/run/run_options.h"
 #include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 #include "models/registry.h"
 
@@ -56,6 +57,17 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   return poses;
 }
 
+/// Keeps the outcomes within what a result holds, as a study's are (study_kind.h).
+void check_size(const EvaluateOptions& options, const PoseSet& poses, const ErrorTable& errors) {
+  if (options.paired) return;  // as many as were read
+  const double solves = static_cast<double>(poses.size()) * static_cast<double>(errors.rows);
+  if (solves <= static_cast<double>(kMostCells)) return;
+  throw InputError({options.errors},
+                   fmt::format("{} rows of errors at {} poses are {} solves, but a result holds at most {}",
+                               errors.rows, poses.size(), shortest(solves), kMostCells),
+                   "give fewer rows or poses, or --paired for row by row");
+}
+
 int evaluate(const EvaluateOptions& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
   if (study.mechanism.compared) {
@@ -69,6 +81,7 @@ int evaluate(const EvaluateOptions& options) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");
   }
+  check_size(options, poses.poses, errors);
   if (!options.result.empty()) {
     check_result_path(options.result, std::array{options.study, options.poses, options.errors});
   }

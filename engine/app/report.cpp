@@ -47,7 +47,7 @@ int report(const ReportOptions& options) {
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back(reported(result));
   write_text(path, html_report(kind_of(results.front().stored).report, results));
-  std::puts(path.c_str());
+  print(path + "\n");
   return kDone;
 }
 

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -61,7 +62,9 @@ void check_version(const std::string& path, const h5::File& file) {
   }
 }
 
-constexpr std::string_view kEndedWell = "+";  ///< all that such a child says; any other says what the FileError said
+/// What such a child says; any other says what the FileError said.
+constexpr std::string_view kEndedWell = "+";
+constexpr std::string_view kNoMemory = "-";
 
 /// A file descriptor.
 class Descriptor {
@@ -128,6 +131,8 @@ void send(const Descriptor& to, std::string_view text) {
     send(to, kEndedWell);
   } catch (const FileError& error) {
     send(to, error.what());
+  } catch (const std::bad_alloc&) {
+    send(to, kNoMemory);
   } catch (...) {
     // As good as a crash.
   }
@@ -154,6 +159,23 @@ int status_of(pid_t child) {
   return status;
 }
 
+/// For a child that ran out of memory: this process may have less than a sound file takes, or this is none.
+[[noreturn]] void refuse_for_memory(const std::string& path, rlim_t file_bytes) {
+  constexpr rlim_t kMega = 1'000'000;
+  const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;
+  rlimit limits{};
+  ::getrlimit(RLIMIT_AS, &limits);
+  if (limits.rlim_cur < most) {
+    throw FileError(path,
+                    fmt::format("cannot be read for want of memory: {} MB are enough, and this process may have {} MB",
+                                most / kMega + 1, limits.rlim_cur / kMega),
+                    "raise the limit (ulimit -v)");
+  }
+  throw FileError(path,
+                  fmt::format("is damaged, or there is too little memory: reading it takes over {} MB", most / kMega),
+                  kDamagedRemedy);
+}
+
 }  // namespace
 
 void trial_read(const std::string& path, const std::function<void()>& read) {
@@ -170,6 +192,7 @@ void trial_read(const std::string& path, const std::function<void()>& read) {
   const std::string said = receive(from_child);
   const int status = status_of(child);
   if (said == kEndedWell) return;
+  if (said == kNoMemory) refuse_for_memory(path, file_bytes);
   if (!said.empty()) throw FileError("", said, "");
   const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
   throw FileError(path, slow ? "is damaged: reading it does not end" : "is damaged: reading it crashes",
@@ -180,6 +203,13 @@ std::string text_attribute(const h5::File& file, const std::string& name) {
   const auto values = file.attribute<std::string>("/", name);
   if (values.size() != 1) throw h5::Error("attribute '" + name + "' is not one text");
   return values.front();
+}
+
+bool is_out_of_memory(const std::exception& error) {
+  // H5E_NOSPACE, and what H5MM_malloc and its users say.
+  const std::string_view text = error.what();
+  return text.find("memory allocation failed") != std::string_view::npos ||
+         text.find("No space available for allocation") != std::string_view::npos;
 }
 
 void check_readable(const std::string& path) {

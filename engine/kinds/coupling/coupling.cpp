@@ -106,6 +106,12 @@ class Composer {
     found_.sizes = study.sizes();
     found_.subsets = rows_.subsets.size();
     found_.poses = evaluation.poses;
+    // A list that grows has all its numbers twice while it is copied.
+    const std::size_t numbers = found_.responses * found_.sizes * found_.subsets * found_.poses;
+    for (std::vector<double>* curve : {&found_.effect, &found_.sum, &found_.interaction, &found_.worst_case,
+                                       &found_.root_sum_square, &found_.cancellation}) {
+      curve->reserve(numbers);
+    }
   }
 
   CouplingResult operator()() {
