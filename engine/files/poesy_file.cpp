@@ -171,8 +171,7 @@ int status_of(pid_t child) {
                                 most / kMega + 1, limits.rlim_cur / kMega),
                     "raise the limit (ulimit -v)");
   }
-  throw FileError(path,
-                  fmt::format("is damaged, or there is too little memory: reading it takes over {} MB", most / kMega),
+  throw FileError(path, fmt::format("is damaged: reading it takes more than {} MB of memory", most / kMega),
                   kDamagedRemedy);
 }
 
