@@ -64,7 +64,7 @@ void check_size(const EvaluateOptions& options, const PoseSet& poses, const Erro
   if (solves <= static_cast<double>(kMostCells)) return;
   throw InputError({options.errors},
                    fmt::format("{} rows of errors at {} poses are {} solves, but a result holds at most {}",
-                               errors.rows, poses.size(), shortest(solves), kMostCells),
+                               errors.rows, poses.size(), poses.size() * errors.rows, kMostCells),
                    "give fewer rows or poses, or --paired for row by row");
 }
 

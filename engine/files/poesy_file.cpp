@@ -159,20 +159,17 @@ int status_of(pid_t child) {
   return status;
 }
 
-/// For a child that ran out of memory: this process may have less than a sound file takes, or this is none.
-[[noreturn]] void refuse_for_memory(const std::string& path, rlim_t file_bytes) {
+/// Throws where this process may have less memory than the child of a sound file takes. Without memory HDF5 may crash.
+void refuse_for_little_memory(const std::string& path, rlim_t file_bytes) {
   constexpr rlim_t kMega = 1'000'000;
   const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;
   rlimit limits{};
   ::getrlimit(RLIMIT_AS, &limits);
-  if (limits.rlim_cur < most) {
-    throw FileError(path,
-                    fmt::format("cannot be read for want of memory: {} MB are enough, and this process may have {} MB",
-                                most / kMega + 1, limits.rlim_cur / kMega),
-                    "raise the limit (ulimit -v)");
-  }
-  throw FileError(path, fmt::format("is damaged: reading it takes more than {} MB of memory", most / kMega),
-                  kDamagedRemedy);
+  if (limits.rlim_cur >= most) return;
+  throw FileError(path,
+                  fmt::format("cannot be read for want of memory: {} MB are enough, and this process may have {} MB",
+                              most / kMega + 1, limits.rlim_cur / kMega),
+                  "raise the limit (ulimit -v)");
 }
 
 }  // namespace
@@ -191,9 +188,11 @@ void trial_read(const std::string& path, const std::function<void()>& read) {
   const std::string said = receive(from_child);
   const int status = status_of(child);
   if (said == kEndedWell) return;
-  if (said == kNoMemory) refuse_for_memory(path, file_bytes);
-  if (!said.empty()) throw FileError("", said, "");
+  if (!said.empty() && said != kNoMemory) throw FileError("", said, "");
   const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+  if (!slow) refuse_for_little_memory(path, file_bytes);
+  if (said == kNoMemory)
+    throw FileError(path, "is damaged: reading it takes more memory than a result", kDamagedRemedy);
   throw FileError(path, slow ? "is damaged: reading it does not end" : "is damaged: reading it crashes",
                   kDamagedRemedy);
 }
