@@ -24,6 +24,7 @@
 #include "engine/run/evaluation.h"
 #include "engine/run/run_options.h"
 #include "engine/study/study_file.h"
+#include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 #include "models/registry.h"
 
@@ -80,6 +81,17 @@ int print_frames(const EvaluateOptions& options, const Model& model, const PoseS
   return kDone;
 }
 
+/// Keeps the outcomes within what a result holds, as a study's are (study_kind.h).
+void check_size(const EvaluateOptions& options, const PoseSet& poses, const ErrorTable& errors) {
+  if (options.paired) return;  // as many as were read
+  const double solves = static_cast<double>(poses.size()) * static_cast<double>(errors.rows);
+  if (solves <= static_cast<double>(kMostCells)) return;
+  throw InputError({options.errors},
+                   fmt::format("{} rows of errors at {} poses are {} solves, but a result holds at most {}",
+                               errors.rows, poses.size(), poses.size() * errors.rows, kMostCells),
+                   "give fewer rows or poses, or --paired for row by row");
+}
+
 int evaluate(const EvaluateOptions& options) {
   const Study study = read_study(options.study, registry(), StudyUse::evaluate);
   if (study.mechanism.compared) {
@@ -94,6 +106,7 @@ int evaluate(const EvaluateOptions& options) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");
   }
+  check_size(options, poses.poses, errors);
   std::string path;  // of the result; empty: none is kept
   std::optional<RunLock> lock;
   if (!options.result.empty()) {

@@ -1,7 +1,6 @@
-#include <cstdio>
-
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
+#include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/kinds/result_file.h"
 
@@ -15,7 +14,7 @@ struct ExportOptions {
 
 int export_result(const ExportOptions& options) {
   const StoredResult result = read_result_with_warning(options.result);
-  for (const std::string& file : export_tables(result, options.folder)) std::puts(file.c_str());
+  for (const std::string& file : export_tables(result, options.folder)) print(file + "\n");
   return kDone;
 }
 
@@ -25,7 +24,7 @@ int verify(const std::string& path) {
     throw FileError(path, "content hash " + hashes.computed + " does not match the stored " + hashes.stored,
                     "the file was changed or damaged; run the study again");
   }
-  std::printf("%s: content_sha256 %s matches\n", path.c_str(), hashes.computed.c_str());
+  print(path + ": content_sha256 " + hashes.computed + " matches\n");
   return kDone;
 }
 

@@ -25,7 +25,7 @@ constexpr std::array kExitCodes{
     Entry{"0", "done"},
     Entry{"1", "internal error; please report it"},
     Entry{"2", "bad command line, study or data; nothing is written"},
-    Entry{"3", "a file cannot be read, written or trusted"},
+    Entry{"3", "a file cannot be read, written or trusted, or memory is too little"},
     Entry{"4", "interrupted: poesy run goes on with --resume, poesy evaluate wrote nothing"},
     Entry{"5", "done and the result kept, but more samples failed to converge than the study allows"},
     Entry{"6", "done and the result kept, but a limit that the study states is not kept; 5 goes before it"}};

@@ -38,7 +38,7 @@ int merge(const MergeOptions& options) {
   const std::string path = check_result_path(options.result, options.shards);
   const RunLock lock(path);
   std::vector<StoredShard> shards;
-  for (const std::string& path : options.shards) shards.push_back(read_shard(path));
+  for (const std::string& shard : options.shards) shards.push_back(read_shard(shard));
   std::vector<Bytes> merged = merge_shards(shards);
   const StoredShard& first = shards.front();
   const StoredStudy whole = stored_study(first, registry());

@@ -53,7 +53,7 @@ int report(const ReportOptions& options) {
   } else if (write_pdf(path, page, browser) == Printed::interrupted) {
     return complain("interrupted: " + path + " is not written", kInterrupted);
   }
-  std::puts(path.c_str());
+  print(path + "\n");
   return kDone;
 }
 

@@ -196,10 +196,10 @@ void check_path_beside(const std::string& result, const std::string& study_path)
 }
 
 std::optional<RunOutcome> run_to_file(const Job& job) {
-  const std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
+  std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
   if (!job.checkpoints().complete()) return std::nullopt;
   const bool writes = job.options.team == nullptr || job.options.team->leads();
-  if (writes && result) write_result(job.path, job.study, job.poses, result->found, outcome_of(job).facts);
+  if (writes && result) write_result(job.path, job.study, job.poses, std::move(result->found), outcome_of(job).facts);
   RunOutcome outcome = outcome_of(job);
   if (result) {
     outcome.verdicts = result->verdicts;

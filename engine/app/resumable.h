@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -114,6 +115,8 @@ class ResumableRun {
       if (!no_room_ && checkpoints_) checkpoints_->save();
     } catch (const FileError&) {
       // The message of the first trouble counts.
+    } catch (const std::bad_alloc&) {
+      // Nor has a checkpoint room in memory.
     }
     if (files_.exist()) {
       say(Message::note, "the work up to the last checkpoint is kept in " + files_.newer() +

@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <new>
 #include <string_view>
 
 #include "engine/app/mpi_ranks.h"
 #include "engine/base/error.h"
+#include "engine/base/printable_lines.h"
 #include "engine/base/units.h"
 #include "engine/report/table.h"
 
@@ -60,9 +62,11 @@ std::size_t output_width() {
   return width && *width >= 1.0 && *width < 1e6 ? static_cast<std::size_t>(*width) : kUsualWidth;
 }
 
-void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+void print(const std::string& text) { std::fputs(printable_lines(text).c_str(), stdout); }
 
-void say(Message kind, const std::string& text) { std::fputs((beginning(kind) + " " + text + "\n").c_str(), stderr); }
+void say(Message kind, const std::string& text) {
+  std::fputs((beginning(kind) + " " + printable_lines(text) + "\n").c_str(), stderr);
+}
 
 int complain(const std::string& problem, ExitCode code) {
   if (is_first_process()) say(Message::error, problem);
@@ -76,6 +80,10 @@ int exit_code_of(const std::function<int()>& action) {
     return complain(error.what(), kBadInput);
   } catch (const FileError& error) {
     return complain(error.what(), kFileTrouble);
+  } catch (const std::bad_alloc&) {
+    return complain(
+        "there is not enough memory for this; end other programs, raise the limit (ulimit -v), or ask for less",
+        kFileTrouble);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what() + "; please report it", kInternalError);
   }

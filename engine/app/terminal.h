@@ -32,13 +32,13 @@ bool shows_live_lines(int descriptor);
 /// no terminal has room for any line.
 std::size_t output_width();
 
-/// Text on stdout, as it is.
+/// Text on stdout, without control characters but line ends and tabs: it may quote a file (printable_lines).
 void print(const std::string& text);
 
 enum class Message { note, warning, error };
 
-/// One line on stderr: "poesy: TEXT", "poesy: warning: TEXT". What is before the text of a warning or an error is
-/// coloured where stderr is a terminal that shows live lines, unless NO_COLOR is set (https://no-color.org).
+/// One line on stderr, as print(): "poesy: TEXT", "poesy: warning: TEXT". What is before the text of a warning or error
+/// is coloured where stderr is a terminal that shows live lines, unless NO_COLOR is set (https://no-color.org).
 void say(Message kind, const std::string& text);
 
 /// Says what is wrong on stderr; the code. Under a launcher the first process alone speaks, because all have the same

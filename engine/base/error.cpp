@@ -1,5 +1,7 @@
 #include "engine/base/error.h"
 
+#include "engine/base/printable_lines.h"
+
 namespace poesy {
 namespace {
 
@@ -11,7 +13,7 @@ std::string sentence(const std::string& place, std::string_view problem, std::st
     text += "; ";
     text += remedy;
   }
-  return text;
+  return printable_lines(text);  // names of files and words of users, who may have put a NUL or an escape in
 }
 
 }  // namespace

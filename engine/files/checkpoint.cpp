@@ -115,6 +115,13 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
         "give the study of that mechanism");
   check(checkpoint.seed == run.seed, fmt::format("has seed {}, and this run has {}", checkpoint.seed, run.seed),
         "give the same seed");
+  const auto adaptive = [](const CheckpointIdentity& identity) {
+    return identity.study.find("\nsamples.min = ") != std::string::npos;
+  };
+  check(adaptive(checkpoint) == adaptive(run),
+        adaptive(run) ? "has a fixed number of samples, and this study takes as many as it needs"
+                      : "takes as many samples as it needs, and this study a fixed number",
+        "give the samples as they were");
   const auto [there, here] = first_difference(checkpoint.study, run.study);
   check(checkpoint.study == run.study,
         fmt::format("is of another study: it has {} where this study has {}", there, here), "give the study as it was");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/files/file_writer.h"
 
@@ -34,20 +35,32 @@ std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_
 }
 
 std::string line_of_names(const CsvTable& table) {
-  std::string text = table.first.heading;
-  for (const CsvColumn& column : table.columns) text += "," + column.heading;
-  if (!table.last.heading.empty()) text += "," + table.last.heading;
+  std::string text = csv_cell(table.first.heading);
+  for (const CsvText& more : table.more) text += "," + csv_cell(more.heading);
+  for (const CsvColumn& column : table.columns) text += "," + csv_cell(column.heading);
+  if (!table.last.heading.empty()) text += "," + csv_cell(table.last.heading);
   return text + "\n";
 }
 
 std::string line_text(const CsvTable& table, std::size_t line) {
-  std::string text = table.first.text(line);
+  std::string text = csv_cell(table.first.text(line));
+  for (const CsvText& more : table.more) text += "," + csv_cell(more.text(line));
   for (const CsvColumn& column : table.columns) text += "," + cell(column.number(line));
-  if (!table.last.heading.empty()) text += "," + table.last.text(line);
+  if (!table.last.heading.empty()) text += "," + csv_cell(table.last.text(line));
   return text + "\n";
 }
 
 }  // namespace
+
+std::string csv_cell(std::string_view text) {
+  std::string cell = printable(text, std::string_view::npos);
+  const bool formula = !cell.empty() && std::string_view("=+-@").find(cell.front()) != std::string_view::npos;
+  if (formula && !parse_number(cell)) cell.insert(0, 1, '\'');
+  if (cell.find_first_of(",;\"") == std::string::npos) return cell;
+  std::string quoted = "\"";
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
 
 std::string with_unit(const std::string& name, const std::string& unit) {
   return unit == "1" ? name : name + " [" + unit + "]";

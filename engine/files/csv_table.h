@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/files/fields.h"
@@ -11,10 +12,10 @@
 /// CSV files as plain values. They refer to the result that they show.
 namespace poesy {
 
-/// A text for each line of a CSV file.
+/// A text for each line of a CSV file; written as csv_cell() says.
 struct CsvText {
-  std::string heading;                                ///< as it is written
-  std::function<std::string(std::size_t line)> text;  ///< as it is written
+  std::string heading;                                ///< of the column
+  std::function<std::string(std::size_t line)> text;  ///< of one cell
 };
 
 /// A number for each line of a CSV file.
@@ -26,15 +27,21 @@ struct CsvColumn {
 /// A CSV file: in the first line the names of the columns, then one line for each thing.
 struct CsvTable {
   std::string name;                                ///< of the file, without ".csv"
-  CsvText first;                                   ///< the first cell of a line, or its first cells with their commas
+  CsvText first;                                   ///< the first cell of a line
   std::size_t lines = 0;                           ///< without the names
   std::vector<CsvColumn> columns = {};             ///< NaN is written as "NaN", a count with all its digits
   CsvText last = {};                               ///< a cell after the numbers; none where it has no heading
   std::function<bool(std::size_t line)> has = {};  ///< whether the file has this line; all where empty
+  std::vector<CsvText> more = {};                  ///< cells between the first one and the numbers
 };
 
 /// Several, in the order in which they are listed.
 using CsvTables = std::vector<CsvTable>;
+
+/// A text as a cell of a CSV file has it (RFC 4180): in quotes where it holds a comma, a semicolon or a quote, which is
+/// doubled then; "?" for control characters, line ends among them. In front of a text that begins with = + - or @ an
+/// apostrophe is put, because spreadsheets take such a text for a formula, in quotes as well.
+std::string csv_cell(std::string_view text);
 
 /// "name [unit]", or the name alone for a pure number.
 std::string with_unit(const std::string& name, const std::string& unit);

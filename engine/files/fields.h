@@ -281,9 +281,9 @@ void write_columns(ResultBuilder& result, const std::string& group, const Fields
   for (const FieldRow<Thing>& field : fields) write_field(result, group, field, std::span(things));
 }
 
-/// Makes the group with all its rows, and shows their axes in it.
-template <class Found>
-void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found) {
+/// Makes the group with all its rows, and shows their axes in it. after_field(field): called when one is written.
+template <class Found, class AfterField>
+void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found, const AfterField& after_field) {
   h5::File& file = result.file();
   file.make_group(group.path);
   file.set_attribute(group.path, "description", group.description);
@@ -292,7 +292,27 @@ void write_group(ResultBuilder& result, const Group<Found>& group, const Found& 
   }
   for (const FieldRow<Found>& field : group.fields) {
     if (write_field(result, group.path, field, std::span(&found, 1))) result.show_axes(group.path, field.axes);
+    after_field(field);
   }
+}
+
+/// The same, keeping what is found.
+template <class Found>
+void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found) {
+  write_group(result, group, found, [](const FieldRow<Found>&) {});
+}
+
+/// The same, emptying every list that was written: a result and its file need not be in memory both. Members that are
+/// no rows stay.
+template <class Found>
+void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found) {
+  write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) {
+    const auto empty = [&](auto member) {
+      using Value = std::remove_cvref_t<decltype(found.*member)>;
+      if constexpr (detail::kIsList<Value>) found.*member = Value();
+    };
+    std::visit(empty, field.member);
+  });
 }
 
 /// Fills in the members of these rows in as many things as were written. Throws h5::Error where a dataset is missing or

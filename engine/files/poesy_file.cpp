@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -66,7 +67,9 @@ void check_version(const std::string& path, const h5::File& file) {
   }
 }
 
-constexpr std::string_view kEndedWell = "+";  ///< all that such a child says; any other says what the FileError said
+/// What such a child says; any other says what the FileError said.
+constexpr std::string_view kEndedWell = "+";
+constexpr std::string_view kNoMemory = "-";
 
 /// A file descriptor.
 class Descriptor {
@@ -133,6 +136,8 @@ void send(const Descriptor& to, std::string_view text) {
     send(to, kEndedWell);
   } catch (const FileError& error) {
     send(to, error.what());
+  } catch (const std::bad_alloc&) {
+    send(to, kNoMemory);
   } catch (...) {
     // As good as a crash.
   }
@@ -167,6 +172,19 @@ int status_of(pid_t child) {
   return status;
 }
 
+/// Throws where this process may have less memory than the child of a sound file takes. Without memory HDF5 may crash.
+void refuse_for_little_memory(const std::string& path, rlim_t file_bytes) {
+  constexpr rlim_t kMega = 1'000'000;
+  const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;
+  rlimit limits{};
+  ::getrlimit(RLIMIT_AS, &limits);
+  if (limits.rlim_cur >= most) return;
+  throw FileError(path,
+                  fmt::format("cannot be read for want of memory: {} MB are enough, and this process may have {} MB",
+                              most / kMega + 1, limits.rlim_cur / kMega),
+                  "raise the limit (ulimit -v)");
+}
+
 }  // namespace
 
 void trial_read(const std::string& path, const std::function<void()>& read, unsigned long wait_seconds) {
@@ -190,8 +208,11 @@ void trial_read(const std::string& path, const std::function<void()>& read, unsi
                     "try again, or take another copy");
   }
   if (*said == kEndedWell) return;
-  if (!said->empty()) throw FileError("", *said, "");
+  if (!said->empty() && *said != kNoMemory) throw FileError("", *said, "");
   const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+  if (!slow) refuse_for_little_memory(path, file_bytes);
+  if (*said == kNoMemory)
+    throw FileError(path, "is damaged: reading it takes more memory than a result", kDamagedRemedy);
   throw FileError(path, slow ? "is damaged: reading it does not end" : "is damaged: reading it crashes",
                   kDamagedRemedy);
 }
@@ -200,6 +221,13 @@ std::string text_attribute(const h5::File& file, const std::string& name) {
   const auto values = file.attribute<std::string>("/", name);
   if (values.size() != 1) throw h5::Error("attribute '" + name + "' is not one text");
   return values.front();
+}
+
+bool is_out_of_memory(const std::exception& error) {
+  // H5E_NOSPACE, and what H5MM_malloc and its users say.
+  const std::string_view text = error.what();
+  return text.find("memory allocation failed") != std::string_view::npos ||
+         text.find("No space available for allocation") != std::string_view::npos;
 }
 
 void check_readable(const std::string& path) {

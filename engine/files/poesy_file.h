@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -41,8 +43,10 @@ inline constexpr unsigned long kTrialBytes = 1UL << 28U;  ///< memory that it ma
 /// and two more for each MiB, and kTrialBytes of memory and 16 more for each byte of the file (where /proc tells how
 /// much it has already); it says nothing to the terminal.
 ///
-/// Throws FileError as read() did, FileError when the child did not come to an end of read(), or when there can be no
-/// child. Precondition: no other thread holds a lock that read() takes (the allocator's own may be held).
+/// Throws FileError as read() did, FileError that says so where read() ran out of memory (std::bad_alloc), because this
+/// process may not take as much or because the file asks for more; FileError when the child did not come to an end of
+/// read(), or when there can be no child. Precondition: no other thread holds a lock that read() takes (the allocator's
+/// own may be held).
 void trial_read(const std::string& path, const std::function<void()>& read,
                 unsigned long wait_seconds = kTrialWaitSeconds);
 
@@ -54,6 +58,9 @@ std::string mechanism_text(const h5::File& file);
 
 /// Throws FileError, which says what it is instead, when the file's type is not this one.
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype);
+
+/// Whether HDF5 failed for want of memory.
+bool is_out_of_memory(const std::exception& error);
 
 /// Throws FileError when there is no such file to read. A FIFO or a device is none, and said at once.
 void check_readable(const std::string& path);
@@ -68,8 +75,12 @@ auto with_poesy_file(const std::string& path, const Use& use) {
       return use(file);
     } catch (const FileError&) {
       throw;
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& error) {
-      // Besides h5::Error: an empty list where a value should be, a shape too large for memory. It may quote the file.
+      // Besides h5::Error: an empty list where a value should be, a shape too large for any list. It may quote the
+      // file.
+      if (is_out_of_memory(error)) throw std::bad_alloc();
       throw FileError(path, "is damaged: " + printable(error.what(), 300), kDamagedRemedy);
     }
   };

@@ -224,6 +224,7 @@ void compose_file(const std::string& path, std::string_view filetype, std::strin
     writer.write(image);
     writer.commit();
   } catch (const h5::Error& error) {
+    if (is_out_of_memory(error)) throw std::bad_alloc();
     throw FileError(path, std::string("cannot be composed: ") + error.what(), "report this as a bug of poesy");
   }
 }
@@ -297,7 +298,7 @@ CsvTable pose_table(const StoredResult& result) {
 const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
 
 void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
-                  const SelectedPoses& poses, const std::any& found, const RunFacts& facts) {
+                  const SelectedPoses& poses, std::any found, const RunFacts& facts) {
   compose_file(path, kResultFile, name, study, poses, facts,
                [&](ResultBuilder& result) { kind.write(result, study, found); });
 }

@@ -28,8 +28,9 @@ struct StoredResult;
 
 /// How files keep what a kind of study found: a row for each kind.
 struct FileKind {
-  /// Adds the names of errors and responses (add_names), and the kind's groups. found: of the type that the kind finds.
-  void (*write)(ResultBuilder& result, const Study& study, const std::any& found);
+  /// Adds the names of errors and responses (add_names), and the kind's groups. found: of the type that the kind finds;
+  /// lists that were written may be emptied, so that there is not twice as much in memory.
+  void (*write)(ResultBuilder& result, const Study& study, std::any& found);
   /// Fills in StoredResult::found, and of the header what the kind's files have. The rest of the header is there.
   void (*read)(const h5::File& file, StoredResult& result);
   /// Appends the tables that `poesy export` writes, all but that of the poses.
@@ -43,7 +44,7 @@ using FindFileKind = const FileKind* (*)(std::string_view name);
 /// all under its name: written beside it under a temporary name, synced, renamed. Throws FileError and leaves an
 /// existing file as it was.
 void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
-                  const SelectedPoses& poses, const std::any& found, const RunFacts& facts);
+                  const SelectedPoses& poses, std::any found, const RunFacts& facts);
 
 /// Gives the path to write to: where a symbolic link leads; else the path itself. Throws when no result file can come
 /// into being there, before anything is computed: InputError when its folder does not exist, when the file there is one

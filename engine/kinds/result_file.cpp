@@ -1,15 +1,16 @@
 #include "engine/kinds/result_file.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/kinds/registry.h"
 
 namespace poesy {
 
-void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const std::any& found,
+void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, std::any found,
                   const RunFacts& facts) {
-  write_result(path, study.analysis.kind->name, kind_of(study).file, study, poses, found, facts);
+  write_result(path, study.analysis.kind->name, kind_of(study).file, study, poses, std::move(found), facts);
 }
 
 StoredResult read_result(const std::string& path) {

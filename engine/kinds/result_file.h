@@ -11,10 +11,10 @@
 /// What is done with the results of every kind of study.
 namespace poesy {
 
-/// Writes the result of a study. found: of the type that its kind finds. The file appears whole or not at all under its
-/// name: written beside it under a temporary name, synced, renamed. Throws FileError and leaves an existing file as it
-/// was.
-void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, const std::any& found,
+/// Writes the result of a study. found: of the type that its kind finds; moved here, its lists go as they are written.
+/// The file appears whole or not at all under its name: written beside it under a temporary name, synced, renamed.
+/// Throws FileError and leaves an existing file as it was.
+void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, std::any found,
                   const RunFacts& facts);
 
 /// Reads a result file. Throws FileError when it is not one, or of a newer major version. One that was changed since it

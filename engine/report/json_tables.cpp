@@ -1,5 +1,7 @@
 #include "engine/report/tables.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -83,7 +85,25 @@ Json ranked_json(const RankedResult& ranked) {
   return all;
 }
 
-std::string text_of(const Json& all) { return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+/// The library escapes control characters below U+0020. Terminals obey those from U+007F to U+009F as well.
+std::string text_of(const Json& all) {
+  const std::string json = all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text;
+  text.reserve(json.size());
+  for (std::size_t k = 0; k < json.size(); ++k) {
+    const auto byte = static_cast<unsigned char>(json[k]);
+    const unsigned char next = k + 1 < json.size() ? static_cast<unsigned char>(json[k + 1]) : 0;
+    if (byte == 0x7F) {
+      text += "\\u007f";
+    } else if (byte == 0xC2 && next < 0xA0) {
+      text += fmt::format("\\u{:04x}", next);
+      ++k;
+    } else {
+      text += json[k];
+    }
+  }
+  return text;
+}
 
 }  // namespace
 

@@ -201,7 +201,11 @@ std::array<std::uint64_t, 6> EvaluationProgress::sizes() const {
 }
 
 Bytes EvaluationProgress::state() const {
+  const std::size_t numbers = (result_->responses + result_->details) * sizeof(double);
+  constexpr std::size_t kNumbersOfSolve = 4;  // status and iterations: three bytes nearly always
+  constexpr std::size_t kHead = 100;
   ByteWriter to;
+  to.reserve(kHead + (outcomes(next_) - outcomes(blocks_.first)) * (numbers + kNumbersOfSolve));
   for (const std::uint64_t number : sizes()) to.number(number);
   to.number(blocks_.first);
   to.number(next_);

@@ -74,8 +74,11 @@ bool StudyValue::yes_or_no() const {
 }
 
 std::string StudyValue::text() const {
-  if (const auto* text = node_->as_string()) return text->get();
-  wrong_type("write a text in quotes");
+  const auto* text = node_->as_string();
+  if (text == nullptr) wrong_type("write a text in quotes");
+  // The system takes the name of a file up to its first NUL, and would open another one.
+  if (text->get().find('\0') != std::string::npos) fail("holds a NUL character", "remove it");
+  return text->get();
 }
 
 std::int64_t StudyValue::whole_number(std::int64_t least, std::int64_t most) const {

@@ -6,6 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/study/study_kind.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 namespace {
@@ -369,9 +370,8 @@ std::string template_limits(const TemplateLines& lines, const ModelDescription& 
 std::string read_name(const StudySection& section, std::span<const std::string_view> taken, const std::string& usual) {
   const auto value = section.find("name");
   const std::string name = value ? value->text() : usual;
-  if (value && (name.empty() || name.find_first_of(",;\"\n\r\t") != std::string::npos)) {
-    value->fail("is '" + printable(name) + "'",
-                "a name is plain text without commas and quotes, for it stands in tables");
+  if (const auto problem = value ? label_problem(name) : std::nullopt) {
+    value->fail("is '" + printable(name) + "', which " + *problem, kLabelRule);
   }
   if (std::ranges::find(taken, name) == taken.end()) return name;
   if (value) value->fail("is '" + printable(name) + "', which another one has", "give each a name of its own");

@@ -107,7 +107,12 @@ ClosureStart::ClosureStart(const Geometry& geometry, const Configuration& nomina
   from_residual_ = is_singular(factors) ? Matrix6::Zero() : Matrix6(-factors.inverse());
   Matrix6 swapped;
   swapped << equations.jacobian.rightCols<3>(), equations.jacobian.leftCols<3>();
-  const auto places = Eigen::PartialPivLU<Matrix6>(swapped).permutationP().indices();
+  const Eigen::PartialPivLU<Matrix6> eliminated(swapped);
+  if (!is_singular(factors)) {
+    orientation_ = std::copysign(1.0, factors.determinant());
+    pivot_sign_ = std::copysign(1.0, eliminated.matrixLU().diagonal().prod());
+  }
+  const auto places = eliminated.permutationP().indices();
   for (std::size_t n = 0; n < order_.size(); ++n) {
     order_[n] = static_cast<std::size_t>(places[static_cast<Eigen::Index>(n)]);
   }
@@ -122,8 +127,8 @@ PlatformMotion ClosureStart::operator()(const std::array<LimbWithErrors, kLimbs>
 
 double rounding_level(const Vector3& r) { return 64.0 * kEpsilon * std::max(1.0, r.norm()); }
 
-Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, const SolverOptions& options,
-                    PlatformMotion& motion, const ClosureObserver& observe) {
+Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r, double orientation,
+                    const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe) {
   const double rounding = rounding_level(r);
   Equations equations;
   double smallest = std::numeric_limits<double>::infinity();
@@ -138,8 +143,11 @@ Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vecto
     motion.dr += step.tail<3>();
     if (observe) observe({equations.residual, step});
     const double change = step.cwiseAbs().maxCoeff();
-    if (change < options.tolerance) return {SolveStatus::converged, done};
-    if (change <= rounding && change >= smallest) return {SolveStatus::stagnated, done};
+    const bool converged = change < options.tolerance;
+    if (converged || (change <= rounding && change >= smallest)) {
+      if (factors.determinant() * orientation < 0.0) return {SolveStatus::singular, done};
+      return {converged ? SolveStatus::converged : SolveStatus::stagnated, done};
+    }
     smallest = std::min(smallest, change);
   }
   return {SolveStatus::iteration_cap, static_cast<std::uint32_t>(options.max_iterations)};
@@ -182,6 +190,7 @@ void ClosureSolver::prepare(const Configuration& nominal, const SampleBlock& sam
   Eigen::Map<Vector3>(pose_.tool) = tool(geometry_, nominal.platform.R);
   Eigen::Map<RowMajor6>(pose_.start) = start.from_residual();
   std::ranges::copy(start.elimination_order(), pose_.row);
+  pose_.pivot_sign = start.pivot_sign();
   kernel_options_ = {options_.tolerance, rounding_level(nominal.platform.p),
                      static_cast<std::uint32_t>(std::max(options_.max_iterations, 0))};
 }
@@ -204,7 +213,7 @@ void close_sample(const Geometry& geometry, const Configuration& nominal, const 
                   const OutcomeBlock& outcomes, const ClosureObserver& observe) {
   const auto limbs = limbs_of_sample(geometry, nominal, samples, sample);
   PlatformMotion motion = start(limbs);
-  const Closing closing = close_limbs(limbs, nominal.platform.p, options, motion, observe);
+  const Closing closing = close_limbs(limbs, nominal.platform.p, start.orientation(), options, motion, observe);
   const Vector3 to_tip = tool(geometry, nominal.platform.R);
   const std::array<Vector3, 3> vectors{lie::log(motion.E), motion.dr, motion.dr + (motion.E * to_tip - to_tip)};
   for (std::size_t n = 0; n < vectors.size(); ++n) {

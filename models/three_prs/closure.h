@@ -53,11 +53,17 @@ class ClosureStart {
   /// Order of the equations in which partial pivoting eliminates [dr; delta]: equation n stands at the n-th place
   /// named.
   const std::array<std::size_t, 6>& elimination_order() const { return order_; }
+  /// Sign of the Jacobian's determinant without errors and motion, as 1.0 or -1.0; 0 at a singular pose.
+  double orientation() const { return orientation_; }
+  /// Sign of the product of the pivots in that order; 0 likewise.
+  double pivot_sign() const { return pivot_sign_; }
 
  private:
   lie::Vector3<double> r_;
   lie::Matrix6<double> from_residual_;
   std::array<std::size_t, 6> order_;
+  double orientation_ = 0.0;
+  double pivot_sign_ = 0.0;
 };
 
 /// Below which a change (rad, m) may be rounding: 64 eps x max(1, |r|).
@@ -82,10 +88,13 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///   converged      when c_j is below the tolerance;
 ///   stagnated      when c_j is at rounding level, 64 eps x max(1, |r|), and not below the smallest c so far;
 ///   iteration_cap  when j is the allowed number of iterations;
-///   singular       when a pivot of the Jacobian falls to rounding;
+///   singular       when a pivot of the Jacobian falls to rounding, or when the solve has come to rest where the
+///                  determinant of the Jacobian has the other sign: no way leads there from the nominal pose, as errors
+///                  grow from zero, but through a singular one (THEORY.md, "Solves of the 3-PRS");
 ///   non_finite     when an equation's value is not finite.
-/// `motion` is the start on entry, the last iterate on return. observe: may be empty.
-Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
+/// `motion` is the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0 where any
+/// root will do. observe: may be empty.
+Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
 
 /// Swing of a limb's rod from th = 0 in the revolute's frame at this motion, th_i + dphi_i (rad).

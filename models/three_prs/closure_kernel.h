@@ -61,8 +61,8 @@ class ClosureKernel {
   Limb limb_with_errors(const ClosureLimb& limb, std::size_t at) const;
   void evaluate(const Group& group, Equations& equations) const;
   Mask first_step(const Group& group, T* step) const;
-  Mask newton_step(const Group& group, T* step) const;
-  static Mask eliminate(T (&m)[6][7], T* x);
+  Mask newton_step(const Group& group, T* step, T& pivots) const;
+  static Mask eliminate(T (&m)[6][7], T* x, T& pivots);
 
   // The loop over samples.
   void begin(std::size_t g);
@@ -183,16 +183,18 @@ auto ClosureKernel<T>::first_step(const Group& group, T* step) const -> Mask {
   return size < T(kLargestStep);
 }
 
-/// x of m = [A | b], A x = b. Returns where no pivot is small beside the others.
+/// x of m = [A | b], A x = b. Returns where no pivot is small beside the others. pivots: becomes their product.
 template <class T>
-auto ClosureKernel<T>::eliminate(T (&m)[6][7], T* x) -> Mask {
+auto ClosureKernel<T>::eliminate(T (&m)[6][7], T* x, T& pivots) -> Mask {
   T inverse[6];
   T smallest = abs(m[0][0]), largest = smallest;
+  pivots = T(1.0);
 #pragma GCC unroll 6
   for (int k = 0; k < 6; ++k) {
     const T pivot = abs(m[k][k]);
     smallest = min(smallest, pivot);
     largest = max(largest, pivot);
+    pivots = pivots * m[k][k];
     inverse[k] = T(1.0) / m[k][k];
 #pragma GCC unroll 6
     for (int row = k + 1; row < 6; ++row) {
@@ -213,9 +215,9 @@ auto ClosureKernel<T>::eliminate(T (&m)[6][7], T* x) -> Mask {
   return smallest > T(kPivotRatio) * largest;
 }
 
-/// step: [delta; dr]. Returns where it can be taken.
+/// step: [delta; dr]; pivots: the product of those of the Jacobian. Returns where it can be taken.
 template <class T>
-auto ClosureKernel<T>::newton_step(const Group& group, T* step) const -> Mask {
+auto ClosureKernel<T>::newton_step(const Group& group, T* step, T& pivots) const -> Mask {
   Equations equations;
   evaluate(group, equations);
   T m[6][7];
@@ -228,7 +230,7 @@ auto ClosureKernel<T>::newton_step(const Group& group, T* step) const -> Mask {
     row[6] = -equations.value[n];
   }
   T x[6];
-  const Mask regular = eliminate(m, x);
+  const Mask regular = eliminate(m, x, pivots);
   T size(0.0);
   for (int k = 0; k < 6; ++k) {
     step[(k + 3) % 6] = x[k];
@@ -269,8 +271,8 @@ void ClosureKernel<T>::move(Group& group, const T* step, Mask lanes) const {
 template <class T>
 bool ClosureKernel<T>::round(std::size_t g, std::uint32_t iteration) {
   Group& group = group_[g];
-  T step[6];
-  const Mask taken = (group.active > T(0.5)) & newton_step(group, step);
+  T step[6], pivots;
+  const Mask taken = (group.active > T(0.5)) & newton_step(group, step, pivots);
   move(group, step, taken);
   T change = abs(step[0]);
   for (int k = 1; k < 6; ++k) change = max(change, abs(step[k]));
@@ -282,6 +284,9 @@ bool ClosureKernel<T>::round(std::size_t g, std::uint32_t iteration) {
   group.active = select(on, T(1.0), T(0.0));
   end(g, bits(converged), SolveStatus::converged, iteration);
   end(g, bits(stagnated), SolveStatus::stagnated, iteration);
+  // On the other side of a singular pose; see close_limbs.
+  const Mask beyond = T(pose_.pivot_sign) * pivots < T(0.0);
+  end(g, bits((converged | stagnated) & beyond), SolveStatus::singular, iteration);
   return any(on);
 }
 

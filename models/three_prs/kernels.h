@@ -63,6 +63,7 @@ struct ClosurePose {
   double tool[3];            ///< from P to the tip, base frame
   double start[36];          ///< [delta; dr] from the equations' values without motion, where a solve starts
   std::size_t row[6];        ///< where each equation stands in the elimination, whose columns are [dr; delta]
+  double pivot_sign;         ///< of the product of the pivots without errors, as 1.0 or -1.0; 0 at a singular pose
 };
 
 /// How the iteration ends.

@@ -49,6 +49,14 @@ Pose moved(const Pose& pose, const Matrix3& R, const lie::Screw<double>& twist) 
 
 Vector3 carriages(const Configuration& at) { return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q}; }
 
+/// Whether a place is so far away that squares of its distance may overflow, and rounding there hides the mechanism.
+/// Places that the rails alone rule out are nearer: the message about those says more.
+bool is_far(const Geometry& g, const Vector3& place) {
+  constexpr double kReaches = 1e6;
+  const double reach = g.rail + g.a + g.l + g.c + g.h;
+  return !(place.cwiseAbs().maxCoeff() <= kReaches * reach);
+}
+
 /// The upright pose with the carriages at these heights on average.
 Pose upright(const Geometry& g, const Vector3& q) {
   return {0.0, 0.0, q.mean() + std::sqrt(g.l * g.l - (g.c - g.a) * (g.c - g.a))};
@@ -110,6 +118,7 @@ Vector3 tool(const Geometry& geometry, const Matrix3& R) { return geometry.h * R
 
 std::optional<Pose> pose_of_tip(const Geometry& geometry, const Vector3& tip) {
   constexpr int kIterations = 50;
+  if (is_far(geometry, tip)) return std::nullopt;
   const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, tip.norm());
   Pose pose{0.0, 0.0, tip.z() - geometry.h};
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -128,6 +137,7 @@ std::optional<Pose> pose_of_tip(const Geometry& geometry, const Vector3& tip) {
 std::optional<Pose> pose_of_carriages(const Geometry& geometry, const Vector3& q) {
   constexpr int kIterations = 50;
   constexpr double kShortest = 1.0 / 1024.0;
+  if (is_far(geometry, q)) return std::nullopt;
   const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, q.norm());
   Pose pose = upright(geometry, q);
   Configuration at = configuration(geometry, pose);

@@ -9,7 +9,7 @@ poesy_test(two_upr_rpu_test LABELS unit
                    models/two_upr_rpu/model_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
 poesy_test(three_prs_test LABELS unit
-           SOURCES models/three_prs/calibrated_test.cpp models/three_prs/closure_kernel_test.cpp models/three_prs/closure_lanes_test.cpp
+           SOURCES models/three_prs/calibrated_test.cpp models/three_prs/closure_branch_test.cpp models/three_prs/closure_kernel_test.cpp models/three_prs/closure_lanes_test.cpp
                    models/three_prs/errors_test.cpp models/three_prs/first_order_kernel_test.cpp
                    models/three_prs/kinematics_test.cpp models/three_prs/machine_test.cpp
                    models/three_prs/model_test.cpp models/three_prs/separation_test.cpp

@@ -12,6 +12,7 @@ endfunction()
 program_test(bad_input unit)
 program_test(csv unit)
 program_test(frames regression)
+program_test(untrusted robustness)
 program_test(oracle regression)
 program_test(metric regression)
 set_property(TEST program.metric APPEND PROPERTY ENVIRONMENT

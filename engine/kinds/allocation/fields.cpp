@@ -208,7 +208,7 @@ Aim read_aim(const h5::File& file) {
   return *aim;
 }
 
-void write(ResultBuilder& result, const Study& study, const std::any& any) {
+void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const Result&>(any);
   add_names(result, study, study.analysis.factors);
   add_sigma(result, study);

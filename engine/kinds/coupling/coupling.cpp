@@ -106,6 +106,12 @@ class Composer {
     found_.sizes = study.sizes();
     found_.subsets = rows_.subsets.size();
     found_.poses = evaluation.poses;
+    // A list that grows has all its numbers twice while it is copied.
+    const std::size_t numbers = found_.responses * found_.sizes * found_.subsets * found_.poses;
+    for (std::vector<double>* curve : {&found_.effect, &found_.sum, &found_.interaction, &found_.worst_case,
+                                       &found_.root_sum_square, &found_.cancellation}) {
+      curve->reserve(numbers);
+    }
   }
 
   CouplingResult operator()() {
@@ -211,14 +217,17 @@ Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& 
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
   const std::size_t cells = coupling.sizes() * poses.size();
   const std::size_t curves = 6 * sizeof(double) * cells * rows.subsets.size() * study.model().responses.size();
-  // The state is copied while it grows, and one of the six curves while it is hashed.
+  // While the result is composed, the outcomes are there besides their state and the curves. While it is written, its
+  // lists go one by one, and the file comes; one curve is hashed.
+  const std::size_t composing = outcomes + curves;
+  const std::size_t file = curves + cells * kSolverColumns;
   return {.solves = counted_things(coupling.sizes(), "sizes x ") +
                     counted_things(rows.errors.size(), "sets of errors x ") + counted_things(poses.size(), "poses = ") +
                     counted_things(solves, "solves"),
-          .memory = {.accumulators = 2 * outcomes + curves / 6,
+          .memory = {.accumulators = std::max(curves / 6, composing - std::min(composing, 2 * file)),
                      .state = outcomes,
-                     .result = curves + cells * sizeof(SolveCounts),
-                     .file = curves + cells * kSolverColumns},
+                     .result = cells * sizeof(SolveCounts),
+                     .file = file},
           .shared = {table_work(study, model, poses, table, Outcomes::responses)},
           .by_one = {}};
 }

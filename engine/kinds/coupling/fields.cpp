@@ -163,11 +163,11 @@ CsvTable curve_table(const StoredResult& result) {
   return table;
 }
 
-void write(ResultBuilder& result, const Study& study, const std::any& any) {
-  const auto& found = std::any_cast<const CouplingResult&>(any);
+void write(ResultBuilder& result, const Study& study, std::any& any) {
+  auto& found = std::any_cast<CouplingResult&>(any);
   add_names(result, study, study.analysis.factors);
   add_axes(result, asked_of<CouplingStudy>(study.analysis));
-  write_group(result, kCoupling, found);
+  write_group(result, kCoupling, std::move(found));
   add_choices(result, study);
   add_solver(result, {"size", "pose"}, found.solves);
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -203,15 +204,16 @@ std::vector<std::string> component_units(const std::string& text, std::size_t co
   return list;
 }
 
-/// The first cells of a line: the label of its row of errors, where rows have labels, and a number.
-std::string labelled(const RowLabels& labels, std::size_t row, std::size_t number) {
-  const std::string label = labels.names.empty() ? "" : labels.names[row] + ",";
-  return label + std::to_string(number);
-}
-
-/// The heading of these cells.
-std::string labelled(const RowLabels& labels, const std::string& number) {
-  return labels.names.empty() ? number : labels.column + "," + number;
+/// The first cells of a line: the label of its row of errors, where rows have labels, and a number. row(line): the row.
+template <class Row, class Number>
+void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string& heading, const Row& row,
+                     const Number& number) {
+  if (labels.names.empty()) {
+    table.first = {heading, [number](std::size_t line) { return std::to_string(number(line)); }};
+    return;
+  }
+  table.first = {labels.column, [&labels, row](std::size_t line) { return labels.names[row(line)]; }};
+  table.columns.push_back({heading, [number](std::size_t line) { return static_cast<double>(number(line)); }});
 }
 
 /// What a solve gave. at(line): its position, counted pose by pose.
@@ -245,11 +247,10 @@ void append_solve_columns(CsvTable& table, const StoredResult& result, const At&
 CsvTable solve_table(const StoredResult& result) {
   const StoredEvaluation& stored = evaluation_of(result);
   const std::size_t samples = stored.evaluation.samples;
-  CsvTable table{
-      "evaluate",
-      {labelled(stored.labels, "pose"),
-       [&, samples](std::size_t at) { return labelled(stored.labels, row_of_solve(stored, at), at / samples); }},
-      stored.evaluation.status.size()};
+  CsvTable table{"evaluate", {}, stored.evaluation.status.size()};
+  set_first_cells(
+      table, stored.labels, "pose", [&stored](std::size_t at) { return row_of_solve(stored, at); },
+      [samples](std::size_t at) { return at / samples; });
   table.columns.push_back({"sample", [samples](std::size_t at) { return static_cast<double>(at % samples); }});
   append_solve_columns(table, result, std::identity());
   return table;
@@ -285,8 +286,7 @@ CsvTable error_table(const StoredResult& result) {
   CsvTable table{"errors", {}, stored.errors.size() / std::max<std::size_t>(factors, 1)};
   if (stored.cases.empty()) {
     const bool row_by_row = stored.pairing == Pairing::row_by_row;
-    table.first = {labelled(stored.labels, row_by_row ? "pose" : "sample"),
-                   [&](std::size_t row) { return labelled(stored.labels, row, row); }};
+    set_first_cells(table, stored.labels, row_by_row ? "pose" : "sample", std::identity(), std::identity());
   } else {
     table.first = {"case", [&](std::size_t c) { return stored.cases[c]; }};
   }
@@ -361,7 +361,7 @@ void write_cases(ResultBuilder& result, const Study& study, const CaseResult& fo
   write_fields(result, "/evaluate", kSumFields, found);
 }
 
-void write(ResultBuilder& result, const Study& study, const std::any& found) {
+void write(ResultBuilder& result, const Study& study, std::any& found) {
   if (const auto* cases = std::any_cast<CaseResult>(&found)) return write_cases(result, study, *cases);
   write_table(result, study, std::any_cast<const EvaluatedTable&>(found));
 }

@@ -80,7 +80,7 @@ CsvTable coupling_table(const StoredResult& result) {
            list_column("poses", couplings, 0, 1, &Coupling::deforming_poses)}};
 }
 
-void write(ResultBuilder& result, const Study& study, const std::any& any) {
+void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const Identification&>(any);
   POESY_EXPECTS(found.factors == study.analysis.factors.size());
   add_names(result, study, study.analysis.factors);

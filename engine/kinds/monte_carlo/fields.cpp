@@ -164,7 +164,7 @@ const CourseWords kConvergence = convergence_words(
     "most relative_error of its magnitude, or max was there",
     "errors");
 
-void write(ResultBuilder& result, const Study& study, const std::any& any) {
+void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const MonteCarlo&>(any);
   const std::size_t bins = found.histogram_counts.size() / found.responses;
   add_names(result, study, study.analysis.factors);

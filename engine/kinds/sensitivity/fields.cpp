@@ -169,7 +169,7 @@ void append_solver_tables(CsvTables& tables, const StoredResult& result) {
   }
 }
 
-void write(ResultBuilder& result, const Study& study, const std::any& any) {
+void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const SensitivityResult&>(any);
   const std::vector<FactorIndex>& factors = study.analysis.factors;
   POESY_EXPECTS(found.factors == factors.size());

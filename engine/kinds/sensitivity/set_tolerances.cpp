@@ -34,10 +34,9 @@ constexpr double kShareOfPart = 0.25;
 /// The study of a sensitivity result, as a Monte Carlo study of the same errors at the same poses.
 Study monte_carlo_study(const StoredResult& result, const Catalog& catalog) {
   // The file of poses, if there is one, is known by a path relative to a study that may be gone; the result has them.
-  Study study =
-      study_of_text(result.study_text, "the study in the result", catalog, StudyUse::evaluate, &result.mechanism_text);
+  Study study = stored_study(result, "the result", catalog).study;
   if (study.analysis.factors.size() != result.factors.size()) {
-    throw FileError("the study in the result", "does not fit the result's factors", "run the study again");
+    throw FileError("the result", "keeps a study that does not fit its factors", "run the study again");
   }
   return as_confirming_study(std::move(study), kStem);
 }

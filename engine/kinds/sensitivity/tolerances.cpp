@@ -357,14 +357,16 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
                              const ResponseTolerances& tolerances) {
   make_folder(folder);
   CsvTable table = lines_of_factors(result, "tolerances");
-  table.first.heading = "factor,kind,limb,unit,display_unit,index_unit,studied_as";
-  table.first.text = [&](std::size_t p) {
-    const NamedUnit& factor = result.factors[p];
-    const std::string shape = result.factor_distribution.empty() ? "unknown" : result.factor_distribution[p];
-    return fmt::format("{},{},{},{},{},{}/{},{}", factor.name, error_kind(dimension_of(factor.unit)),
-                       sensitivity_of(result).factor_limb[p], factor.unit, display(factor).name,
-                       result.responses[tolerances.response].unit, factor.unit, shape);
-  };
+  const std::string& response_unit = result.responses[tolerances.response].unit;
+  const auto unit = [&](std::size_t p) { return result.factors[p].unit; };
+  table.more = {{"kind", [&](std::size_t p) { return std::string(error_kind(dimension_of(unit(p)))); }},
+                {"limb", [&](std::size_t p) { return std::to_string(sensitivity_of(result).factor_limb[p]); }},
+                {"unit", unit},
+                {"display_unit", [&](std::size_t p) { return std::string(display(result.factors[p]).name); }},
+                {"index_unit", [&](std::size_t p) { return response_unit + "/" + unit(p); }},
+                {"studied_as", [&](std::size_t p) {
+                   return result.factor_distribution.empty() ? std::string("unknown") : result.factor_distribution[p];
+                 }}};
   const auto heading = [](const std::string& name, const std::string&, const char* suffix) { return name + suffix; };
   append_tolerance_columns(table, result, tolerances, heading);
   return write_csv(folder, table);

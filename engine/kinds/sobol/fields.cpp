@@ -116,7 +116,7 @@ void add_axes(ResultBuilder& result, const SobolResult& found) {
   if (!found.S2.empty()) result.add_axis("other", found.group_names, {"1", "The second of a pair"});
 }
 
-void write(ResultBuilder& result, const Study& study, const std::any& any) {
+void write(ResultBuilder& result, const Study& study, std::any& any) {
   const auto& found = std::any_cast<const SobolResult&>(any);
   const Layout& rows = layout(found.joined);
   add_names(result, study, study.analysis.factors);

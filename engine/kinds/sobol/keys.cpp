@@ -29,9 +29,8 @@ std::vector<std::string> read_patterns(const StudyValue& value) {
 
 /// A name for tables and files.
 void check_group_name(const StudyValue& value, std::string_view name) {
-  if (!name.empty() && name != kOtherErrors && name.find_first_of(",;\"\n\r\t") == std::string_view::npos) return;
-  value.fail("is not a name for a group",
-             fmt::format("a name is plain text without commas and quotes, and not '{}'", kOtherErrors));
+  if (const auto problem = label_problem(name)) value.fail("is not a name for a group: it " + *problem, kLabelRule);
+  if (name == kOtherErrors) value.fail("is not a name for a group", "it is that of the errors of no group");
 }
 
 void read_groups(const StudyValue& value, Study& study, const Reading&) {

@@ -96,7 +96,7 @@ inline ClosureOutcome solve_by_reference(const ClosureSamples& samples, const So
   for (std::size_t b = 0; b < samples.count; ++b) {
     const auto limbs = limbs_of_sample(samples.geometry, samples.nominal, samples.block(), b);
     PlatformMotion motion = start(limbs);
-    const Closing closing = close_limbs(limbs, samples.nominal.platform.p, options, motion);
+    const Closing closing = close_limbs(limbs, samples.nominal.platform.p, start.orientation(), options, motion);
     outcome.status[b] = closing.status;
     outcome.iterations[b] = closing.iterations;
     outcome.responses.col(static_cast<Eigen::Index>(b)).head<kVectorRows>() << lie::log(motion.E), motion.dr,
