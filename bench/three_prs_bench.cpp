@@ -26,7 +26,7 @@ class ReferenceEvaluator final : public Evaluator {
     for (std::size_t b = 0; b < samples.count; ++b) {
       const auto limbs = limbs_of_sample({}, nominal, samples, b);
       PlatformMotion motion = start(limbs);
-      const Closing closing = close_limbs(limbs, nominal.platform.p, {}, motion);
+      const Closing closing = close_limbs(limbs, nominal.platform.p, start.orientation(), {}, motion);
       const lie::Vector3<double> theta = lie::log(motion.E);
       for (std::size_t k = 0; k < 3; ++k) {
         outcomes.responses[k * samples.count + b] = theta[static_cast<Eigen::Index>(k)];
