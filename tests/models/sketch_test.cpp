@@ -73,7 +73,7 @@ SketchVector displaced(const SketchTwist& t, const SketchVector& p) {
   return {t[3] + t[1] * p[2] - t[2] * p[1], t[4] + t[2] * p[0] - t[0] * p[2], t[5] + t[0] * p[1] - t[1] * p[0]};
 }
 
-TEST_P(Sketches, LimbsEndInOnePlatformAndJointsStandAtTheirFrames) {
+TEST_P(Sketches, JointsStandAtTheirFrames) {
   for (const std::vector<double>& pose : {std::vector<double>(), pose_}) {
     const std::optional<Sketch> sketch = model_->sketch(pose);
     ASSERT_TRUE(sketch.has_value());
@@ -112,7 +112,7 @@ TEST_P(Sketches, ErrorsAreWhereTheModelSays) {
   }
 }
 
-TEST_P(Sketches, MotionsAreThoseOfTheEvaluator) {
+TEST_P(Sketches, MotionsAreTheEvaluators) {
   constexpr double kSize = 1e-4;
   const ModelDescription& description = model_->description();
   const Sketch sketch = model_->sketch(pose_).value();

@@ -168,7 +168,8 @@ class Allocation(ResumptionTest):
 
     def test_calibration_saves(self):
         cost = []
-        for study in (TIP, TIP.replace("sigmas = 3", "sigmas = 3\ncalibrated = true")):
+        tip = TIP.replace("samples = 5000", "samples = 20000")
+        for study in (tip, tip.replace("sigmas = 3", "sigmas = 3\ncalibrated = true")):
             self.run_study(study)
             with h5py.File(self.folder / "out.h5") as file:
                 self.assertEqual(file["allocation"].attrs["certified"], 1)

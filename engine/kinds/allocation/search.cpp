@@ -32,6 +32,10 @@ constexpr double kCoarser = 1.05;
 constexpr double kWindow = 0.1;
 /// Of all machines so many are tried first.
 constexpr std::size_t kFirstOf = 8;
+/// So many are tried in any case, to find some that were left out.
+constexpr std::size_t kFewMachines = 20'000;
+/// Where limits on root mean squares had to fall so far, something decides that these do not see.
+constexpr double kFarBelow = 0.7;
 /// From here on effects are measured again, and all machines tried.
 constexpr double kFar = 0.1;
 /// So many machines of largest load, at the most, tell the direction of the gradient.
@@ -214,30 +218,35 @@ void ToleranceSearch::take(const Programmed& of) {
   limits_ = programme_.limits(squares_, measured_, share_);
 }
 
-/// Makes all tolerances finer alike, where limits on root mean squares do not lead to the yield: a few machines decide
-/// that these do not see, such as those of an error that does nothing until it is large. False when stopped.
-bool ToleranceSearch::scale_all() {
+/// Makes tolerances finer, where limits on root mean squares do not lead to the yield: a few machines decide that these
+/// do not see, such as those of an error that does nothing until it is large. Parts whose errors are larger in these
+/// machines than in others are made finer, or all where there are none. Whether that met the yield; none when stopped.
+std::optional<bool> ToleranceSearch::lower_what_rejects() {
   take(settled_);
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
     auto all = try_all();
-    if (!all) return false;
+    if (!all) return std::nullopt;
     trial_ = *std::move(all);
     const double load = deciding_load(trial_.load, allowed_.design);
     if (load <= 1.0) {
       auto near = try_near(found_);
-      if (!near) return false;
+      if (!near) return std::nullopt;
       near_ = *std::move(near);
-      if (!scale_near()) return false;
-      add_stage("all tolerances scaled alike", trial_.load.size(), near_.trial.rejects());
+      if (!scale_near()) return std::nullopt;
+      add_stage("finer where machines fail", trial_.load.size(), near_.trial.rejects());
       return true;
     }
+    const std::vector<bool> acts = rejecting_parts();
+    const bool none = std::ranges::find(acts, true) == acts.end();
     std::vector<double> finer = found_.tolerance;
-    for (double& tolerance : finer) tolerance /= std::clamp(load, 1.05, 2.0);
+    for (std::size_t i = 0; i < finer.size(); ++i) {
+      if (none || acts[i]) finer[i] /= std::clamp(load, 1.05, 2.0);
+    }
     const TolerancePoint next = programme_.at_most(finer);
     if (next.tolerance == found_.tolerance) break;
     found_ = next;
   }
-  return lower_to_least();
+  return false;
 }
 
 /// Tries the lowest tolerances, after which nothing is left to try. False when stopped.
@@ -309,7 +318,16 @@ bool ToleranceSearch::meet_yield() {
     if (!near) return false;
     load = deciding_load(near->trial.load, allowed_.design);
   }
-  if (!best) return scale_all();
+  if (!best || best->share < kFarBelow * settled_.share) {
+    const std::optional<bool> met = lower_what_rejects();
+    if (!met) return false;
+    if (*met && (!best || found_.cost < best->point.cost)) return true;
+    if (!best) return lower_to_least();
+    found_ = best->point;
+    all = try_all();
+    if (!all) return false;
+    trial_ = *std::move(all);
+  }
   take(*best);
   auto near = try_near(found_);
   if (!near) return false;
@@ -333,27 +351,34 @@ std::vector<double> ToleranceSearch::shares_by_price() const {
   return shares;
 }
 
-/// [N] Sums of the errors' scores x^2 - 1 over the machines of largest load, and how many these are.
-ToleranceSearch::Scores ToleranceSearch::scores() const {
+/// The machines of largest load that tell the direction of the gradient.
+std::vector<std::uint32_t> ToleranceSearch::machines_of_largest_load() const {
   const std::size_t wanted =
       std::min(near_.machines.size(),
                std::max<std::size_t>(allowed_.design, std::min<std::size_t>(kMostOfGradient, trial_.load.size() / 30)));
   const double least = deciding_load(near_.trial.load, wanted);
+  std::vector<std::uint32_t> machines;
+  for (std::size_t k = 0; k < near_.machines.size(); ++k) {
+    if (near_.trial.load[k] > least) machines.push_back(near_.machines[k]);
+  }
+  return machines;
+}
+
+/// [N] Sums of the errors' scores x^2 - 1 over these machines, at found_.
+ToleranceSearch::Scores ToleranceSearch::scores(std::span<const std::uint32_t> machines) const {
   const Plan plan(tried_at(found_.tolerance), run_.poses);
   std::vector<double> of_error(plan.factors().size(), 0.0);
   std::vector<double> draws(plan.factors().size());
-  Scores found;
-  for (std::size_t k = 0; k < near_.machines.size(); ++k) {
-    if (near_.trial.load[k] <= least) continue;
+  Scores found{.of_part = {}, .machines = static_cast<double>(machines.size())};
+  for (const std::uint32_t machine : machines) {
     for (std::size_t p = 0; p < draws.size(); ++p) {
-      fill_uniforms(plan.address(p, PoseIndex(0)), SampleIndex(near_.machines[k]), std::span(&draws[p], 1));
+      fill_uniforms(plan.address(p, PoseIndex(0)), SampleIndex(machine), std::span(&draws[p], 1));
     }
     plan.transform(draws, 1);
     for (std::size_t p = 0; p < draws.size(); ++p) {
       const double x = draws[p] / plan.distributions()[p].standard_deviation();
       of_error[p] += x * x - 1.0;
     }
-    found.machines += 1.0;
   }
   for (std::size_t i = 0; i < programme_.size(); ++i) {
     double sum = 0.0;
@@ -363,18 +388,35 @@ ToleranceSearch::Scores ToleranceSearch::scores() const {
   return found;
 }
 
+/// Whether a part's score is more than noise: that of each of its errors has a variance of 2 in a machine.
+bool ToleranceSearch::is_sure(const Scores& of, std::size_t part) const {
+  const double noise = std::sqrt(2.0 * of.machines * static_cast<double>(programme_.errors(part).size()));
+  return of.of_part[part] > kSureScore * noise;
+}
+
+/// [N] Parts whose errors are larger in rejected machines than in others.
+std::vector<bool> ToleranceSearch::rejecting_parts() const {
+  std::vector<std::uint32_t> rejected;
+  for (std::size_t s = 0; s < trial_.load.size(); ++s) {
+    if (trial_.load[s] > 1.0) rejected.push_back(static_cast<std::uint32_t>(s));
+  }
+  const Scores found = scores(rejected);
+  std::vector<bool> parts;
+  for (std::size_t i = 0; i < programme_.size(); ++i) parts.push_back(is_sure(found, i));
+  return parts;
+}
+
 /// One limit in place of all: what each part adds to the machines of largest load, by its score among them; where that
 /// is noise, by the share that root mean squares give it.
 ToleranceLimits ToleranceSearch::gradient_limits() const {
-  const Scores found = scores();
+  const Scores found = scores(machines_of_largest_load());
   const std::vector<double> shares = shares_by_price();
   double all = 0.0;
   for (const double score : found.of_part) all += std::max(0.0, score);
   ToleranceLimits direction{
       .stacking = Stacking::root_sum_square, .parts = programme_.size(), .effects = {}, .room = {1.0}};
   for (std::size_t i = 0; i < programme_.size(); ++i) {
-    const double noise = std::sqrt(2.0 * found.machines * static_cast<double>(programme_.errors(i).size()));
-    const bool is_known = found.of_part[i] > kSureScore * noise;
+    const bool is_known = is_sure(found, i);
     const double size = found_.tolerance[i] * found_.tolerance[i];
     const double weight = (is_known ? found.of_part[i] : all * shares[i]) / all;
     direction.effects.push_back(size > 0.0 ? weight / size : 0.0);
@@ -485,7 +527,8 @@ bool ToleranceSearch::scale_near() {
 /// Whether machines are rejects that were left out as far from the limit, by some of all machines.
 std::optional<bool> ToleranceSearch::left_out() const {
   const Study study = tried_at(found_.tolerance);
-  const Plan plan = Plan(study, run_.poses).with_samples(std::max<std::size_t>(trial_machines() / kFirstOf, 1));
+  const std::size_t machines = std::max(trial_machines() / kFirstOf, std::min(trial_machines(), kFewMachines));
+  const Plan plan = Plan(study, run_.poses).with_samples(machines);
   const auto some = try_machines(plan, run_.model, study.analysis.limits, run_.options);
   if (!some) return std::nullopt;
   for (std::size_t s = 0; s < some->load.size(); ++s) {

@@ -91,17 +91,20 @@ class ToleranceSearch {
   std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
   std::optional<Tried> try_near(const TolerancePoint& point) const;
   void take(const Programmed& of);
-  bool scale_all();
+  std::optional<bool> lower_what_rejects();
   bool lower_to_least();
 
-  /// Scores of errors among the machines of largest load.
+  /// Scores of errors among some machines.
   struct Scores {
     std::vector<double> of_part;  ///< [N] sums over its errors and the machines
-    double machines = 0.0;        ///< of largest load
+    double machines = 0.0;        ///< how many
   };
 
   std::vector<double> shares_by_price() const;
-  Scores scores() const;
+  std::vector<std::uint32_t> machines_of_largest_load() const;
+  Scores scores(std::span<const std::uint32_t> machines) const;
+  bool is_sure(const Scores& of, std::size_t part) const;
+  std::vector<bool> rejecting_parts() const;
   ToleranceLimits gradient_limits() const;
   std::optional<bool> fit_gradient(ToleranceLimits direction);
 

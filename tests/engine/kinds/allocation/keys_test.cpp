@@ -325,7 +325,7 @@ samples = 12345
 aim = "least-cost"
 cpk = 1.3333333
 [[analysis.parts]]
-name = "hinge 'pins' of µ"
+name = "hinge pins of µ"
 factors = ["delta_1"]
 shift = 0.123456789
 processes = [

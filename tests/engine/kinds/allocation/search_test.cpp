@@ -285,7 +285,7 @@ TEST(ToleranceSearch, SeesErrorsThatActThroughOthers) {
 
 // The second error does nothing below .93, which one machine of 190 exceeds at its upper bound: root mean squares,
 // which are measured with few draws, do not see it, and no limit on them keeps the yield.
-TEST(ToleranceSearch, ScalesAllTolerancesWhereMeanSquaresDoNotSeeWhatDecides) {
+TEST(ToleranceSearch, MakesFinerWhatMeanSquaresDoNotSee) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = x[0] + (std::abs(x[1]) > 0.93 ? 100.0 : 0.0);
   };
@@ -294,7 +294,7 @@ TEST(ToleranceSearch, ScalesAllTolerancesWhereMeanSquaresDoNotSeeWhatDecides) {
   study.asked().parts.back().hi = 1.0;
   const AllocationResult found = study.find();
   EXPECT_TRUE(found.certified());
-  const auto alike = std::ranges::find(found.stages, "all tolerances scaled alike", &AllocationStage::name);
+  const auto alike = std::ranges::find(found.stages, "finer where machines fail", &AllocationStage::name);
   ASSERT_NE(alike, found.stages.end());
   // 1 / .3 is what the first part costs if it alone uses up the yield, 1 / .95 the second.
   EXPECT_GT(found.total_cost, 1.0 / 0.3 + 1.0 / 0.95);
