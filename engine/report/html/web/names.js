@@ -73,7 +73,7 @@ function setNames(svg) {
 // What a command, a file or a choice says is typed as it stands.
 const AS_IT_STANDS =
   "script, style, pre, code, select, textarea, svg, [role=status], .name, [data-table^=settings], [data-table^=what_was]";
-const NUMBERS = /(\d{1,3}(?: \d{3})+(?!\d)(?: %)?|\d %)/;
+const NUMBERS = /(\d{1,3}(?: \d{3})+(?!\d)(?: %)?|\d[\d.]* %)/;
 
 /// Sets the names in the page's texts, and keeps numbers in one piece: those whose digits stand in groups, and percents.
 function setTexts(root) {
