@@ -283,7 +283,7 @@ class Interruption(FolderTest):
 
 class Evaluator(unittest.TestCase):
     def test_without_the_compiled_module_it_says_how_to_get_it(self):
-        with mock.patch.dict(sys.modules, {"poesy_solver": None}), self.assertRaisesRegex(ImportError, "POESY_PYTHON=ON"):
+        with mock.patch.dict(sys.modules, {"poesy_solver": None}), self.assertRaisesRegex(ImportError, "POESY_PYTHON_MODULE=ON"):
             poesy.Evaluator
         self.assertIn("Evaluator", dir(poesy))
         with self.assertRaises(AttributeError):

@@ -74,7 +74,7 @@ def __getattr__(name: str) -> Any:
     except ImportError as error:
         raise ImportError(
             f"poesy.Evaluator is in the compiled module poesy_solver, which is not there ({error}); build it with "
-            "cmake -D POESY_PYTHON=ON and cmake --install, or use poesy.evaluate, which needs only the program"
+            "cmake -D POESY_PYTHON_MODULE=ON and cmake --install, or use poesy.evaluate, which needs only the program"
         ) from error
     return Evaluator
 
