@@ -8,7 +8,7 @@
 
 The packages come from cpack, and lintian must find no error in them. In the root, `apt-get install ./poesy_*.deb` is all that
 is done before the published study runs; its ranking must be the one that bare_root.py asks for. Then libpoesy-dev: a project
-that knows the package alone is built and run. Then the tarball, and the Python package where there is one (engine/python).
+that knows the package alone is built and run. Then the tarball, and the Python package (engine/python) with its notebook.
 At last the packages are removed, and nothing of them may stay.
 
 It must be started as root; what it mounts, only its own processes see. It needs mmdebstrap, lintian and dpkg-dev.
@@ -180,16 +180,14 @@ def use_tarball(root, tarball, wanted, clock):
 
 
 def use_python(root, clock):
-    """Gives engine/python to tests/packaging/python_install.py, at their places in the tree, where both exist."""
+    """Gives engine/python to tests/packaging/python_install.py, at their places in the tree."""
     script = Path("tests/packaging/python_install.py")
-    if not (REPOSITORY / "engine/python/pyproject.toml").is_file() or not (REPOSITORY / script).is_file():
-        print("skipped: no Python package", flush=True)
-        return
     tree = root / HOME / "tree"
     shutil.copytree(REPOSITORY / "engine/python", tree / "engine/python",
                     ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info", ".venv"))
-    (tree / script).parent.mkdir(parents=True)
-    shutil.copy(REPOSITORY / script, tree / script)
+    for file in (script, Path("tests/python/notebook.py")):
+        (tree / file).parent.mkdir(parents=True)
+        shutil.copy(REPOSITORY / file, tree / file)
     follow(root, f"echo '== Installing the packages that the Python package needs' && "
            f"{APT} install --yes --no-install-recommends {PYTHON_PACKAGES} && echo '== The Python package' && "
            f"python3 -B tree/{script} --program /usr/bin/poesy", clock, HOME)
