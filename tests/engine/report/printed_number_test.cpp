@@ -16,7 +16,7 @@ std::vector<std::string> texts(const std::vector<Cell>& column, int digits = 0) 
   return list;
 }
 
-TEST(PrintedNumbers, HaveTheZerosBehindThemThatAreDigitsOfTheNumber) {
+TEST(PrintedNumbers, HaveTheZerosThatAreDigitsOfTheNumber) {
   EXPECT_EQ(texts({number_cell(0.4913), number_cell(0.45001), number_cell(0.5), number_cell(2.0)}),
             (std::vector<std::string>{"0.4913", "0.4500", "0.5000", "2.000"}));
   // 99.755 has five digits, because what is missing from 100 % has three.
