@@ -16,7 +16,8 @@ from pathlib import Path
 import h5py
 
 from hostile_structures import MARK, Outside, Structure, external, replaced, structures
-from poesy_program import PROGRAM, ProgramTest, main
+from poesy_program import PROGRAM, main
+from resumption import ResumptionTest
 
 COUNT = int(os.environ.get("POESY_HOSTILE", "200"))
 SEED = int(os.environ.get("POESY_HOSTILE_SEED", "1"))
@@ -36,12 +37,9 @@ COMMANDS = [("verify", "r.h5"), ("show", "r.h5"), ("show", "r.h5", "--json"), ("
 SIGNS = [MARK.encode(), b"4242424", b"4.242424", b"84,79,80", b"root:x:0"]
 
 
-class HostileFiles(ProgramTest):
+class HostileFiles(ResumptionTest):
     def setUp(self):
-        shared = Path("/dev/shm")
-        holder = tempfile.TemporaryDirectory(dir=shared if os.access(shared, os.W_OK) else None)
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name)
+        super().setUp()
         self.write("study.toml", STUDY)
         self.outside = Outside(self.folder)
         self.slowest = 0.0

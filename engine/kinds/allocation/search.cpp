@@ -202,13 +202,27 @@ std::optional<ToleranceSearch::Tried> ToleranceSearch::try_some(const ToleranceP
 
 /// Those machines that may decide: of all, when they were tried last, those with a load of kNear or more of the one
 /// that decided.
-std::optional<ToleranceSearch::Tried> ToleranceSearch::try_near(const TolerancePoint& point) const {
+std::vector<std::uint32_t> ToleranceSearch::near_machines() const {
   const double least = kNear * deciding_load(trial_.load, allowed_.design);
   std::vector<std::uint32_t> machines;
   for (std::size_t s = 0; s < trial_.load.size(); ++s) {
     if (trial_.load[s] >= least) machines.push_back(static_cast<std::uint32_t>(s));
   }
-  return try_some(point, std::move(machines));
+  return machines;
+}
+
+std::optional<ToleranceSearch::Tried> ToleranceSearch::try_near(const TolerancePoint& point) const {
+  return try_some(point, near_machines());
+}
+
+/// Tries all machines at found_, and takes those of them that may decide. False when stopped.
+bool ToleranceSearch::try_found() {
+  auto all = try_all();
+  if (!all) return false;
+  trial_ = *std::move(all);
+  near_ = {near_machines(), {}};
+  for (const std::uint32_t machine : near_.machines) near_.trial.load.push_back(trial_.load[machine]);
+  return true;
 }
 
 void ToleranceSearch::take(const Programmed& of) {
@@ -224,14 +238,9 @@ void ToleranceSearch::take(const Programmed& of) {
 std::optional<bool> ToleranceSearch::lower_what_rejects() {
   take(settled_);
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
-    auto all = try_all();
-    if (!all) return std::nullopt;
-    trial_ = *std::move(all);
+    if (!try_found()) return std::nullopt;
     const double load = deciding_load(trial_.load, allowed_.design);
     if (load <= 1.0) {
-      auto near = try_near(found_);
-      if (!near) return std::nullopt;
-      near_ = *std::move(near);
       if (!scale_near()) return std::nullopt;
       add_stage("finer where machines fail", trial_.load.size(), near_.trial.rejects());
       return true;
@@ -258,6 +267,7 @@ bool ToleranceSearch::lower_to_least() {
   trial_ = *std::move(trial);
   if (trial_.rejects() > allowed_.design) refuse_lowest();
   if (!can_be_made(found_)) refuse_unbounded(before);
+  near_ = {};
   chosen_ = {found_, kNaN, {}};  // by no programme
   add_stage("the lowest tolerances", trial_.load.size(), trial_.rejects());
   return true;
@@ -543,13 +553,7 @@ bool ToleranceSearch::scale_to_others() {
   seed_ = seed_of_others(run_.study, SampleIndex(1));
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
     const std::vector<double> at = found_.tolerance;
-    auto all = try_all();
-    if (!all) return false;
-    trial_ = *std::move(all);
-    auto near = try_near(found_);
-    if (!near) return false;
-    near_ = *std::move(near);
-    if (!scale_near()) return false;
+    if (!try_found() || !scale_near()) return false;
     const double moved = largest_ratio(found_.tolerance, at);
     for (std::size_t k = 0; k < near_.machines.size(); ++k) trial_.load[near_.machines[k]] = near_.trial.load[k];
     const std::optional<bool> again = left_out();

@@ -89,7 +89,9 @@ class ToleranceSearch {
   Study tried_at(std::span<const double> tolerance) const;
   std::optional<Trial> try_all() const;
   std::optional<Tried> try_some(const TolerancePoint& point, std::vector<std::uint32_t> machines) const;
+  std::vector<std::uint32_t> near_machines() const;
   std::optional<Tried> try_near(const TolerancePoint& point) const;
+  bool try_found();
   void take(const Programmed& of);
   std::optional<bool> lower_what_rejects();
   bool lower_to_least();
