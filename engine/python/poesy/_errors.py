@@ -24,7 +24,7 @@ class FileError(Error, OSError):
 
 
 class DamagedFile(FileError):
-    """A file is there, but is no intact result that this version can read."""
+    """A file is there, but it is not an intact result that this version can read."""
 
 
 class Interrupted(Error):

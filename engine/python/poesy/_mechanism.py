@@ -136,7 +136,7 @@ def mechanism(
     Raises
     ------
     StudyError
-        For what is no mechanism; the message says where and why.
+        If it is not a mechanism; the message says where and why.
     FileError
         Where the file cannot be read or written.
     """

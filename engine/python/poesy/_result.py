@@ -49,7 +49,7 @@ class Result:
         "kept", "not kept" or "undecided" where the study states limits, "certified" or "not certified" where it looks for
         tolerances, ``None`` where nothing was to be judged.
     messages : tuple of str
-        What the program said of the run besides its progress; empty for a file that was read.
+        What the program said of the run, without its progress; empty for a file that was read.
     """
 
     def __init__(self, path: str | os.PathLike[str], messages: tuple[str, ...] = ()) -> None:
