@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -10,29 +9,36 @@
 
 namespace poesy {
 
-/// Merges numbered leaves in an order that their numbers alone decide: leaf 2k with leaf 2k + 1, these pairs likewise,
-/// and so on. So a sum of floating-point numbers has the same bits however the leaves were divided into ranges, if the
-/// ranges are put together in their order. Holds one sum for each binary digit of the number of leaves, and up to twice
-/// as many where it does not begin at leaf 0.
-/// Sum is a value with merge(const Sum&), whose argument holds later leaves.
+/// Merges numbered leaves in an order that their numbers alone decide: leaves 8k, 8k + 1, ... 8k + 7 one after the
+/// other, eight such branches likewise, and so on. So a sum of floating-point numbers has the same bits however the
+/// leaves were divided into ranges, if the ranges are put together in their order. Holds one sum for each octal digit
+/// of the number of leaves, and up to seven more for each where it does not begin at leaf 0. Sum is a value with
+/// merge(const Sum&), whose argument holds later leaves.
 template <class Sum>
 class MergeTree {
  public:
-  /// Some leaves, merged.
+  /// Some leaves, merged: a whole branch, or the first few branches of a larger one.
   struct Node {
-    std::size_t first;   ///< leaf; a multiple of `leaves`
-    std::size_t leaves;  ///< a power of two
+    std::size_t first;   ///< leaf; a multiple of the leaves of the branch, or of the larger one
+    std::size_t leaves;  ///< a power of eight, times 2 to 7 where the node is of several branches
     Sum sum;             ///< of these leaves
   };
+
+  /// Sums that are held at most of so many leaves, from leaf 0 on.
+  static constexpr std::size_t most_nodes(std::size_t leaves) {
+    std::size_t digits = 0;
+    for (; leaves > 0; leaves /= kBranches) ++digits;
+    return digits;
+  }
 
   /// The next leaves. Precondition: they come right after those that are here, if any are.
   void add(Node node) {
     POESY_EXPECTS(nodes_.empty() || node.first == end());
     nodes_.push_back(std::move(node));
-    while (nodes_.size() > 1 && are_siblings(nodes_[nodes_.size() - 2], nodes_.back())) {
+    while (nodes_.size() > 1 && goes_on(nodes_[nodes_.size() - 2], nodes_.back())) {
       Node& earlier = nodes_[nodes_.size() - 2];
       earlier.sum.merge(nodes_.back().sum);
-      earlier.leaves *= 2;
+      earlier.leaves += nodes_.back().leaves;
       nodes_.pop_back();
     }
   }
@@ -77,15 +83,31 @@ class MergeTree {
     for (std::uint64_t left = from.number(); left > 0; --left) {
       const auto first = static_cast<std::size_t>(from.number_up_to(end_of_all));
       const auto leaves = static_cast<std::size_t>(from.number_up_to(end_of_all - first));
-      if (!std::has_single_bit(leaves) || first % leaves != 0) throw BytesError("has sums of no whole branch");
+      if (!is_node(first, leaves)) throw BytesError("has sums of no whole branch");
       if (!empty() && first != end()) throw BytesError("has sums that do not follow each other");
       add(Node{first, leaves, read(from, first, leaves)});
     }
   }
 
  private:
-  static bool are_siblings(const Node& a, const Node& b) {
-    return a.leaves == b.leaves && a.first % (2 * a.leaves) == 0;
+  static constexpr std::size_t kBranches = 8;
+
+  /// The leaves of the largest branch of which so many leaves are a multiple. Precondition: leaves > 0.
+  static std::size_t branch_of(std::size_t leaves) {
+    std::size_t branch = 1;
+    for (; leaves % kBranches == 0; leaves /= kBranches) branch *= kBranches;
+    return branch;
+  }
+  static bool is_node(std::size_t first, std::size_t leaves) {
+    if (leaves == 0) return false;
+    const std::size_t branch = branch_of(leaves);
+    const std::size_t branches = leaves / branch;
+    return branches < kBranches && first % (branches == 1 ? branch : branch * kBranches) == 0;
+  }
+  /// Whether b is the branch that follows the first ones, a, of the same larger branch.
+  static bool goes_on(const Node& a, const Node& b) {
+    const bool is_branch = branch_of(b.leaves) == b.leaves;
+    return is_branch && branch_of(a.leaves) == b.leaves && a.first % (b.leaves * kBranches) == 0;
   }
 
   std::vector<Node> nodes_;

@@ -17,8 +17,8 @@
 namespace poesy {
 
 /// Puts units of machines together, in their order, from the first unit of a range on. Holds a sketch of each response
-/// at each pose; memory does not grow with the number of machines but for the logarithm of it (MergeTree). A last unit
-/// that is not whole is kept apart until the end, so that a study with more machines can go on without it.
+/// at each pose; memory hardly grows with the number of machines, by one sum for each octal digit of it (MergeTree). A
+/// last unit that is not whole is kept apart until the end, so that a study with more machines can go on without it.
 class MachineCollector {
  public:
   /// units: those of a shard, or all. Refers to the table and the analysis.

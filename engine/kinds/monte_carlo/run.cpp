@@ -1,6 +1,5 @@
 #include "engine/kinds/monte_carlo/kind.h"
 
-#include <bit>
 #include <utility>
 
 #include "engine/kinds/monte_carlo/collector.h"
@@ -12,6 +11,7 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
 #include "engine/run/rounds.h"
+#include "engine/stats/merge_tree.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -213,7 +213,7 @@ MemoryOutlook machine_memory(const Study& study, const Plan& plan) {
   const std::size_t cells = plan.poses().size() * responses;
   const MachineTable table(plan, responses, study.analysis);
   const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512;
-  const std::size_t nodes = std::bit_width(table.units()) * sums;
+  const std::size_t nodes = MergeTree<MachineSums>::most_nodes(table.units()) * sums;
   const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(std::uint32_t);
   const std::size_t numbers = (cells + 6 * responses * errors * (1 + kEffectBins)) * sizeof(double);
   return {cells * kSketch + nodes + kInFlight * piece, cells * kPackedSketch + nodes, numbers, numbers};

@@ -292,8 +292,7 @@ struct Trial {
 MemoryOutlook memory_of(const IndexPanel& panel, const PanelDesign& design) {
   const std::size_t cells = panel.responses * panel.groups.size() * panel.poses;
   const std::size_t sums = cells * sizeof(IndexSums);
-  std::size_t nodes = 2;
-  for (std::size_t leaves = design.units(); leaves > 1; leaves /= 2) ++nodes;
+  const std::size_t nodes = 1 + MergeTree<PanelSums>::most_nodes(design.units());
   const std::size_t numbers = cells * 7 * sizeof(double);
   return {nodes * sums, nodes * sums, numbers, numbers};
 }
