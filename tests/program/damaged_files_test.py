@@ -1,0 +1,171 @@
+"""Files that were cut off or had bits turned over: no command crashes or hangs, and no number changes without a warning.
+
+For every kind of result, for a shard and for a checkpoint. POESY_DAMAGES says how many flips of one to 64 bits each of
+them gets (default 10), and with them a fifth as many truncations; POESY_DAMAGE_SEED which ones.
+"""
+
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from poesy_program import PROGRAM, main
+from resumption import STUDIES, ResumptionTest
+
+FLIPS = int(os.environ.get("POESY_DAMAGES", "10"))
+TRUNCATIONS = max(1, FLIPS // 5)
+SEED = int(os.environ.get("POESY_DAMAGE_SEED", "1"))
+LONGEST = 10.0  # seconds
+CHANGED = b"was changed since it was written"
+# Each kind's study with so few samples or poses that it has a result at once.
+SMALLER = [("samples = 12300", "samples = 60"), ("samples = 2100", "samples = 64"), ("samples = 30000", "samples = 3000"),
+           ("count = 4000", "count = 20"), ("count = 1500", "count = 20"), ("count = 20000", "count = 30")]
+READERS = [("verify", "r.h5"), ("show", "r.h5"), ("show", "r.h5", "--json"), ("export", "r.h5", "-d", "tables"),
+           ("report", "r.h5", "-o", "r.html")]
+SENSITIVITY_READERS = [("tolerances", "r.h5", "--response", "linear_deformation", "--extrapolate", "-d",
+                        "tolerances"), ("replay", "r.h5", "delta_1_1_y", "0", "1")]
+
+
+def smaller(study):
+    for large, small in SMALLER:
+        study = study.replace(large, small)
+    return study
+
+
+def damages(content, chooser):
+    """(what was done, bytes) of each damage."""
+    for _ in range(TRUNCATIONS):
+        end = chooser.randrange(len(content))
+        yield f"cut off after {end} of {len(content)} bytes", content[:end]
+    for _ in range(FLIPS):
+        bits = chooser.sample(range(8 * len(content)), chooser.choice((1, 2, 4, 8, 16, 32, 64)))
+        changed = bytearray(content)
+        for bit in bits:
+            changed[bit // 8] ^= 1 << bit % 8
+        yield f"bits {sorted(bits)} turned over", bytes(changed)
+
+
+class DamagedFiles(ResumptionTest):
+    def setUp(self):
+        super().setUp()
+        self.slowest = 0.0
+        self.counts = dict.fromkeys(("refused", "warned", "as before"), 0)
+
+    def run_in(self, folder, command):
+        """How the command ended. Tried twice, for another program may have had the machine."""
+        for _ in range(2):
+            start = time.monotonic()
+            try:
+                done = subprocess.run([PROGRAM, *command], cwd=folder, capture_output=True, timeout=LONGEST, check=False)
+                self.slowest = max(self.slowest, time.monotonic() - start)
+                return done
+            except subprocess.TimeoutExpired:
+                continue
+        self.fail(f"{command} does not end")
+
+    @staticmethod
+    def told(folder, command, done):
+        """Everything that the command says or writes of the result's content; without what is said of the run."""
+        if command[0] == "report":
+            return None  # a page has the facts of the run between its numbers; those are the ones of show --json
+        if command[0] == "export":
+            return {path.name: path.read_bytes() for path in (folder / "tables").iterdir()}
+        if "--json" in command:
+            content = json.loads(done.stdout)
+            return {key: value for key, value in content.items() if key not in ("run", "solves_per_second")}
+        return re.sub(rb"[0-9]+ solves in .*\n", b"", done.stdout)
+
+    def fault(self, folder, command, sound):
+        """What is wrong with how a reader takes a damaged file, if anything is."""
+        for left in ("tables", "tolerances"):
+            shutil.rmtree(folder / left, ignore_errors=True)
+        done = self.run_in(folder, command)
+        if done.returncode not in (0, 2, 3):
+            return f"ends with {done.returncode}: {done.stderr[-300:]}"
+        if done.returncode != 0:
+            self.counts["refused"] += 1
+            return None if done.stderr.startswith(b"poesy: ") else f"says {done.stderr[-300:]}"
+        if CHANGED in done.stderr:
+            self.counts["warned"] += 1
+            return None
+        self.counts["as before"] += 1
+        return None if self.told(folder, command, done) == sound[command] else "has other content, and does not warn"
+
+    def faults(self, name, content, readers, sound):
+        faults = []
+        chooser = random.Random(f"{SEED} {name}")
+        with tempfile.TemporaryDirectory(dir=self.folder) as holder:
+            folder = Path(holder)
+            for what, damaged in damages(content, chooser):
+                (folder / "r.h5").write_bytes(damaged)
+                for command in readers:
+                    fault = self.fault(folder, command, sound)
+                    if fault:
+                        faults.append(f"{name}, {what}: {command[0]} {fault}")
+        return faults
+
+    def of_kind(self, kind):
+        with tempfile.TemporaryDirectory(dir=self.folder) as holder:
+            folder = Path(holder)
+            (folder / "study.toml").write_text(smaller(STUDIES[kind]))
+            made = self.run_in(folder, ("run", "study.toml", "-o", "r.h5", "--quiet"))
+            self.assertIn(made.returncode, (0, 6), made.stderr)
+            readers = READERS + (SENSITIVITY_READERS if kind == "sensitivity" else [])
+            sound = {}
+            for command in readers:
+                done = self.run_in(folder, command)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                sound[command] = self.told(folder, command, done)
+            return self.faults(kind, (folder / "r.h5").read_bytes(), readers, sound)
+
+    def test_results(self):
+        with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+            faults = [fault for of_one in pool.map(self.of_kind, STUDIES) for fault in of_one]
+        print(f"{len(STUDIES)} results, {FLIPS} flips and {TRUNCATIONS} truncations each, the longest {self.slowest:.1f} s: {self.counts}")
+        self.assertEqual(faults, [])
+        self.assertGreater(self.counts["refused"], 0)
+
+    def test_shards(self):
+        self.write("study.toml", smaller(STUDIES["machines"]).replace("samples = 60", "samples = 3000"))
+        for number in (1, 2):
+            self.succeeds("run", "study.toml", "--shard", f"{number}/2", "-o", f"{number}.h5", "--quiet")
+        self.succeeds("merge", "1.h5", "2.h5", "-o", "sound.h5")
+        for what, damaged in damages((self.folder / "1.h5").read_bytes(), random.Random(SEED)):
+            with self.subTest(what):
+                self.write("damaged.h5", damaged)
+                done = self.run_in(self.folder, ("merge", "damaged.h5", "2.h5", "-o", "out.h5"))
+                self.assertIn(done.returncode, (0, 2, 3), done.stderr)
+                self.assertEqual((self.folder / "out.h5").exists(), done.returncode == 0)
+                if done.returncode == 0:
+                    self.assertEqual(self.content_hash("out.h5"), self.content_hash("sound.h5"))
+                    (self.folder / "out.h5").unlink()
+
+    def test_checkpoints(self):
+        """Without an older one beside it."""
+        for kind in ("machines", "sobol", "coupling"):
+            self.write("study.toml", smaller(STUDIES[kind]))
+            self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")
+            expected = self.content_hash()
+            content = self.newer.read_bytes()
+            (self.folder / "out.h5").unlink()
+            resume = ("run", "study.toml", "-o", "out.h5", "--resume", "--quiet")
+            for what, damaged in damages(content, random.Random(SEED)):
+                with self.subTest(kind=kind, damage=what):
+                    self.newer.write_bytes(damaged)
+                    done = self.run_in(self.folder, resume)
+                    self.assertEqual(done.returncode, 3, done.stderr)
+                    self.assertEqual({path.name for path in self.folder.iterdir()}, {"study.toml", "out.h5.part"})
+            self.newer.write_bytes(content)
+            self.succeeds(*resume)
+            self.assertEqual(self.content_hash(), expected)
+            (self.folder / "out.h5").unlink()
+
+
+if __name__ == "__main__":
+    main()
