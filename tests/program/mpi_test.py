@@ -1,19 +1,25 @@
-"""Runs under mpirun give what one process gives, and end cleanly whatever happens to a rank."""
+"""Runs under mpirun give what one process gives, and end cleanly whatever happens to a rank.
+
+POESY_RANK_KILLS says how often a rank is killed at a random moment (default 3), POESY_KILL_SEED at which moments.
+"""
 
 import os
+import random
 import shutil
 import signal
 import subprocess
 import time
 import unittest
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
 
 from poesy_program import PROGRAM, main
-from resumption import ALLOCATION, CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO, SENSITIVITY, SOBOL, ResumptionTest
+from resumption import ALLOCATION, CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO, SENSITIVITY, SOBOL, STUDIES, ResumptionTest
 
 MPIRUN = shutil.which("mpirun")
+KILLS = int(os.environ.get("POESY_RANK_KILLS", "3"))
 HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
@@ -112,6 +118,39 @@ class Mpi(RankTest):
                 self.assertEqual(self.content_hash(), expected)
                 self.assertEqual(list(self.folder.glob("out.h5.part*")), [])
                 (self.folder / "out.h5").unlink()
+
+    def test_ranks_that_are_killed_at_any_moment(self):
+        chooser = random.Random(int(os.environ.get("POESY_KILL_SEED", "20240707")))
+        expected, seconds = {}, {}
+        for kind, study in STUDIES.items():
+            expected[kind] = self.undisturbed(study)
+            start = time.monotonic()
+            self.succeeds_on(3, "--threads", 1)
+            seconds[kind] = time.monotonic() - start
+            (self.folder / "out.h5").unlink()
+        killed = resumed = 0
+        while killed < KILLS:
+            kind = chooser.choice(list(STUDIES))
+            rank = killed % 3
+            with self.subTest(killed=killed, kind=kind, rank=rank):
+                self.write("study.toml", STUDIES[kind])
+                with self.start(3, "--threads", 1, "--checkpoint-every", "0.01 s") as run:
+                    process = self.rank_process(run, rank)
+                    time.sleep(chooser.uniform(0.0, seconds[kind]))
+                    with suppress(ProcessLookupError):  # that it ended is no fault
+                        os.kill(process, signal.SIGKILL)
+                        killed += 1
+                    run.communicate(timeout=60)
+                if (self.folder / "out.h5").exists():
+                    self.assertEqual(self.content_hash(), expected[kind])
+                if run.returncode != 0:
+                    taken_up = self.newer.exists() or self.older.exists()
+                    resumed += taken_up
+                    self.succeeds_on(chooser.randint(1, 3), "--threads", 1, *["--resume"] * taken_up)
+                self.assertEqual(self.content_hash(), expected[kind])
+                self.assertEqual([path.name for path in self.folder.glob("out.h5?*")], [])
+                (self.folder / "out.h5").unlink()
+        print(f"{killed} ranks killed, {resumed} runs resumed from a checkpoint")
 
     def test_stopped_and_resumed(self):
         expected = self.long_study()
