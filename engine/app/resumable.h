@@ -80,8 +80,9 @@ class ResumableRun {
       before_ = found->checkpoint.time;
       stages = std::move(found->checkpoint.stages);
     }
-    checkpoints_.emplace([this] { return due(); }, [this](std::span<const Bytes> all) { save(all); },
-                         std::move(stages));
+    checkpoints_.emplace([this] { return due(); }, [this](std::span<const ByteSource> all) { save(all); },
+                         std::move(stages),
+                         [this](std::size_t stage, ByteWriter& to) { files_.write_state(stage, to); });
     start_ = Clock::now();
     next_ = start_ + every_;
   }
@@ -150,7 +151,7 @@ class ResumableRun {
     return true;
   }
 
-  void save(std::span<const Bytes> stages) {
+  void save(std::span<const ByteSource> stages) {
     // A checkpoint that took a time to write is followed by another after so many of these at the earliest: under 1 %,
     // also when the last one is much the longest.
     constexpr double kLeastRatio = 200.0;

@@ -146,7 +146,7 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
     throw InputError({options.study}, "is not the same here as on rank 0, or its poses or poesy itself are not",
                      "give all ranks the same files and the same program");
   }
-  Checkpoints not_kept([] { return false; }, [](std::span<const Bytes>) {});
+  Checkpoints not_kept;
   run_study(study, *model, poses.poses,
             {.threads = threads,
              .stop = &stop,

@@ -1,6 +1,8 @@
 #include "engine/base/bytes.h"
 
+#include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace poesy {
 namespace {
@@ -30,19 +32,61 @@ void ByteWriter::number(std::uint64_t value) {
     bytes_.push_back(static_cast<std::byte>(value & 0xffU) | kMore);
   }
   bytes_.push_back(static_cast<std::byte>(value));
+  hand_on();
 }
 
 void ByteWriter::reals(std::span<const double> values) {
-  const std::size_t start = bytes_.size();
-  bytes_.resize(start + values.size() * sizeof(double));
-  for (std::size_t k = 0; k < values.size(); ++k) store(values[k], &bytes_[start + k * sizeof(double)]);
+  while (!values.empty()) {
+    const std::span<const double> some = values.first(std::min(values.size(), most_at_once() / sizeof(double)));
+    const std::size_t start = bytes_.size();
+    bytes_.resize(start + some.size_bytes());
+    for (std::size_t k = 0; k < some.size(); ++k) store(some[k], &bytes_[start + k * sizeof(double)]);
+    values = values.subspan(some.size());
+    hand_on();
+  }
 }
 
-void ByteWriter::raw(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+void ByteWriter::raw(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const std::span<const std::byte> some = bytes.first(std::min(bytes.size(), most_at_once()));
+    bytes_.insert(bytes_.end(), some.begin(), some.end());
+    bytes = bytes.subspan(some.size());
+    hand_on();
+  }
+}
+
+std::size_t ByteWriter::most_at_once() const { return sink_ ? kPiece : std::numeric_limits<std::size_t>::max(); }
+
+/// Pieces as they are full.
+void ByteWriter::hand_on() {
+  if (!sink_ || bytes_.size() < kPiece) return;
+  sink_(std::span(bytes_).first(kPiece));
+  bytes_.erase(bytes_.begin(), bytes_.begin() + kPiece);
+}
+
+void ByteWriter::flush() {
+  if (!bytes_.empty()) sink_(bytes_);
+  bytes_.clear();
+}
 
 void ByteWriter::block(std::span<const std::byte> bytes) {
   number(bytes.size());
   raw(bytes);
+}
+
+std::size_t size_of(const ByteSource& source) {
+  std::size_t size = 0;
+  ByteWriter to([&](std::span<const std::byte> bytes) { size += bytes.size(); });
+  source(to);
+  to.flush();
+  return size;
+}
+
+Bytes bytes_of(const ByteSource& source) {
+  ByteWriter to;
+  to.reserve(size_of(source));
+  source(to);
+  return to.take();
 }
 
 std::uint64_t ByteReader::number() {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -27,6 +28,17 @@ class BytesError : public std::runtime_error {
 ///     text      as a block, UTF-8
 class ByteWriter {
  public:
+  /// Takes bytes that were written.
+  using Sink = std::function<void(std::span<const std::byte>)>;
+  /// Bytes that a sink gets at a time.
+  static constexpr std::size_t kPiece = std::size_t{64} << 10U;
+
+  /// Keeps what is written, until it is taken.
+  ByteWriter() = default;
+  /// Hands on what is written and keeps no more than a piece of it. Every piece but the last has kPiece bytes, however
+  /// they were written. What the sink throws comes out of the member that filled the piece.
+  explicit ByteWriter(Sink sink) : sink_(std::move(sink)) { bytes_.reserve(2 * kPiece); }
+
   /// Makes room for so many bytes in all, so that a long state is not copied while it grows.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   void number(std::uint64_t value);                         ///< LEB128.
@@ -37,11 +49,24 @@ class ByteWriter {
   void text(std::string_view value) { block(std::as_bytes(std::span(value))); }
   void raw(std::span<const std::byte> bytes);  ///< The bytes as they are, without their number.
 
-  Bytes take() { return std::exchange(bytes_, {}); }  ///< What was written; leaves nothing.
+  /// What was written; leaves nothing. Precondition: there is no sink.
+  Bytes take() { return std::exchange(bytes_, {}); }
+  /// Hands on the last piece, if anything is left. Precondition: there is a sink.
+  void flush();
 
  private:
+  std::size_t most_at_once() const;
+  void hand_on();
+
   Bytes bytes_;
+  Sink sink_;
 };
+
+/// Writes something of any length: the same bytes each time it is called, until what it refers to changes.
+using ByteSource = std::function<void(ByteWriter&)>;
+
+std::size_t size_of(const ByteSource& source);  ///< Bytes that it writes; none of them is kept.
+Bytes bytes_of(const ByteSource& source);       ///< All that it writes, in as much memory as that takes.
 
 /// Reads what ByteWriter wrote. The bytes may come from anywhere: every member throws BytesError for what cannot have
 /// been written, and no memory is asked for that the bytes left could not fill.

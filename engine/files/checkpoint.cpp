@@ -15,6 +15,7 @@
 #include <utility>
 #include <variant>
 
+#include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/files/content_hash.h"
@@ -28,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
 
 std::string hash_of(const PoseSet& poses) {
@@ -55,6 +56,45 @@ void put(ByteWriter& to, const std::string& value) { to.text(value); }
 void put(ByteWriter& to, std::uint64_t value) { to.number(value); }
 void take(ByteReader& from, std::string& value) { value = from.text(); }
 void take(ByteReader& from, std::uint64_t& value) { value = from.number(); }
+
+/// Gives the SHA-256 of what the source wrote.
+Sha256::Digest put_blocks(ByteWriter& to, const ByteSource& source) {
+  Sha256 sha;
+  ByteWriter pieces([&](std::span<const std::byte> piece) {
+    sha.bytes(piece);
+    to.block(piece);
+  });
+  source(pieces);
+  pieces.flush();
+  to.block({});
+  return sha.digest();
+}
+
+Bytes take_blocks(ByteReader& from) {
+  Bytes all;
+  ByteReader again = from;
+  std::size_t size = 0;
+  while (const std::size_t block = again.block().size()) size += block;
+  all.reserve(size);
+  for (;;) {
+    const std::span<const std::byte> block = from.block();
+    if (block.empty()) return all;
+    all.insert(all.end(), block.begin(), block.end());
+  }
+}
+
+/// The next block of a file, empty at the end of a state. Throws BytesError.
+void read_block(std::istream& file, Bytes& block) {
+  constexpr std::size_t kMostDigits = 10;
+  constexpr std::byte kMore{0x80};
+  block.clear();
+  do {
+    block.push_back(static_cast<std::byte>(file.get()));
+  } while (file && block.size() < kMostDigits && (block.back() & kMore) != std::byte{0});
+  block.resize(ByteReader(block).number_up_to(ByteWriter::kPiece));
+  if (file.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(block.size()))) return;
+  throw BytesError("ends too early");
+}
 
 double seconds(ByteReader& from) {
   const double value = from.real();
@@ -137,31 +177,30 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
         "ask for as many or more");
 }
 
-CheckpointPieces::CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time,
-                                   std::span<const Bytes> stages)
-    : stages_(stages) {
-  ByteWriter head;
-  head.raw(std::as_bytes(std::span(kCheckpointMagic)));
-  head.number(kVersion);
-  for_each_member(identity, [&](const auto& value) { put(head, value); });
-  head.real(time.wall);
-  head.real(time.checkpoints);
-  head.number(stages.size());
-  head_ = head.take();
-  for (const Bytes& stage : stages) {
-    head.number(stage.size());
-    lengths_.push_back(head.take());
-  }
+std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, const RunTime& time,
+                                          std::span<const ByteSource> stages, const ByteWriter::Sink& sink) {
   Sha256 sha;
-  for_each([&](std::span<const std::byte> piece) { sha.bytes(piece); });  // the digest is still empty
-  const Sha256::Digest digest = sha.digest();
-  digest_.assign(digest.begin(), digest.end());
-}
-
-std::size_t CheckpointPieces::size() const {
   std::size_t size = 0;
-  for_each([&](std::span<const std::byte> piece) { size += piece.size(); });
-  return size;
+  ByteWriter to([&](std::span<const std::byte> piece) {
+    sha.bytes(piece);
+    sink(piece);
+    size += piece.size();
+  });
+  to.raw(std::as_bytes(std::span(kCheckpointMagic)));
+  to.number(kVersion);
+  for_each_member(identity, [&](const auto& value) { put(to, value); });
+  to.real(time.wall);
+  to.real(time.checkpoints);
+  to.number(stages.size());
+  std::vector<StoredState> stored;
+  for (const ByteSource& stage : stages) {
+    to.flush();
+    const std::size_t offset = size;
+    stored.push_back({offset, put_blocks(to, stage)});
+  }
+  to.flush();
+  sink(sha.digest());
+  return stored;
 }
 
 Checkpoint decode_checkpoint(std::span<const std::byte> file) {
@@ -183,8 +222,9 @@ Checkpoint decode_checkpoint(std::span<const std::byte> file) {
   checkpoint.time.checkpoints = seconds(from);
   const std::size_t stages = from.count(1);
   for (std::size_t k = 0; k < stages; ++k) {
-    const std::span<const std::byte> state = from.block();
-    checkpoint.stages.emplace_back(state.begin(), state.end());
+    const std::size_t offset = content.size() - from.left();
+    checkpoint.stages.push_back(take_blocks(from));
+    checkpoint.stored.push_back({offset, sha256(checkpoint.stages.back())});
   }
   from.expect_end();
   return checkpoint;
@@ -199,27 +239,59 @@ std::optional<FoundCheckpoint> CheckpointFiles::find() {
   if (!exist()) return std::nullopt;
   auto newer = read_checkpoint(newer_);
   newer_is_sound_ = std::holds_alternative<Checkpoint>(newer);
-  if (newer_is_sound_) return FoundCheckpoint{std::get<Checkpoint>(std::move(newer)), newer_, ""};
-  auto older = read_checkpoint(older_);
-  if (std::holds_alternative<Checkpoint>(older)) {
-    return FoundCheckpoint{std::get<Checkpoint>(std::move(older)), older_, std::get<std::string>(newer)};
+  auto older = newer_is_sound_ ? decltype(newer)() : read_checkpoint(older_);
+  if (!newer_is_sound_ && !std::holds_alternative<Checkpoint>(older)) {
+    throw FileError(newer_, std::get<std::string>(newer) + ", and " + older_ + " " + std::get<std::string>(older),
+                    "restore a copy, or move them away to start afresh");
   }
-  throw FileError(newer_, std::get<std::string>(newer) + ", and " + older_ + " " + std::get<std::string>(older),
-                  "restore a copy, or move them away to start afresh");
+  FoundCheckpoint found =
+      newer_is_sound_ ? FoundCheckpoint{std::get<Checkpoint>(std::move(newer)), newer_, ""}
+                      : FoundCheckpoint{std::get<Checkpoint>(std::move(older)), older_, std::get<std::string>(newer)};
+  hold(found.path, found.checkpoint.stored);
+  return found;
 }
 
-void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages) {
-  const CheckpointPieces pieces(identity, time, stages);
+void CheckpointFiles::hold(const std::string& path, std::vector<StoredState> states) {
+  held_ = std::ifstream(path, std::ios::binary);
+  states_ = std::move(states);
+}
+
+void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& time,
+                            std::span<const ByteSource> stages) {
   FileWriter writer(newer_, result_);
-  writer.expect(pieces.size());
-  pieces.for_each([&](std::span<const std::byte> piece) { writer.write(piece); });
+  writer.expect([&] {
+    std::size_t size = 0;
+    write_checkpoint(identity, time, stages, [&](std::span<const std::byte> piece) { size += piece.size(); });
+    return size;
+  });
+  auto states =
+      write_checkpoint(identity, time, stages, [&](std::span<const std::byte> piece) { writer.write(piece); });
   writer.sync();
   if (newer_is_sound_) put_at_second_name(newer_, older_);
   writer.commit();
   newer_is_sound_ = true;
+  hold(newer_, std::move(states));
+}
+
+void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
+  POESY_EXPECTS(stage < states_.size());
+  held_.clear();
+  held_.seekg(static_cast<std::streamoff>(states_[stage].offset));
+  Sha256 sha;
+  try {
+    Bytes block;
+    for (read_block(held_, block); !block.empty(); read_block(held_, block)) {
+      sha.bytes(block);
+      to.raw(block);
+    }
+    if (sha.digest() != states_[stage].sha256) throw BytesError("was changed");
+  } catch (const BytesError& error) {
+    throw FileError(newer_, std::string(error.what()) + " while a run was using it", "check the disk");
+  }
 }
 
 void CheckpointFiles::remove() {
+  hold({}, {});  // an open file would take room still
   // The newest last, so that what is left of a removal that was cut short is the newest.
   for (const std::string* path : {&older_, &newer_}) {
     std::error_code error;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,54 +46,41 @@ struct RunTime {
   double checkpoints = 0.0;  ///< of these, for checkpoints
 };
 
+/// Where a state stands in its file.
+struct StoredState {
+  std::size_t offset = 0;                 ///< of its first block
+  std::array<std::byte, 32> sha256 = {};  ///< of the state
+};
+
 /// An unfinished run.
 struct Checkpoint {
-  CheckpointIdentity identity;  ///< what a run that takes it up must have
-  RunTime time;                 ///< that it took so far
-  std::vector<Bytes> stages;    ///< states of its stages (engine/run/checkpoints.h)
+  CheckpointIdentity identity;      ///< what a run that takes it up must have
+  RunTime time;                     ///< that it took so far
+  std::vector<Bytes> stages;        ///< states of its stages (engine/run/checkpoints.h)
+  std::vector<StoredState> stored;  ///< the same states in the file
 };
 
 /// Throws InputError that names the first difference, unless a run of this identity may take up the checkpoint of that
 /// file: nothing differs, or it asks for more samples.
 void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path);
 
-/// The bytes of a checkpoint file, piece by piece, for states may be large. In the notation of engine/base/bytes.h:
+/// Gives the bytes of a checkpoint file to `sink`, piece by piece and in one pass; where its states stand. In the
+/// notation of engine/base/bytes.h:
 ///
 ///     16 bytes "poesy-checkpoint"
-///     number   version of the format, 2
+///     number   version of the format, 3
 ///     text     poesy_version, git_commit, model
 ///     number   seed, samples
 ///     text     study, poses, shard
 ///     real     seconds that the run took, and of these for checkpoints
-///     number   stages, and each as a block
+///     number   stages, and each as blocks that follow each other, the last of which is empty
 ///     32 bytes SHA-256 of everything before
 ///
 /// What a state consists of is for the program that wrote it alone: its version is part of the identity.
-class CheckpointPieces {
- public:
-  /// Refers to the stages.
-  CheckpointPieces(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
+std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, const RunTime& time,
+                                          std::span<const ByteSource> stages, const ByteWriter::Sink& sink);
 
-  std::size_t size() const;  ///< Bytes of the whole file.
-  /// Calls write(bytes) with each piece in order.
-  template <class Write>
-  void for_each(const Write& write) const {
-    write(std::span<const std::byte>(head_));
-    for (std::size_t k = 0; k < stages_.size(); ++k) {
-      write(std::span<const std::byte>(lengths_[k]));
-      write(std::span<const std::byte>(stages_[k]));
-    }
-    write(std::span<const std::byte>(digest_));
-  }
-
- private:
-  Bytes head_;
-  std::vector<Bytes> lengths_;
-  std::span<const Bytes> stages_;
-  Bytes digest_;
-};
-
-/// Reads a whole checkpoint file back. Throws BytesError for anything that CheckpointPieces does not give.
+/// Reads a whole checkpoint file back. Throws BytesError for anything that write_checkpoint does not give.
 Checkpoint decode_checkpoint(std::span<const std::byte> file);
 
 /// A checkpoint that was found.
@@ -114,14 +104,23 @@ class CheckpointFiles {
   /// The newest one that is sound, if there is a file at all. Throws FileError when there is and none is sound.
   std::optional<FoundCheckpoint> find();
   /// Throws FileError; then the checkpoints that were there are there.
-  void write(const CheckpointIdentity& identity, const RunTime& time, std::span<const Bytes> stages);
+  void write(const CheckpointIdentity& identity, const RunTime& time, std::span<const ByteSource> stages);
+  /// Writes the state of a stage as the checkpoint has it that was found or written last: bit by bit, also when
+  /// somebody has removed the file. Throws FileError when it cannot be read or was changed. Precondition: there is such
+  /// a stage.
+  void write_state(std::size_t stage, ByteWriter& to);
   void remove();  ///< Removes all of them. Throws FileError.
 
  private:
+  /// Opens the file of these states, to read them again.
+  void hold(const std::string& path, std::vector<StoredState> states);
+
   std::string result_;
   std::string newer_;
   std::string older_;
   bool newer_is_sound_ = false;  ///< only then it may replace the older one
+  std::ifstream held_;           ///< what was found or written last, if it could be opened
+  std::vector<StoredState> states_;
 };
 
 /// Keeps other runs from the same result, and so from its checkpoints, while it lives: an advisory lock on

@@ -206,7 +206,7 @@ void FileWriter::commit() {
 
 /// "needs N bytes, M are free", as much as is known; what was written so far counts as free, for it is going to be.
 std::string FileWriter::missing_space() const {
-  std::string text = expected_ == 0 ? "" : "; needs " + std::to_string(expected_) + " bytes";
+  std::string text = !expected_ ? "" : "; needs " + std::to_string(expected_()) + " bytes";
   struct statvfs disk {};
   struct stat file {};
   constexpr std::uintmax_t kStatBlock = 512;  // the unit of st_blocks
@@ -223,7 +223,7 @@ std::string FileWriter::remedy(int error) const {
     case EDQUOT:
       return "make room or choose another folder";
     case EFBIG:
-      return "raise the limit on file sizes" + (expected_ == 0 ? "" : " to " + std::to_string(expected_) + " bytes") +
+      return "raise the limit on file sizes" + (!expected_ ? "" : " to " + std::to_string(expected_()) + " bytes") +
              " or choose another folder";
     case ENOENT:
     case ENOTDIR:

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 struct stat;
 
@@ -44,8 +46,15 @@ class FileWriter {
   FileWriter& operator=(const FileWriter&) = delete;
   ~FileWriter();
 
-  /// The size that the file is going to have, for the message when it finds no room.
-  void expect(std::size_t bytes) { expected_ = bytes; }
+  /// Gives the size that the file is going to have, for the message when it finds no room. Asked only then, from
+  /// within another member.
+  using ExpectedSize = std::function<std::size_t()>;
+  /// That of this file.
+  void expect(ExpectedSize size) { expected_ = std::move(size); }
+  /// The same for a size that is known.
+  void expect(std::size_t bytes) {
+    expect([bytes] { return bytes; });
+  }
   void write(std::span<const std::byte> bytes);  ///< Appends.
   void write(std::string_view text);             ///< Appends.
   void sync();                                   ///< Brings everything to the disk. Nothing may be written afterwards.
@@ -59,7 +68,7 @@ class FileWriter {
 
   std::string path_;
   std::string temporary_;
-  std::size_t expected_ = 0;
+  ExpectedSize expected_;
   int descriptor_ = -1;
 };
 

@@ -8,7 +8,7 @@
 namespace poesy {
 std::optional<StudyResult> run_study(const Study& study, const Model& model, const PoseSet& poses,
                                      const RunOptions& options) {
-  Checkpoints not_kept([] { return false; }, [](std::span<const Bytes>) {});
+  Checkpoints not_kept;
   RunOptions with_checkpoints = options;
   if (options.checkpoints == nullptr) with_checkpoints.checkpoints = &not_kept;
   return kind_of(study).run.run({.study = study, .model = model, .poses = poses, .options = with_checkpoints});

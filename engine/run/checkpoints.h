@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -11,85 +11,82 @@
 
 namespace poesy {
 
+/// Of the state of a stage that has ended, bytes that stay in memory at the most where saves can be read again.
+inline constexpr std::size_t kMostStateInMemory = std::size_t{64} << 20U;
+
 /// What a run keeps of itself now and then, so that another run may take it up. A run merges finished work in a fixed
 /// order, so between two merges its accumulators are all there is to keep. A study may consist of several runs one
 /// after another, its stages: each call of a run function (engine/run/fold.h) is one. A continued study goes through
 /// the same stages, and those that were finished have nothing left to solve.
+/// A state is written from the accumulators into what keeps it; only small states of stages that have ended are kept in
+/// memory besides.
 class Checkpoints {
  public:
   /// Whether it is time for another checkpoint.
   using Due = std::function<bool()>;
-  /// Keeps the states of all stages, in order. Never called from two threads at once.
-  using Save = std::function<void(std::span<const Bytes> stages)>;
+  /// Keeps the states of all stages, in order. Never called from two threads at once. Throws FileError; then what was
+  /// kept before is kept.
+  using Save = std::function<void(std::span<const ByteSource> stages)>;
+  /// Writes the state of a stage as it was kept last. Throws FileError.
+  using Fetch = std::function<void(std::size_t stage, ByteWriter& to)>;
 
-  /// stages: what an earlier run kept; empty for a run from the beginning.
-  Checkpoints(Due due, Save save, std::vector<Bytes> stages = {})
-      : due_(std::move(due)), save_(std::move(save)), stages_(std::move(stages)) {}
+  /// Keeps nothing: for a run that nobody continues.
+  Checkpoints() = default;
+  /// stages: what an earlier run kept; empty for a run from the beginning. fetch: if there is one, it gives these
+  /// stages before the first save; then a state of more than most_in_memory is not held besides.
+  Checkpoints(Due due, Save save, std::vector<Bytes> stages = {}, Fetch fetch = {},
+              std::size_t most_in_memory = kMostStateInMemory);
 
   /// The next stage begins: the state to take up, empty where it begins at its beginning.
-  const Bytes& begin() {
-    if (begun_ == stages_.size()) stages_.emplace_back();
-    return stages_[begun_++];
+  Bytes begin();
+  /// Work was merged: writes a checkpoint if one is due. state: of the stage that began last, as everywhere below.
+  void merged(const ByteSource& state) {
+    if (due_ && due_()) save(state);
   }
-
-  /// Work was merged. state() gives the stage's state, if that is wanted.
-  template <class State>
-  void merged(const State& state) {
-    if (!due_()) return;
-    take(state);
-    save();
-  }
-
-  /// The stage, or a round of it, ended with this state, complete or stopped, after these solves in all parts of the
-  /// run.
-  template <class State>
-  void end(bool complete, const SolveCounts& solves, const State& state) {
-    take(state);
-    ends_.resize(begun_);
-    ends_.back() = {complete, solves};
-  }
-
+  /// The stage, or a round of it, ended, complete or stopped, after these solves in all parts of the run.
+  void end(bool complete, const SolveCounts& solves);
+  /// Keeps the state with which the stage ended: in memory, or, where it is large, by a checkpoint at once. If that
+  /// finds no room, it stays in memory after all, for the result may be smaller.
+  void keep(const ByteSource& state);
   /// The run was stopped in what follows its stages and keeps no state; writes a checkpoint.
-  void stopped_after_stages() {
-    stopped_ = true;
-    save();
-  }
+  void stopped_after_stages();
 
   /// Whether all stages that began have ended complete, and nothing after them was stopped.
-  bool complete() const { return !stopped_ && ends_.size() == begun_ && std::ranges::all_of(ends_, &End::complete); }
+  bool complete() const;
   /// Of the stages that have ended.
-  SolveCounts solves() const {
-    SolveCounts sum;
-    for (const End& end : ends_) sum.merge(end.solves);
-    return sum;
-  }
-  /// One state for each stage; empty where none was taken.
-  std::span<const Bytes> stages() const { return stages_; }
-  /// The stage that began last.
-  const Bytes& stage() const { return stages_[begun_ - 1]; }
+  SolveCounts solves() const;
+  /// A copy of one state for each stage; empty where none was kept. Throws FileError.
+  std::vector<Bytes> stages() const;
 
-  /// Writes a checkpoint now, due or not.
-  void save() const { save_(stages_); }
+  /// Writes a checkpoint now, due or not, with this state.
+  void save(const ByteSource& state);
+  /// Writes a checkpoint of what was kept, unless the last one has all of it and can be read.
+  void save();
 
  private:
   struct End {
     bool complete = false;
     SolveCounts solves;
   };
+  /// The state of a stage: these bytes, or, where there are none, what fetch_ gives.
+  struct Kept {
+    Bytes bytes;
+    bool is_saved = false;  ///< fetch_ gives this state or an earlier one
+  };
 
-  template <class State>
-  void take(const State& state) {
-    Bytes& stage = stages_[begun_ - 1];
-    stage = Bytes();  // the older state goes first: there need not be room for two
-    stage = state();
-  }
+  bool is_large(std::size_t bytes) const { return fetch_ && bytes > most_in_memory_; }
+  ByteSource source_of(std::size_t stage) const;
+  void save_all(const ByteSource* state);
 
   Due due_;
   Save save_;
-  std::vector<Bytes> stages_;  ///< those begun, then what is left of the earlier run's
+  Fetch fetch_;
+  std::size_t most_in_memory_ = kMostStateInMemory;
+  std::vector<Kept> stages_;  ///< those begun, then what is left of the earlier run's
   std::size_t begun_ = 0;
   std::vector<End> ends_;  ///< of the stages that have ended
   bool stopped_ = false;
+  bool is_saved_ = false;  ///< fetch_ gives every state as it is
 };
 
 /// One stage's dealings with checkpoints and other ranks, if there are any.
@@ -107,28 +104,24 @@ class Stage {
     if (!state.empty()) restore(std::span<const std::byte>(state));
   }
 
-  /// Between two merges: takes state() and writes a checkpoint when one is due.
-  template <class State>
-  void merged(const State& state) {
+  /// Between two merges: writes a checkpoint with this state when one is due.
+  void merged(const ByteSource& state) {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);
   }
 
-  /// The stage, or a round of it, is complete, or was stopped; then a checkpoint is kept. solves() took it in all parts
-  /// of the run. The ranks after rank 0 first take up rank 0's state when it is complete: then restore(state) is
+  /// The stage, or a round of it, is complete, or was stopped; then a checkpoint is written. solves() took it in all
+  /// parts of the run. The ranks after rank 0 first take up rank 0's state when it is complete: then restore(state) is
   /// called.
-  template <class Solves, class State, class Restore>
-  void end(bool complete, const Solves& solves, const State& state, const Restore& restore) {
+  template <class Solves, class Restore>
+  void end(bool complete, const Solves& solves, const ByteSource& state, const Restore& restore) {
     const bool follows = team_ != nullptr && !team_->leads();
     if (follows && complete) restore(std::span<const std::byte>(team_->end_state()));
-    if (checkpoints_ != nullptr && follows) checkpoints_->end(complete, solves(), [] { return Bytes(); });
-    if (checkpoints_ != nullptr && !follows) {
-      checkpoints_->end(complete, solves(), state);
-      // Before the others are told: who was stopped may have little time left.
-      if (!complete) checkpoints_->save();
-    }
-    if (team_ == nullptr || follows) return;
-    const Bytes own = complete && checkpoints_ == nullptr ? state() : Bytes();
-    team_->end(complete, checkpoints_ != nullptr ? checkpoints_->stage() : own);
+    if (checkpoints_ != nullptr) checkpoints_->end(complete, solves());
+    if (follows) return;
+    if (checkpoints_ != nullptr && complete) checkpoints_->keep(state);
+    // Before the others are told: who was stopped may have little time left.
+    if (checkpoints_ != nullptr && !complete) checkpoints_->save(state);
+    if (team_ != nullptr) team_->end(complete, complete ? bytes_of(state) : Bytes());
   }
 
   /// Another round of the stage begins, from the state with which the one before ended.

@@ -97,7 +97,7 @@ class TableWork {
   SolveCounts read(std::size_t n, ByteReader& from) { return done_.read_block(pending_.first + n, from); }
   SolveCounts solved() const { return done_.total(); }
   std::uint64_t left() const { return done_.samples() - solved().total(); }
-  Bytes state() const { return done_.state(); }
+  void write_state(ByteWriter& to) const { done_.write_state(to); }
   void restore(std::span<const std::byte> state) {
     done_ = EvaluationProgress(result_, kBlockRows, shard_);
     done_.restore(state);
@@ -200,17 +200,11 @@ std::array<std::uint64_t, 6> EvaluationProgress::sizes() const {
   return {kKind, result_->poses, result_->samples, result_->responses, result_->details, block_rows_};
 }
 
-Bytes EvaluationProgress::state() const {
-  const std::size_t numbers = (result_->responses + result_->details) * sizeof(double);
-  constexpr std::size_t kNumbersOfSolve = 4;  // status and iterations: three bytes nearly always
-  constexpr std::size_t kHead = 100;
-  ByteWriter to;
-  to.reserve(kHead + (outcomes(next_) - outcomes(blocks_.first)) * (numbers + kNumbersOfSolve));
+void EvaluationProgress::write_state(ByteWriter& to) const {
   for (const std::uint64_t number : sizes()) to.number(number);
   to.number(blocks_.first);
   to.number(next_);
   write_outcomes(outcomes(blocks_.first), outcomes(next_), to);
-  return to.take();
 }
 
 void EvaluationProgress::restore(std::span<const std::byte> state) {

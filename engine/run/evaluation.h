@@ -78,7 +78,7 @@ class EvaluationProgress {
   SolveCounts total() const;
 
   /// Outcomes of the blocks that were added.
-  Bytes state() const;
+  void write_state(ByteWriter& to) const;
   /// Fills in the outcomes of a state, or of states that follow each other. Throws BytesError for one of an evaluation
   /// of another size.
   void restore(std::span<const std::byte> state);

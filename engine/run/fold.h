@@ -50,13 +50,13 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
 ///     Piece read(std::size_t n, ByteReader&)
 ///     SolveCounts solved() const             of all that was merged, in earlier runs as well
 ///     std::uint64_t left() const             solves that are still to come, as far as is known in this round
-///     Bytes state() const                    everything merged so far
+///     void write_state(ByteWriter&) const    everything merged so far
 ///     void restore(std::span<const std::byte>)   takes up a state in place of its own; throws BytesError
 ///     bool next_round()                      ends the round; whether another one follows
 template <class Work>
 bool fold(Work& work, const RunOptions& options) {
   const auto restore = [&](std::span<const std::byte> state) { work.restore(state); };
-  const auto state = [&] { return work.state(); };
+  const ByteSource state = [&](ByteWriter& to) { work.write_state(to); };
   Stage stage(options.checkpoints, options.team);
   stage.begin(restore);
   const SolveCounts before = work.solved();

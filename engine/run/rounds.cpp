@@ -144,18 +144,13 @@ std::optional<ConvergenceResult> Rounds::result() const {
   return result;
 }
 
-Bytes Rounds::state_before(Bytes rest) const {
-  if (!adaptive_) return rest;
-  ByteWriter to;
-  to.reserve(rest.size() + rows_.size() * 2 * sizeof(double) * rule_.responses * samples_.size() +
-             sizeof(std::uint64_t) + 2);
+void Rounds::write_state(ByteWriter& to) const {
+  if (!adaptive_) return;
   to.number(rows_.size());
   for (const Row& row : rows_) {
     to.reals(row.quantity);
     to.reals(row.half_width);
   }
-  to.raw(rest);
-  return to.take();
 }
 
 void Rounds::restore(ByteReader& from) {

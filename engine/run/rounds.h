@@ -59,8 +59,8 @@ class Rounds {
   /// Empty for a study with a fixed number of samples. Precondition: no round follows.
   std::optional<ConvergenceResult> result() const;
 
-  /// What was decided so far, which is nothing for a fixed number of samples, then the bytes of `rest`.
-  Bytes state_before(Bytes rest) const;
+  /// What was decided so far; writes nothing for a fixed number of samples.
+  void write_state(ByteWriter& to) const;
   /// Takes up what an earlier run decided, of this plan or of one that differs by fewer samples; the rest is left.
   /// Throws BytesError for anything else. Precondition: this is the first round.
   void restore(ByteReader& from);

@@ -12,6 +12,7 @@
 #include "tests/fuzz/small_plans.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/kinds.h"
+#include "tests/support/states.h"
 
 namespace {
 
@@ -23,10 +24,11 @@ template <class Make, class Use>
 void offer(State state, const Make& make, const Use& use) {
   auto first = make();
   if (!fuzz::accepted<BytesError>([&] { first.restore(state); })) return;
-  const Bytes given = first.state();
+  const auto written = [](const auto& from) { return bytes_of([&](ByteWriter& to) { from.write_state(to); }); };
+  const Bytes given = written(first);
   auto second = make();
   second.restore(given);
-  fuzz::expect(second.state() == given, "a state that was taken up is given back");
+  fuzz::expect(written(second) == given, "a state that was taken up is given back");
   use(std::move(first));
 }
 
@@ -71,8 +73,8 @@ void offer_to_evaluation(State state) {
 
 Bytes encoded(const Checkpoint& checkpoint) {
   Bytes file;
-  const CheckpointPieces pieces(checkpoint.identity, checkpoint.time, checkpoint.stages);
-  pieces.for_each([&](State piece) { file.insert(file.end(), piece.begin(), piece.end()); });
+  write_checkpoint(checkpoint.identity, checkpoint.time, test::sources_of(checkpoint.stages),
+                   [&](State piece) { file.insert(file.end(), piece.begin(), piece.end()); });
   return file;
 }
 

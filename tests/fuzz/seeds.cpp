@@ -19,6 +19,7 @@
 #include "tests/engine/kinds/example_result.h"
 #include "tests/fuzz/small_plans.h"
 #include "tests/support/kinds.h"
+#include "tests/support/states.h"
 
 namespace {
 
@@ -137,7 +138,8 @@ void write_results(const std::string& folder) {
 template <class Run>
 std::vector<Bytes> states_of(const Run& run) {
   std::vector<Bytes> states;
-  Checkpoints checkpoints([] { return true; }, [&](std::span<const Bytes> stages) { states.push_back(stages.back()); });
+  Checkpoints checkpoints([] { return true; },
+                          [&](std::span<const ByteSource> stages) { states.push_back(bytes_of(stages.back())); });
   RunOptions options;
   options.threads = 1;
   options.checkpoints = &checkpoints;
@@ -150,11 +152,12 @@ std::vector<Bytes> evaluation_states() {
   std::vector<Bytes> states;
   EvaluationResult result = fuzz::empty_evaluation();
   EvaluationProgress progress(result, fuzz::kBlockRows, Shard());
+  const ByteSource state = [&](ByteWriter& to) { progress.write_state(to); };
   for (std::size_t block = 0; block < 6; ++block) {
-    states.push_back(progress.state());
+    states.push_back(bytes_of(state));
     progress.add_block();
   }
-  states.push_back(progress.state());
+  states.push_back(bytes_of(state));
   return states;
 }
 
@@ -169,8 +172,8 @@ void write_checkpoint(const std::string& path, std::span<const Bytes> stages) {
                                     .poses = "0123",
                                     .shard = "2/5"};
   Bytes file;
-  const CheckpointPieces pieces(identity, {2.5, 0.5}, stages);
-  pieces.for_each([&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
+  write_checkpoint(identity, {2.5, 0.5}, test::sources_of(stages),
+                   [&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
   file.resize(file.size() - 32);
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));

@@ -173,13 +173,11 @@ class MeanSquareWork {
     for (std::size_t n = next_; n < pieces_.count(); ++n) left += solves_of(n).total();
     return left;
   }
-  Bytes state() const {
-    ByteWriter to;
+  void write_state(ByteWriter& to) const {
     for (const std::uint64_t size : sizes()) to.number(size);
     to.number(next_);
     to.number(solved_);
     for (const auto* list : {&base_, &alone_, &among_, &counted_}) to.reals(*list);
-    return to.take();
   }
   void restore(std::span<const std::byte> state) {
     ByteReader from(state);

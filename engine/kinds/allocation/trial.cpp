@@ -140,8 +140,7 @@ class TrialWork {
   }
   SolveCounts solved() const { return total_of(trial_.solves); }
   std::uint64_t left() const { return std::uint64_t{machines_.count - trial_.load.size()} * plan_.poses().size(); }
-  Bytes state() const {
-    ByteWriter to;
+  void write_state(ByteWriter& to) const {
     for (const std::uint64_t size : sizes()) to.number(size);
     to.number(next_);
     for (const auto* list : {&trial_.load, &trial_.pose_load}) to.reals(*list);
@@ -149,7 +148,6 @@ class TrialWork {
     for (const FailedSamples& failed : trial_.failed) failed.write(to);
     for (const std::uint64_t beyond : trial_.beyond) to.number(beyond);
     to.number(trial_.unsolved);
-    return to.take();
   }
   void restore(std::span<const std::byte> state) {
     ByteReader from(state);
@@ -266,12 +264,10 @@ class VariationWork {
   std::uint64_t left() const {
     return solves_of(varied_.variations.size() * varied_.machines.size()).total() - solved().total();
   }
-  Bytes state() const {
-    ByteWriter to;
+  void write_state(ByteWriter& to) const {
     for (const std::uint64_t size : sizes()) to.number(size);
     to.number(next_);
     to.reals(loads_);
-    return to.take();
   }
   void restore(std::span<const std::byte> state) {
     ByteReader from(state);

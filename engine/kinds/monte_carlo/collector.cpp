@@ -228,9 +228,7 @@ void MonteCarloCollector::read_finished(ByteReader& from, std::size_t pose, std:
   effects_[pose] = read_effects(from, responses_, plan_->factors().size());
 }
 
-Bytes MonteCarloCollector::state() const {
-  ByteWriter to;
-  to.reserve(kept_bytes_ + kept_bytes_ / 4);  // what is kept, and some more
+void MonteCarloCollector::write_state(ByteWriter& to) const {
   for (const std::uint64_t number : std::array<std::uint64_t, 5>{kKind, responses_, columns_.result().poses,
                                                                  columns_.result().levels.size(), plan_->samples()}) {
     to.number(number);
@@ -242,10 +240,9 @@ Bytes MonteCarloCollector::state() const {
   }
   for (const QuantileSketch& sketch : sketches_) sketch.write(to);
   to.number(at_pose_.solves.total() > 0 ? 1 : 0);
-  if (at_pose_.solves.total() == 0) return to.take();
+  if (at_pose_.solves.total() == 0) return;
   to.number(open_.value);
   at_pose_.write(to);
-  return to.take();
 }
 
 void MonteCarloCollector::restore(std::span<const std::byte> state) {

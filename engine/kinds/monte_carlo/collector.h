@@ -63,7 +63,7 @@ class MonteCarloCollector {
   MonteCarloResult result() &&;
 
   /// Everything added so far.
-  Bytes state() const;
+  void write_state(ByteWriter& to) const;
   /// Takes up a state of this plan, or of one that differs by fewer samples: then all its poses are open again, and
   /// begin with what was kept of them. States that hold different poses may stand one behind the other. Throws
   /// BytesError for anything else. Precondition: nothing was added.

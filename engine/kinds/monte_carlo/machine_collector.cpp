@@ -173,8 +173,7 @@ MonteCarloResult MachineCollector::result() && {
   return std::move(found);
 }
 
-Bytes MachineCollector::state() const {
-  ByteWriter to;
+void MachineCollector::write_state(ByteWriter& to) const {
   for (const std::uint64_t number :
        std::array<std::uint64_t, 5>{kKind, table_->responses(), poses(), table_->errors(), table_->plan().samples()}) {
     to.number(number);
@@ -188,7 +187,6 @@ Bytes MachineCollector::state() const {
   }
   to.number(tail_ ? 1 : 0);
   if (tail_) tail_->write(to);
-  return to.take();
 }
 
 void MachineCollector::restore(std::span<const std::byte> state) {

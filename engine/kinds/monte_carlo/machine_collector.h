@@ -36,7 +36,7 @@ class MachineCollector {
   MonteCarloResult result() &&;
 
   /// Everything added so far.
-  Bytes state() const;
+  void write_state(ByteWriter& to) const;
   /// Takes up a state of this range of this study, or of one with fewer machines, of which whole units are taken.
   /// States of consecutive ranges may stand one behind the other. Throws BytesError for anything else. Precondition:
   /// nothing was added.

@@ -69,7 +69,10 @@ class PoseWork {
   }
   SolveCounts solved() const { return collect_->total(); }
   std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
-  Bytes state() const { return rounds_.state_before(collect_->state()); }
+  void write_state(ByteWriter& to) const {
+    rounds_.write_state(to);
+    collect_->write_state(to);
+  }
   void restore(std::span<const std::byte> state) {
     rounds_ = Rounds(plan_, rule_);
     ByteReader from(state);
@@ -79,7 +82,7 @@ class PoseWork {
   }
   bool next_round() {
     if (!rounds_.go_on([&](std::size_t) { return overall_means(collect_->finished()); })) return false;
-    const Bytes kept = collect_->state();
+    const Bytes kept = bytes_of([&](ByteWriter& to) { collect_->write_state(to); });
     collect_.reset();
     collect(kept);
     return true;
@@ -154,7 +157,10 @@ class MachineWork {
     const std::size_t machines = last.first.value + last.count - table_.unit(first_).first.value;
     return rounds_.expected_left(solved(), std::uint64_t{machines} * plan_.poses().size());
   }
-  Bytes state() const { return rounds_.state_before(collect_.state()); }
+  void write_state(ByteWriter& to) const {
+    rounds_.write_state(to);
+    collect_.write_state(to);
+  }
   void restore(std::span<const std::byte> state) {
     rounds_ = Rounds(plan_, rule_);
     ByteReader from(state);

@@ -174,8 +174,7 @@ std::vector<UnitStats> SensitivityCollector::cells() && {
   return std::move(whole_);
 }
 
-Bytes SensitivityCollector::state() const {
-  ByteWriter to;
+void SensitivityCollector::write_state(ByteWriter& to) const {
   to.number(kKind);
   to.number(responses_);
   to.number(whole_.size());
@@ -189,7 +188,6 @@ Bytes SensitivityCollector::state() const {
   std::vector<std::size_t> units;
   for (std::size_t cell = 0; cell < whole_.size(); ++cell) units.push_back(units_done(cell));
   history_.write(to, units);
-  return to.take();
 }
 
 void SensitivityCollector::restore(std::span<const std::byte> state) {

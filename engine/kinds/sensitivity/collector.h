@@ -83,7 +83,7 @@ class SensitivityCollector {
   EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
 
   /// Everything added so far.
-  Bytes state() const;
+  void write_state(ByteWriter& to) const;
   /// Takes up a state of this plan, or of one that differs by fewer samples. States that hold different cells may stand
   /// one behind the other. Throws BytesError for anything else. Precondition: nothing was added.
   void restore(std::span<const std::byte> state);

@@ -110,11 +110,7 @@ class ChangeWork {
   }
   static SolveCounts solved() { return {}; }
   static std::uint64_t left() { return 0; }
-  Bytes state() const {
-    ByteWriter to;
-    to.reals(changes_);
-    return to.take();
-  }
+  void write_state(ByteWriter& to) const { to.reals(changes_); }
   void restore(std::span<const std::byte> state) { ByteReader(state).reals(std::span(changes_)); }
   static bool next_round() { return false; }
 

@@ -62,7 +62,10 @@ class CellWork {
   }
   SolveCounts solved() const { return collect_.total(); }
   std::uint64_t left() const { return rounds_.expected_left(solved(), pending_->samples()); }
-  Bytes state() const { return rounds_.state_before(collect_.state()); }
+  void write_state(ByteWriter& to) const {
+    rounds_.write_state(to);
+    collect_.write_state(to);
+  }
   void restore(std::span<const std::byte> state) {
     collect_ = SensitivityCollector(plan_, responses_, conf_level_);
     rounds_ = Rounds(plan_, rule_);

@@ -93,8 +93,8 @@ class PanelWork {
     for (std::size_t n = next_; n < end(); ++n) samples += design_.unit(n).count;
     return rounds_.expected_left(solved(), samples * panel_.solves_of_sample() * panel_.poses);
   }
-  Bytes state() const {
-    ByteWriter to;
+  void write_state(ByteWriter& to) const {
+    rounds_.write_state(to);
     for (const std::uint64_t number : sizes()) to.number(number);
     to.number(plan_.samples());
     to.number(next_);
@@ -102,7 +102,6 @@ class PanelWork {
     closed_.write(to);
     tree_.write(to);
     if (is_open()) open_.write(to);
-    return rounds_.state_before(to.take());
   }
   void restore(std::span<const std::byte> state) {
     ByteReader from(state);

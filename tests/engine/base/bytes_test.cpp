@@ -61,6 +61,48 @@ TEST(Bytes, TextsAndBlocksComeBack) {
   EXPECT_EQ(from.left(), 0U);
 }
 
+/// Some of everything, more than a few pieces.
+void write_some(ByteWriter& to) {
+  constexpr std::size_t kPiece = ByteWriter::kPiece;
+  to.number(kMost);
+  to.reals(std::vector<double>(kPiece / 3, 0.1));
+  for (std::size_t n = 0; n < kPiece; ++n) to.number(n);
+  to.block(Bytes(2 * kPiece + 1, std::byte{9}));
+  to.text("end");
+}
+
+TEST(Bytes, ASinkGetsTheSameBytesInWholePieces) {
+  ByteWriter plain;
+  write_some(plain);
+  const Bytes expected = plain.take();
+  Bytes given;
+  std::vector<std::size_t> sizes;
+  ByteWriter to([&](std::span<const std::byte> piece) {
+    given.insert(given.end(), piece.begin(), piece.end());
+    sizes.push_back(piece.size());
+  });
+  write_some(to);
+  EXPECT_EQ(given.size(), expected.size() / ByteWriter::kPiece * ByteWriter::kPiece);
+  to.flush();
+  to.flush();
+  EXPECT_TRUE(given == expected);
+  ASSERT_GT(sizes.size(), 5U);
+  EXPECT_EQ(sizes.back(), expected.size() % ByteWriter::kPiece);
+  sizes.pop_back();
+  for (const std::size_t size : sizes) EXPECT_EQ(size, ByteWriter::kPiece);
+}
+
+TEST(Bytes, ASourceIsMeasuredAndKeptWhole) {
+  ByteWriter plain;
+  write_some(plain);
+  const Bytes expected = plain.take();
+  EXPECT_EQ(size_of(write_some), expected.size());
+  const Bytes given = bytes_of(write_some);
+  EXPECT_TRUE(given == expected);
+  EXPECT_EQ(given.capacity(), given.size());
+  EXPECT_EQ(size_of([](ByteWriter&) {}), 0U);
+}
+
 TEST(Bytes, WhatCannotHaveBeenWrittenIsRefused) {
   const Bytes endless(11, std::byte{0xff});
   EXPECT_THROW(ByteReader(endless).number(), BytesError);

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
+#include <fstream>
 
 #include "engine/base/error.h"
 #include "engine/files/content_hash.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/kinds.h"
+#include "tests/support/states.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -28,9 +31,8 @@ CheckpointIdentity identity() {
 
 Bytes encoded(std::span<const Bytes> stages, const RunTime& time = {2.5, 0.5}) {
   Bytes file;
-  const CheckpointPieces pieces(identity(), time, stages);
-  pieces.for_each([&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
-  EXPECT_EQ(file.size(), pieces.size());
+  write_checkpoint(identity(), time, sources_of(stages),
+                   [&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
   return file;
 }
 
@@ -44,14 +46,29 @@ Bytes sealed(Bytes content) {
 }
 
 TEST(Checkpoint, ComesBack) {
-  for (const std::vector<Bytes>& stages :
-       {std::vector<Bytes>{}, {some_bytes(300)}, {some_bytes(3), {}, some_bytes(1)}}) {
+  for (const std::vector<Bytes>& stages : {std::vector<Bytes>{},
+                                           {some_bytes(300)},
+                                           {some_bytes(3), {}, some_bytes(1)},
+                                           {some_bytes(ByteWriter::kPiece), some_bytes(3 * ByteWriter::kPiece + 1)}}) {
     const Checkpoint checkpoint = decode_checkpoint(encoded(stages));
     EXPECT_EQ(checkpoint.identity, identity());
     EXPECT_EQ(checkpoint.time.wall, 2.5);
     EXPECT_EQ(checkpoint.time.checkpoints, 0.5);
     EXPECT_EQ(checkpoint.stages, stages);
   }
+}
+
+TEST(Checkpoint, DoesNotTellHowItsStatesWereWritten) {
+  Bytes state;
+  for (std::size_t k = 0; k < 5 * ByteWriter::kPiece / 2; ++k) state.push_back(static_cast<std::byte>(k % 251));
+  const std::vector<ByteSource> in_bits{[&](ByteWriter& to) {
+    for (std::size_t at = 0; at < state.size(); at += 7)
+      to.raw(std::span(state).subspan(at).first(std::min<std::size_t>(7, state.size() - at)));
+  }};
+  Bytes file;
+  write_checkpoint(identity(), {2.5, 0.5}, in_bits,
+                   [&](std::span<const std::byte> piece) { file.insert(file.end(), piece.begin(), piece.end()); });
+  EXPECT_TRUE(file == encoded(std::span(&state, 1)));
 }
 
 TEST(Checkpoint, BeginsWithItsName) {
@@ -94,14 +111,14 @@ TEST(Checkpoint, RefusesContentThatDoesNotFitEvenWithItsDigest) {
 
 TEST(Checkpoint, SaysThatItsFormatIsAnother) {
   const Bytes file = encoded({});
-  for (const unsigned version : {1U, 3U}) {
+  for (const unsigned version : {1U, 2U, 4U}) {
     Bytes content(file.begin(), file.end() - 32);
     content[16] = std::byte(version);
     try {
       static_cast<void>(decode_checkpoint(sealed(std::move(content))));
       ADD_FAILURE();
     } catch (const BytesError& error) {
-      const std::string expected = "version " + std::to_string(version) + ", and this program knows 2";
+      const std::string expected = "version " + std::to_string(version) + ", and this program knows 3";
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
     }
   }
@@ -141,7 +158,7 @@ class Files : public testing::Test {
  protected:
   void write(CheckpointFiles& files, std::size_t state_bytes) {
     const std::vector<Bytes> stages{some_bytes(state_bytes)};
-    files.write(identity(), {}, stages);
+    files.write(identity(), {}, sources_of(stages));
   }
   static std::size_t state_bytes(const FoundCheckpoint& found) { return found.checkpoint.stages.at(0).size(); }
 
@@ -221,6 +238,48 @@ TEST_F(Files, ADamagedOneNeverReplacesASoundOne) {
   EXPECT_EQ(state_bytes(*CheckpointFiles(result_).find()), 5U);
 }
 
+TEST_F(Files, GiveTheStatesBackThatWereWrittenOrFoundLast) {
+  const std::vector<Bytes> states{some_bytes(3 * ByteWriter::kPiece + 5), {}, some_bytes(7)};
+  const auto given = [](CheckpointFiles& files, std::size_t stage) {
+    return bytes_of([&](ByteWriter& to) { files.write_state(stage, to); });
+  };
+  CheckpointFiles files(result_);
+  files.write(identity(), {}, sources_of(states));
+  CheckpointFiles later(result_);
+  ASSERT_TRUE(later.find());
+  for (const std::size_t stage : {2U, 0U, 1U, 0U}) {
+    EXPECT_TRUE(given(files, stage) == states[stage]) << stage;
+    EXPECT_TRUE(given(later, stage) == states[stage]) << stage;
+  }
+  // A state is taken over while the file that has it is replaced.
+  const std::vector<ByteSource> taken_over{[&](ByteWriter& to) { files.write_state(0, to); },
+                                           [](ByteWriter& to) { to.number(1); }};
+  files.write(identity(), {}, taken_over);
+  const std::string written = read_bytes(newer_);
+  EXPECT_TRUE(CheckpointFiles(result_).find()->checkpoint.stages.at(0) == states[0]);
+  std::filesystem::remove(newer_);
+  EXPECT_TRUE(given(files, 0) == states[0]) << "removed";
+  files.write(identity(), {}, taken_over);
+  EXPECT_TRUE(read_bytes(newer_) == written);
+}
+
+TEST_F(Files, DoNotGiveAStateThatWasChanged) {
+  CheckpointFiles files(result_);
+  const std::vector<Bytes> states{some_bytes(1000)};
+  const auto taken_over = std::vector<ByteSource>{[&](ByteWriter& to) { files.write_state(0, to); }};
+  for (const bool cut : {false, true}) {
+    files.write(identity(), {}, sources_of(states));
+    const auto size = std::filesystem::file_size(newer_);
+    std::fstream(newer_, std::ios::binary | std::ios::in | std::ios::out).seekp(static_cast<std::streamoff>(size) - 100)
+        << 'x';
+    if (cut) std::filesystem::resize_file(newer_, size - 100);
+    const std::string before = read_bytes(newer_);
+    EXPECT_THROW(files.write(identity(), {}, taken_over), FileError);
+    EXPECT_EQ(read_bytes(newer_), before);
+    EXPECT_LE(files_in(folder_.path()), 2U);
+  }
+}
+
 TEST_F(Files, BothDamagedAreRefusedAndStay) {
   write_bytes(newer_, "rubbish");
   write_bytes(older_, "");
@@ -256,6 +315,7 @@ TEST_F(Files, WithoutRoomBothStayAsTheyWere) {
   std::signal(SIGXFSZ, old_handler);
   EXPECT_NE(message.find(newer_), std::string::npos) << message;
   EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_NE(message.find("raise the limit on file sizes to 10"), std::string::npos) << message;
   EXPECT_EQ(read_bytes(newer_), newer);
   EXPECT_EQ(read_bytes(older_), older);
   EXPECT_EQ(files_in(folder_.path()), 2U);

@@ -13,6 +13,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/checkpoint.h"
+#include "tests/support/states.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -81,7 +82,7 @@ TEST(CheckpointFilesUnderWay, NeverTakeTheNewestAway) {
   CheckpointFiles files(folder / "r.h5");
   const std::vector<Bytes> stages{Bytes(1000)};
   const auto write_some = [&] {
-    for (int time = 0; time < 5; ++time) files.write({}, {}, stages);
+    for (int time = 0; time < 5; ++time) files.write({}, {}, sources_of(stages));
   };
   const std::multiset<std::string> taken = names_taken_away(folder.path(), write_some);
   EXPECT_EQ(taken.count("r.h5.part"), 0U);

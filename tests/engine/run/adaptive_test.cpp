@@ -12,6 +12,7 @@
 #include "engine/study/plan.h"
 #include "tests/engine/run/adaptive_study.h"
 #include "tests/support/kinds.h"
+#include "tests/support/states.h"
 
 namespace poesy {
 namespace {
@@ -222,7 +223,7 @@ TEST_P(Adaptive, StoppedItGoesOnToTheSameBits) {
   for (;;) {
     std::atomic<bool> stop{false};
     Checkpoints checkpoints([] { return false; },
-                            [&](std::span<const Bytes> stages) { kept.assign(stages.begin(), stages.end()); }, kept);
+                            [&](std::span<const ByteSource> stages) { kept = bytes_of_each(stages); }, kept);
     RunOptions options = on_threads(1 + stops % 2);
     options.stop = &stop;
     options.progress = [&](const Progress& progress) {
@@ -243,7 +244,7 @@ TEST_P(Adaptive, StoppedItGoesOnToTheSameBits) {
 std::vector<States> states_of(const AdaptiveRun& study) {
   std::vector<States> states;
   Checkpoints checkpoints([] { return true; },
-                          [&](std::span<const Bytes> stages) { states.emplace_back(stages.begin(), stages.end()); });
+                          [&](std::span<const ByteSource> stages) { states.push_back(bytes_of_each(stages)); });
   RunOptions options = on_threads(2);
   options.checkpoints = &checkpoints;
   EXPECT_TRUE(run(study, options));
@@ -252,7 +253,7 @@ std::vector<States> states_of(const AdaptiveRun& study) {
 }
 
 std::optional<Bits> run_from(const AdaptiveRun& study, const States& state) {
-  Checkpoints checkpoints([] { return false; }, [](std::span<const Bytes>) {}, state);
+  Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {}, state);
   RunOptions options = on_threads(2);
   options.checkpoints = &checkpoints;
   return run(study, options);

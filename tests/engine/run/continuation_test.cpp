@@ -3,6 +3,7 @@
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/kinds.h"
+#include "tests/support/states.h"
 
 namespace poesy {
 namespace {
@@ -18,10 +19,9 @@ struct Recorded {
 
 Recorded record(const Prepared& prepared, States start = {}) {
   Recorded recorded;
-  Checkpoints checkpoints(
-      [] { return true; },
-      [&](std::span<const Bytes> stages) { recorded.states.emplace_back(stages.begin(), stages.end()); },
-      std::move(start));
+  Checkpoints checkpoints([] { return true; },
+                          [&](std::span<const ByteSource> stages) { recorded.states.push_back(bytes_of_each(stages)); },
+                          std::move(start));
   RunOptions options;
   options.threads = 2;
   options.checkpoints = &checkpoints;
@@ -57,7 +57,7 @@ TEST_P(Continuation, StopsInAStateToContinue) {
   for (;;) {
     std::atomic<bool> stop{false};
     Checkpoints checkpoints([] { return false; },
-                            [&](std::span<const Bytes> stages) { kept.assign(stages.begin(), stages.end()); }, kept);
+                            [&](std::span<const ByteSource> stages) { kept = bytes_of_each(stages); }, kept);
     RunOptions options;
     options.threads = 1;
     options.stop = &stop;
@@ -117,14 +117,14 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Extension, testing::Values(&kSensitivityStudy, &
 
 /// The states that one shard of a study leaves.
 States run_shard(const Prepared& prepared, const Shard& shard) {
-  Checkpoints checkpoints([] { return false; }, [](std::span<const Bytes>) {});
+  Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {});
   RunOptions options;
   options.threads = 2;
   options.checkpoints = &checkpoints;
   options.shard = shard;
   EXPECT_FALSE(run(prepared, options).has_value());
   EXPECT_TRUE(checkpoints.complete());
-  return {checkpoints.stages().begin(), checkpoints.stages().end()};
+  return checkpoints.stages();
 }
 
 class Sharding : public testing::TestWithParam<KindOfStudy> {};

@@ -11,6 +11,7 @@
 #include "tests/engine/run/prepared.h"
 #include "tests/support/failing_model.h"
 #include "tests/support/kinds.h"
+#include "tests/support/states.h"
 
 namespace poesy {
 namespace {
@@ -136,13 +137,13 @@ TEST_P(Failures, AreTheSameAfterAStopOrAnExtension) {
   const Prepared longer(study_of(GetParam(), 3300, 2));
   std::vector<std::vector<Bytes>> states;
   Checkpoints keep([] { return true; },
-                   [&](std::span<const Bytes> stages) { states.emplace_back(stages.begin(), stages.end()); });
+                   [&](std::span<const ByteSource> stages) { states.push_back(bytes_of_each(stages)); });
   EXPECT_EQ(run(shorter, {1, {}, {}, &keep}), expected_failures(shorter));
   keep.save();
   ASSERT_GT(states.size(), 3U);
   for (const std::vector<Bytes>& state : states) {
     for (const Prepared* prepared : {&shorter, &longer}) {
-      Checkpoints resumed([] { return false; }, [](std::span<const Bytes>) {}, state);
+      Checkpoints resumed([] { return false; }, [](std::span<const ByteSource>) {}, state);
       EXPECT_EQ(run(*prepared, {2, {}, {}, &resumed}), expected_failures(*prepared));
     }
   }

@@ -8,6 +8,7 @@
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/fake_ranks.h"
 #include "tests/support/kinds.h"
+#include "tests/support/states.h"
 
 namespace poesy {
 namespace {
@@ -36,11 +37,9 @@ struct Squares {
   /// The numbers merged, on every rank; nothing when stopped.
   std::optional<std::vector<std::size_t>> operator()(const RunOptions& options) const {
     std::vector<std::size_t> merged;
-    const auto state = [&] {
-      ByteWriter to;
+    const ByteSource state = [&](ByteWriter& to) {
       to.number(merged.size());
       for (const std::size_t n : merged) to.number(n);
-      return to.take();
     };
     const auto restore = [&](std::span<const std::byte> bytes) {
       ByteReader from(bytes);
@@ -114,7 +113,7 @@ TEST_P(RanksOf, ContinueOneProcessAndViceVersa) {
     std::atomic<bool> stop{false};
     std::size_t merges = 0;
     Checkpoints checkpoints([] { return false; },
-                            [&](std::span<const Bytes> stages) { kept.assign(stages.begin(), stages.end()); }, kept);
+                            [&](std::span<const ByteSource> stages) { kept = bytes_of_each(stages); }, kept);
     RunOptions leading;
     leading.threads = 1;
     leading.stop = &stop;
@@ -190,8 +189,8 @@ struct Kept {
   FakeRun operator()(std::size_t size, const Squares& squares, const std::function<void(RunOptions&)>& change = {}) {
     return run_on_fake_ranks(size, [&](Team& team) {
       Checkpoints checkpoints([] { return false; },
-                              [&](std::span<const Bytes> all) {
-                                stages.assign(all.begin(), all.end());
+                              [&](std::span<const ByteSource> all) {
+                                stages = bytes_of_each(all);
                                 ++saves;
                               },
                               stages);
@@ -205,7 +204,7 @@ struct Kept {
 
   /// What is kept is taken up by this process alone and brought to its end.
   void expect_continued(Squares squares) const {
-    Checkpoints checkpoints([] { return false; }, [](std::span<const Bytes>) {}, stages);
+    Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {}, stages);
     RunOptions options;
     options.checkpoints = &checkpoints;
     std::size_t fresh = 0;
@@ -305,7 +304,7 @@ TEST(Ranks, DoNotWaitForOthersWhenStopped) {
   };
   bool saved_before = false;
   const FakeRun ended = run_on_fake_ranks(2, [&](Team& team) {
-    Checkpoints checkpoints([] { return false; }, [&](std::span<const Bytes>) { saved_before = !let_go; });
+    Checkpoints checkpoints([] { return false; }, [&](std::span<const ByteSource>) { saved_before = !let_go; });
     RunOptions options = options_of(team);
     if (team.leads()) {
       options.checkpoints = &checkpoints;
@@ -332,7 +331,7 @@ TEST(Ranks, ATroubledCheckpointEndsTheRunOnAll) {
   std::atomic<bool> stop{true};
   const FakeRun ended = run_on_fake_ranks(3, [&](Team& team) {
     Checkpoints checkpoints([] { return false; },
-                            [](std::span<const Bytes>) { throw FileError("out.h5.part", "No space left", ""); });
+                            [](std::span<const ByteSource>) { throw FileError("out.h5.part", "No space left", ""); });
     RunOptions options = options_of(team);
     if (team.leads()) {
       options.checkpoints = &checkpoints;

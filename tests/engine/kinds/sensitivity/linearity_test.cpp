@@ -172,7 +172,7 @@ TEST(IndexChanges, AreNoneWhenStopped) {
 
 TEST(IndexChanges, StoppedAfterItsStagesARunIsNotComplete) {
   std::size_t saved = 0;
-  Checkpoints checkpoints([] { return false; }, [&](std::span<const Bytes>) { ++saved; });
+  Checkpoints checkpoints([] { return false; }, [&](std::span<const ByteSource>) { ++saved; });
   const Prepared prepared(study_of(&kSensitivityStudy, 100));
   RunOptions options;
   options.checkpoints = &checkpoints;
