@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,8 +49,20 @@ class FileWriter {
   void expect(std::size_t bytes) { expected_ = bytes; }
   void write(std::span<const std::byte> bytes);  ///< Appends.
   void write(std::string_view text);             ///< Appends.
-  void sync();                                   ///< Brings everything to the disk. Nothing may be written afterwards.
-  void commit();                                 ///< Syncs, unless that was done, and puts the file in its place.
+
+  /// For who writes in any order and cannot stop at an error, as HDF5 cannot.
+  /// @{
+  /// Writes bytes at a place. The first error is kept for check(); after it nothing more is written.
+  void put(std::uint64_t at, std::span<const std::byte> bytes) noexcept;
+  /// Reads back what was put, zeros elsewhere; whether it can be read. After an error nothing can.
+  bool get(std::uint64_t at, std::span<std::byte> to) noexcept;
+  /// Gives the file this length. It is also the size that is expected, even after an error.
+  void end_at(std::uint64_t bytes) noexcept;
+  void check() const;  ///< Throws the error that was kept; sync() and commit() do so too.
+  /// @}
+
+  void sync();    ///< Brings everything to the disk. Nothing may be written afterwards.
+  void commit();  ///< Syncs, unless that was done, and puts the file in its place.
 
  private:
   void give_permissions(const struct stat& like);
@@ -61,6 +74,7 @@ class FileWriter {
   std::string temporary_;
   std::size_t expected_ = 0;
   int descriptor_ = -1;
+  int error_ = 0;  // the first of put(), get() and end_at(): an errno
 };
 
 /// Writes a whole file, or nothing. Throws FileError.
