@@ -318,8 +318,8 @@ void write_group(ResultBuilder& result, const Group<Found>& group, const Found& 
   write_group(result, group, found, [](const FieldRow<Found>&) {});
 }
 
-/// The same, emptying every list that was written: a result and its file need not be in memory both. Members that are
-/// no rows stay.
+/// The same, emptying every list that was written: the system wants memory for what is not yet on the disk. Members
+/// that are no rows stay.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found) {
   write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) {

@@ -1,17 +1,18 @@
 #include "engine/files/h5_disk.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
+#include <algorithm>
+#include <cmath>
 #include <cstring>
-#include <numeric>
+#include <filesystem>
 #include <random>
 
 #include "engine/base/error.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/file_writer.h"
 #include "engine/files/h5.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -105,26 +106,6 @@ TEST(FileOnDisk, HasTheContentOfOneInMemory) {
   writer.commit();
   EXPECT_EQ(content_sha256(h5::File::open(folder / "f.h5")), content_sha256(memory));
 }
-
-/// Lets no file of this process grow beyond a size.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit limit{.rlim_cur = bytes, .rlim_max = old_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, old_handler_);
-  }
-
- private:
-  rlimit old_{};
-  void (*old_handler_)(int);
-};
 
 /// What the disk says when a file does not fit; empty when it does. A reader's error before that is none of the disk's.
 std::string message_of(const std::string& path, std::size_t large) {
