@@ -1,6 +1,7 @@
 #include "engine/files/h5_disk.h"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Slices,
                          testing::Values(h5::Shape{1'500'001}, h5::Shape{3, 700'001}, h5::Shape{700'001, 3},
                                          h5::Shape{2, 1, 600'007, 1}, h5::Shape{5, 7, 30'011}, h5::Shape{2, 524'288}));
 
-/// A file with groups, texts, small and large datasets. sizes: the lengths of the large ones.
+/// A file with groups, texts, small and large datasets. large: numbers in all of the large ones.
 void compose(h5::File& file, std::size_t large) {
   file.make_group("/group");
   file.set_attribute("/group", "description", std::string("of numbers"));
@@ -153,6 +154,33 @@ TEST(FileOnDisk, MayBeLeftUnfinished) {
   }
   EXPECT_EQ(files_in(folder.path()), 0U);
   h5::close_library();
+}
+
+/// The same dataset as another program may store it: in chunks, compressed.
+void write_chunks(const std::string& path, const std::vector<double>& values) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t length = values.size();
+  const hsize_t chunk = 100'000;
+  const hid_t space = H5Screate_simple(1, &length, nullptr);
+  const hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(storage, 1, &chunk);
+  H5Pset_deflate(storage, 1);
+  const hid_t dataset = H5Dcreate2(file, "/x", H5T_IEEE_F64BE, space, H5P_DEFAULT, storage, H5P_DEFAULT);
+  H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Dclose(dataset);
+  H5Pclose(storage);
+  H5Sclose(space);
+  H5Fclose(file);
+}
+
+TEST(FileOnDisk, HasTheHashOfOneInChunks) {
+  const TempFolder folder;
+  const std::vector<double> values = some_numbers(1'000'003);
+  write_chunks(folder / "chunks.h5", values);
+  FileWriter writer(folder / "f.h5");
+  h5::File file = h5::File::on_disk(writer);
+  file.write<double>("/x", {values.size()}, values);
+  EXPECT_EQ(content_sha256(h5::File::open(folder / "chunks.h5")), content_sha256(file));
 }
 
 /// A dataset of more than one slice is hashed as its definition says.
