@@ -29,13 +29,14 @@ bool is_bookkeeping(std::string_view attribute) {
          attribute.starts_with("_nc3");
 }
 
-void make_nans_equal(h5::Value& value) {
+/// head: of the value that these numbers, or some of them, are of.
+void make_nans_equal(const h5::Value& head, std::span<std::byte> numbers) {
   constexpr std::uint64_t kNan = 0x7ff8000000000000U;
-  if (value.type != h5::Value::Type::floating || value.width != sizeof(double)) return;
-  for (std::size_t at = 0; at < value.numbers.size(); at += sizeof(double)) {
+  if (head.type != h5::Value::Type::floating || head.width != sizeof(double)) return;
+  for (std::size_t at = 0; at < numbers.size(); at += sizeof(double)) {
     double number = 0.0;
-    std::memcpy(&number, &value.numbers[at], sizeof number);
-    if (std::isnan(number)) std::memcpy(&value.numbers[at], &kNan, sizeof kNan);
+    std::memcpy(&number, &numbers[at], sizeof number);
+    if (std::isnan(number)) std::memcpy(&numbers[at], &kNan, sizeof kNan);
   }
 }
 
@@ -61,7 +62,7 @@ class ContentHasher {
     const bool group = file_.is_group(path);
     text(path);
     text(group ? "group" : "dataset");
-    if (!group) add_value(file_.value(path));
+    if (!group) add_dataset(path);
     add_attributes(path);
     if (!group) return;
     const std::string folder = path == "/" ? path : path + "/";
@@ -82,14 +83,29 @@ class ContentHasher {
     }
   }
 
+  void add_dataset(const std::string& path) {
+    const h5::Value head = file_.head(path);
+    if (head.type == h5::Value::Type::text) return add_value(file_.value(path));
+    add_head(head);
+    file_.read_slices(path, [&](std::span<std::byte> slice) { add_numbers(head, slice); });
+  }
+
   void add_value(h5::Value value) {
+    add_head(value);
+    add_numbers(value, value.numbers);
+    for (const std::string& one : value.strings) text(one);
+  }
+
+  void add_head(const h5::Value& value) {
     text(kTypeNames[static_cast<std::size_t>(value.type)]);
     number(value.width);
     number(value.shape.size());
     for (const std::size_t length : value.shape) number(length);
-    make_nans_equal(value);
-    sha_.bytes(value.numbers);
-    for (const std::string& one : value.strings) text(one);
+  }
+
+  void add_numbers(const h5::Value& head, std::span<std::byte> numbers) {
+    make_nans_equal(head, numbers);
+    sha_.bytes(numbers);
   }
 
   const h5::File& file_;

@@ -45,10 +45,10 @@ struct Label {
   std::string description;  ///< a sentence for people
 };
 
-/// Composes an HDF5 file in memory in which every dataset has a unit, a description and named axes.
+/// Composes an HDF5 file in which every dataset has a unit, a description and named axes.
 class ResultBuilder {
  public:
-  ResultBuilder() : file_(h5::File::in_memory()) {}
+  explicit ResultBuilder(h5::File file) : file_(std::move(file)) {}  ///< file: an empty one.
 
   h5::File& file() { return file_; }  ///< For groups and attributes.
 
@@ -69,7 +69,16 @@ class ResultBuilder {
   template <h5::Element T>
   void add(const std::string& path, const Axes& axes, std::span<const T> values, const Label& label) {
     write(path, shape(axes), values, label);
-    for (std::size_t k = 0; k < axes.size(); ++k) file_.attach_scale(path, k, "/" + axes[k]);
+    attach(path, axes);
+  }
+  /// The same of numbers that are not in memory as the file has them. element(at): the one at this position, row-major.
+  template <h5::Number T, class ElementAt>
+  void add_computed(const std::string& path, const Axes& axes, const ElementAt& element, const Label& label) {
+    file_.write_slices<T>(path, shape(axes), [&](std::size_t first, std::span<T> to) {
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] = static_cast<T>(element(first + k));
+    });
+    describe(path, label);
+    attach(path, axes);
   }
   /// The same from a list.
   template <h5::Element T>
@@ -93,8 +102,14 @@ class ResultBuilder {
   template <h5::Element T>
   void write(const std::string& path, const h5::Shape& shape, std::span<const T> values, const Label& label) {
     file_.write<T>(path, shape, values);
+    describe(path, label);
+  }
+  void describe(const std::string& path, const Label& label) {
     file_.set_attribute(path, "unit", label.unit);
     file_.set_attribute(path, "description", label.description);
+  }
+  void attach(const std::string& path, const Axes& axes) {
+    for (std::size_t k = 0; k < axes.size(); ++k) file_.attach_scale(path, k, "/" + axes[k]);
   }
 
   h5::File file_;
@@ -249,7 +264,8 @@ bool write_field(ResultBuilder& result, const std::string& group, const FieldRow
       if (!field.since.empty() && list.empty() && h5::size(result.shape(field.axes)) > 0) return false;
       if constexpr (std::is_same_v<Value, std::vector<double>>) {
         if (field.stored == Stored::as_whole_numbers) {
-          result.add(path, field.axes, std::vector<std::uint64_t>(list.begin(), list.end()), label);
+          result.add_computed<std::uint64_t>(
+              path, field.axes, [&](std::size_t at) { return list[at]; }, label);
           return true;
         }
       }
@@ -302,8 +318,8 @@ void write_group(ResultBuilder& result, const Group<Found>& group, const Found& 
   write_group(result, group, found, [](const FieldRow<Found>&) {});
 }
 
-/// The same, emptying every list that was written: a result and its file need not be in memory both. Members that are
-/// no rows stay.
+/// The same, emptying every list that was written: the system wants memory for what is not yet on the disk. Members
+/// that are no rows stay.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found) {
   write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) {

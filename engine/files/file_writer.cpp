@@ -7,6 +7,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -156,8 +157,8 @@ FileWriter::FileWriter(std::string path, const std::string& like)
   const std::optional<struct stat> model = model_of(path_, like);
   constexpr mode_t kReadableByAll = 0666;  // before the umask
   constexpr mode_t kPrivate = 0600;        // until it has the permissions that it is to have
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
-                       model ? kPrivate : kReadableByAll);
+  descriptor_ =
+      ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, model ? kPrivate : kReadableByAll);
   if (descriptor_ == kClosed) fail("cannot be created", errno);
   if (model) give_permissions(*model);
 }
@@ -192,7 +193,46 @@ void FileWriter::write(std::span<const std::byte> bytes) {
 
 void FileWriter::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
+void FileWriter::put(std::uint64_t at, std::span<const std::byte> bytes) noexcept {
+  length_ = std::max<std::uint64_t>(length_, at + bytes.size());
+  while (error_ == 0 && !bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      error_ = errno;
+      return;
+    }
+    at += static_cast<std::uint64_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+bool FileWriter::get(std::uint64_t at, std::span<std::byte> to) noexcept {
+  while (error_ == 0 && !to.empty()) {
+    const ssize_t read = ::pread(descriptor_, to.data(), to.size(), static_cast<off_t>(at));
+    if (read < 0 && errno == EINTR) continue;
+    if (read < 0) error_ = errno;
+    if (read <= 0) break;
+    at += static_cast<std::uint64_t>(read);
+    to = to.subspan(static_cast<std::size_t>(read));
+  }
+  std::ranges::fill(to, std::byte{0});
+  return error_ == 0;
+}
+
+void FileWriter::end_at(std::uint64_t bytes) noexcept {
+  length_ = bytes;
+  while (error_ == 0 && ::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) {
+    if (errno != EINTR) error_ = errno;
+  }
+}
+
+void FileWriter::check() const {
+  if (error_ != 0) fail("cannot be written", error_);
+}
+
 void FileWriter::sync() {
+  check();
   if (::fsync(descriptor_) != 0) fail("cannot be written", errno);
   if (::close(std::exchange(descriptor_, kClosed)) != 0) fail("cannot be written", errno);
 }
@@ -204,9 +244,12 @@ void FileWriter::commit() {
   if (!sync_folder(path_)) fail("is in place, but its folder cannot be synced", errno);
 }
 
+std::uint64_t FileWriter::expected_size() const { return expected_ ? expected_() : length_; }
+
 /// "needs N bytes, M are free", as much as is known; what was written so far counts as free, for it is going to be.
 std::string FileWriter::missing_space() const {
-  std::string text = !expected_ ? "" : "; needs " + std::to_string(expected_()) + " bytes";
+  const std::uint64_t size = expected_size();
+  std::string text = size == 0 ? "" : "; needs " + std::to_string(size) + " bytes";
   struct statvfs disk {};
   struct stat file {};
   constexpr std::uintmax_t kStatBlock = 512;  // the unit of st_blocks
@@ -222,9 +265,11 @@ std::string FileWriter::remedy(int error) const {
     case ENOSPC:
     case EDQUOT:
       return "make room or choose another folder";
-    case EFBIG:
-      return "raise the limit on file sizes" + (!expected_ ? "" : " to " + std::to_string(expected_()) + " bytes") +
+    case EFBIG: {
+      const std::uint64_t size = expected_size();
+      return "raise the limit on file sizes" + (size == 0 ? "" : " to " + std::to_string(size) + " bytes") +
              " or choose another folder";
+    }
     case ENOENT:
     case ENOTDIR:
       return "make the folder or choose another one";

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -57,19 +58,34 @@ class FileWriter {
   }
   void write(std::span<const std::byte> bytes);  ///< Appends.
   void write(std::string_view text);             ///< Appends.
-  void sync();                                   ///< Brings everything to the disk. Nothing may be written afterwards.
-  void commit();                                 ///< Syncs, unless that was done, and puts the file in its place.
+
+  /// For who writes in any order and cannot stop at an error, as HDF5 cannot.
+  /// @{
+  /// Writes bytes at a place. The first error is kept for check(); after it nothing more is written.
+  void put(std::uint64_t at, std::span<const std::byte> bytes) noexcept;
+  /// Reads back what was put, zeros elsewhere; whether it can be read. After an error nothing can.
+  bool get(std::uint64_t at, std::span<std::byte> to) noexcept;
+  /// Gives the file this length. It is also the size that is expected, even after an error.
+  void end_at(std::uint64_t bytes) noexcept;
+  void check() const;  ///< Throws the error that was kept; sync() and commit() do so too.
+  /// @}
+
+  void sync();    ///< Brings everything to the disk. Nothing may be written afterwards.
+  void commit();  ///< Syncs, unless that was done, and puts the file in its place.
 
  private:
   void give_permissions(const struct stat& like);
+  std::uint64_t expected_size() const;  ///< 0 where it is not known.
   [[noreturn]] void fail(std::string_view action, int error) const;
   std::string remedy(int error) const;
   std::string missing_space() const;
 
   std::string path_;
   std::string temporary_;
-  ExpectedSize expected_;
+  ExpectedSize expected_;     // if it was given
+  std::uint64_t length_ = 0;  // as put() and end_at() leave it, with what came after an error
   int descriptor_ = -1;
+  int error_ = 0;  // the first of put(), get() and end_at(): an errno
 };
 
 /// Writes a whole file, or nothing. Throws FileError.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/files/h5_disk.h"
 
 namespace poesy::h5 {
 namespace {
@@ -112,6 +113,43 @@ Shape shape_of(hid_t space, const std::string& object) {
   return {lengths.begin(), lengths.end()};
 }
 
+/// Bytes of a slice: large enough for the disk, small beside a result.
+constexpr std::size_t kSlice = std::size_t{1} << 22U;
+
+/// A part of a dataset: HDF5 calls it a hyperslab.
+struct Box {
+  std::vector<hsize_t> start;
+  std::vector<hsize_t> count;
+
+  hsize_t size() const { return std::accumulate(count.begin(), count.end(), hsize_t{1}, std::multiplies()); }
+};
+
+/// Cuts a dataset into boxes of at most so many elements that follow each other row-major, and calls use(box) for each.
+/// Precondition: most > 0, and there are more elements than that.
+template <class Use>
+void for_each_box(const Shape& shape, std::size_t most, const Use& use) {
+  // The axes after the one that is cut are whole, those before it have one position.
+  std::size_t cut = shape.size() - 1;
+  std::size_t inner = 1;
+  while (inner * shape[cut] <= most) inner *= shape[cut--];
+  Box box{std::vector<hsize_t>(shape.size(), 0), {shape.begin(), shape.end()}};
+  std::fill_n(box.count.begin(), cut, 1);
+  for (;;) {
+    box.count[cut] = std::min<hsize_t>(most / inner, shape[cut] - box.start[cut]);
+    use(std::as_const(box));
+    box.start[cut] += box.count[cut];
+    for (std::size_t carry = cut; box.start[carry] == shape[carry]; ++box.start[carry]) {
+      if (carry == 0) return;
+      box.start[carry--] = 0;
+    }
+  }
+}
+
+void select(hid_t space, const Box& box, const std::string& name) {
+  checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, box.start.data(), nullptr, box.count.data(), nullptr),
+          "take a part of", name);
+}
+
 /// What HDF5 takes elements from: the values themselves, or a list of pointers to texts.
 template <class T>
 auto elements(std::span<const T> values) {
@@ -139,7 +177,19 @@ struct Source {
                          : H5Dread(object.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to),
             "read", name);
   }
+  /// A part of a dataset.
+  void read(const Box& box, hid_t memory_type, void* to) const {
+    select(space.get(), box, name);
+    const Handle memory = space_of({box.size()});
+    checked(H5Dread(object.get(), memory_type, memory.get(), space.get(), H5P_DEFAULT, to), "read", name);
+  }
 };
+
+/// Whether all bytes of a dataset lie in the file one after the other.
+bool is_in_one_piece(const Source& dataset, std::size_t bytes) {
+  const Handle storage(H5Dget_create_plist(dataset.object.get()), H5Pclose, "read the storage of", dataset.name);
+  return H5Pget_layout(storage.get()) == H5D_CONTIGUOUS && H5Dget_storage_size(dataset.object.get()) == bytes;
+}
 
 Source dataset_at(hid_t file, const std::string& path) {
   return {.name = path, .is_attribute = false, .object = open_dataset(file, path)};
@@ -186,14 +236,11 @@ std::vector<T> read_all(const Source& source) {
   }
 }
 
-Value read_value(const Source& source) {
+Value head_of(const Source& source) {
   Value value;
   value.shape = source.shape();
   const H5T_class_t kind = H5Tget_class(source.type.get());
-  if (kind == H5T_STRING) {
-    value.strings = read_texts(source);
-    return value;
-  }
+  if (kind == H5T_STRING) return value;
   if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(source.name + " is neither numbers nor text");
   value.type = kind == H5T_FLOAT                                ? Value::Type::floating
                : H5Tget_sign(source.type.get()) == H5T_SGN_NONE ? Value::Type::unsigned_integer
@@ -202,10 +249,24 @@ Value read_value(const Source& source) {
   if (value.width > kWidestNumber) {
     throw Error(source.name + " has numbers of " + std::to_string(value.width) + " bytes");
   }
-  const Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.name);
+  return value;
+}
+
+/// The stored type of numbers, little-endian.
+Handle plain_type(const Source& source) {
+  Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.name);
   checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.name);
+  return type;
+}
+
+Value read_value(const Source& source) {
+  Value value = head_of(source);
+  if (value.type == Value::Type::text) {
+    value.strings = read_texts(source);
+    return value;
+  }
   value.numbers.resize(size(value.shape) * value.width);
-  source.read(type.get(), value.numbers.data());
+  source.read(plain_type(source).get(), value.numbers.data());
   return value;
 }
 
@@ -303,23 +364,45 @@ Handle group_properties(hid_t kind) {
   return properties;
 }
 
+hid_t make_file(hid_t access) {
+  const Handle creation = group_properties(H5P_FILE_CREATE);
+  const hid_t id = checked(H5Fcreate("new", H5F_ACC_TRUNC, creation.get(), access), "make", "a file");
+  // From version 1.8 of the format on metadata carries checksums. Not asked for before the file exists, so that the
+  // superblock is of the older kind, as in all files of poesy.
+  checked(H5Fset_libver_bounds(id, H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the version of", "the file");
+  return id;
+}
+
+Handle make_dataset(hid_t file, const std::string& path, const Shape& shape, const Handle& type,
+                    const Handle& creation) {
+  const Handle space = space_of(shape);
+  return {H5Dcreate2(file, path.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), H5Dclose,
+          "make dataset", path};
+}
+
 }  // namespace
 
 std::size_t size(const Shape& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies());
 }
 
+File::File(std::int64_t id) : id_(id) {}
+
 File File::in_memory() {
   silence();
   constexpr std::size_t kGrowth = 1 << 20;
   const Handle access = property_list(H5P_FILE_ACCESS);
   checked(H5Pset_fapl_core(access.get(), kGrowth, 0), "prepare", "a file in memory");
-  const Handle creation = group_properties(H5P_FILE_CREATE);
-  const hid_t id = H5Fcreate("in memory", H5F_ACC_TRUNC, creation.get(), access.get());
-  File file(checked(id, "make", "a file in memory"));
-  // From version 1.8 of the format on metadata carries checksums. Not asked for before the file exists:
-  // H5Fget_file_image spoils the checksum of the superblock, so the superblock must be of the older kind that has none.
-  checked(H5Fset_libver_bounds(id, H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the version of", "the file");
+  return File(make_file(access.get()));
+}
+
+File File::on_disk(FileWriter& disk) {
+  silence();
+  auto driver = std::make_unique<Disk>(disk);
+  const Handle access = property_list(H5P_FILE_ACCESS);
+  checked(driver->choose_for(access.get()), "prepare", "a file on a disk");
+  File file(make_file(access.get()));
+  file.disk_ = std::move(driver);
   return file;
 }
 
@@ -331,18 +414,15 @@ File File::open(const std::string& path) {
   return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "open", path));
 }
 
-File::File(File&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+File::File(File&& other) noexcept : disk_(std::move(other.disk_)), id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
 
 File::~File() {
   if (id_ != H5I_INVALID_HID) H5Fclose(id_);
 }
 
-std::vector<std::byte> File::image() const {
-  checked(H5Fflush(id_, H5F_SCOPE_GLOBAL), "flush", "the file");
-  const ssize_t length = checked(H5Fget_file_image(id_, nullptr, 0), "measure", "the file");
-  std::vector<std::byte> bytes(static_cast<std::size_t>(length));
-  checked(H5Fget_file_image(id_, bytes.data(), bytes.size()), "copy", "the file");
-  return bytes;
+void File::close() {
+  checked(H5Fclose(std::exchange(id_, H5I_INVALID_HID)), "close", "the file");
+  disk_.reset();
 }
 
 void File::make_group(const std::string& path) {
@@ -362,10 +442,31 @@ void File::write(const std::string& path, const Shape& shape, std::span<const T>
     checked(H5Pset_layout(creation.get(), H5D_COMPACT), "choose the layout of", path);
   }
   const Handle type = element_type<T>();
-  const Handle space = space_of(shape);
-  const Handle dataset(H5Dcreate2(id_, path.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-                       H5Dclose, "make dataset", path);
+  const Handle dataset = make_dataset(id_, path, shape, type, creation);
   checked(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, elements(values).data()), "write", path);
+}
+
+template <Number T>
+void File::write_slices(const std::string& path, const Shape& shape,
+                        const std::function<void(std::size_t, std::span<T>)>& fill) {
+  constexpr std::size_t kMost = kSlice / sizeof(T);
+  std::vector<T> slice(std::min(size(shape), kMost));
+  if (size(shape) <= kMost) {
+    fill(0, slice);
+    write<T>(path, shape, slice);
+    return;
+  }
+  const Handle type = element_type<T>();
+  const Handle dataset = make_dataset(id_, path, shape, type, object_properties(H5P_DATASET_CREATE));
+  const Handle space = space_of(shape);
+  std::size_t first = 0;
+  for_each_box(shape, kMost, [&](const Box& box) {
+    fill(first, std::span(slice).first(box.size()));
+    first += box.size();
+    select(space.get(), box, path);
+    const Handle memory = space_of({box.size()});
+    checked(H5Dwrite(dataset.get(), type.get(), memory.get(), space.get(), H5P_DEFAULT, slice.data()), "write", path);
+  });
 }
 
 template <Element T>
@@ -470,6 +571,26 @@ std::vector<T> File::attribute(const std::string& path, const std::string& name)
 
 Value File::value(const std::string& path) const { return read_value(dataset_at(id_, path)); }
 
+Value File::head(const std::string& path) const { return head_of(dataset_at(id_, path)); }
+
+void File::read_slices(const std::string& path, const std::function<void(std::span<std::byte>)>& take) const {
+  const Source source = dataset_at(id_, path);
+  const Value head = head_of(source);
+  POESY_EXPECTS(head.type != Value::Type::text);
+  const std::size_t bytes = size(head.shape) * head.width;
+  if (bytes <= kSlice || !is_in_one_piece(source, bytes)) {
+    Value whole = read_value(source);
+    take(whole.numbers);
+    return;
+  }
+  const Handle type = plain_type(source);
+  std::vector<std::byte> slice(kSlice);
+  for_each_box(head.shape, kSlice / head.width, [&](const Box& box) {
+    source.read(box, type.get(), slice.data());
+    take(std::span(slice).first(box.size() * head.width));
+  });
+}
+
 Value File::attribute_value(const std::string& path, const std::string& name) const {
   return read_value(attribute_at(id_, path, name));
 }
@@ -487,6 +608,15 @@ POESY_H5_ELEMENT(std::uint32_t)
 POESY_H5_ELEMENT(std::uint8_t)
 POESY_H5_ELEMENT(std::string)
 #undef POESY_H5_ELEMENT
+#define POESY_H5_NUMBER(T)                                              \
+  template void File::write_slices<T>(const std::string&, const Shape&, \
+                                      const std::function<void(std::size_t, std::span<T>)>&);
+POESY_H5_NUMBER(double)
+POESY_H5_NUMBER(std::int64_t)
+POESY_H5_NUMBER(std::uint64_t)
+POESY_H5_NUMBER(std::uint32_t)
+POESY_H5_NUMBER(std::uint8_t)
+#undef POESY_H5_NUMBER
 
 void close_library() { checked(H5close(), "close", "HDF5"); }
 

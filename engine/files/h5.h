@@ -3,14 +3,23 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 /// The part of HDF5 that result files use: objects are named by their absolute path, every call is checked, every id is
-/// closed. HDF5 stays behind this header and h5.cpp; opening a File turns off HDF5's own printing of errors.
+/// closed. HDF5 stays behind this header, h5.cpp and h5_disk.cpp; opening a File turns off HDF5's own printing of
+/// errors.
+namespace poesy {
+class FileWriter;
+}
+
 namespace poesy::h5 {
+
+class Disk;
 
 /// A call into HDF5 failed. what() is a clause: what was tried on which object, and HDF5's own reason.
 class Error : public std::runtime_error {
@@ -28,6 +37,10 @@ class StrangeFile : public Error {
 template <class T>
 concept Element = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t> ||
     std::same_as<T, std::uint32_t> || std::same_as<T, std::uint8_t> || std::same_as<T, std::string>;
+
+/// Numbers only.
+template <class T>
+concept Number = Element<T> && !std::same_as<T, std::string>;
 
 /// Length of each axis; empty for a scalar.
 using Shape = std::vector<std::size_t>;
@@ -50,19 +63,27 @@ struct Value {
 /// without times and with their order of creation. Every member throws Error when HDF5 refuses.
 class File {
  public:
-  static File in_memory();                    ///< An empty file that lives in memory only.
+  static File in_memory();  ///< An empty file that lives in memory only.
+  /// An empty file in what `disk` writes, which must live as long and be committed after close(). An error of the disk
+  /// is kept there (FileWriter::check) and is none of HDF5's, unless it is to read back what was not written.
+  static File on_disk(FileWriter& disk);
   static File open(const std::string& path);  ///< An existing file, read-only.
 
   File(File&& other) noexcept;  ///< Leaves a file that may only be destroyed.
   File& operator=(File&&) = delete;
   ~File();
 
-  std::vector<std::byte> image() const;  ///< The bytes of the whole file, ready to be written to disk.
+  void close();  ///< Brings what HDF5 still has of it to the disk. The file may only be destroyed afterwards.
 
   void make_group(const std::string& path);  ///< Those above it must exist.
   /// Creates a dataset. Precondition: values.size() == size(shape).
   template <Element T>
   void write(const std::string& path, const Shape& shape, std::span<const T> values);
+  /// The same in slices, so that the numbers need not be in memory as the file has them. fill(first, to): sets `to` to
+  /// the elements from position `first` on, row-major; called in their order.
+  template <Number T>
+  void write_slices(const std::string& path, const Shape& shape,
+                    const std::function<void(std::size_t first, std::span<T> to)>& fill);
   /// Creates an attribute of the object at path: a scalar.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, const T& value);
@@ -95,12 +116,17 @@ class File {
   /// All elements of an attribute.
   template <Element T>
   std::vector<T> attribute(const std::string& path, const std::string& name) const;
-  Value value(const std::string& path) const;                                     ///< A dataset as it is stored.
+  Value value(const std::string& path) const;  ///< A dataset as it is stored.
+  Value head(const std::string& path) const;   ///< The same without its elements.
+  /// Hands the `numbers` of value() out one slice after the other. Only of a dataset that lies in one piece in the file
+  /// they are small; others come at once. Precondition: a dataset of numbers.
+  void read_slices(const std::string& path, const std::function<void(std::span<std::byte>)>& take) const;
   Value attribute_value(const std::string& path, const std::string& name) const;  ///< An attribute as it is stored.
 
  private:
-  explicit File(std::int64_t id) : id_(id) {}
+  explicit File(std::int64_t id);
 
+  std::unique_ptr<Disk> disk_;  // of a file on one
   std::int64_t id_;
 };
 

@@ -211,22 +211,21 @@ void check_names(const std::vector<std::string>& names, const std::string& path)
 void compose_file(const std::string& path, std::string_view filetype, std::string_view kind, const Study& study,
                   const SelectedPoses& poses, const RunFacts& facts,
                   const std::function<void(ResultBuilder&)>& compose) {
+  FileWriter writer(path);
   try {
-    ResultBuilder result;
+    ResultBuilder result(h5::File::on_disk(writer));
     add_header(result, filetype, kind, study, poses);
     compose(result);
     add_facts(result, facts);
     h5::File& file = result.file();
     file.set_attribute("/", "content_sha256", content_sha256(file));
-    const std::vector<std::byte> image = file.image();
-    FileWriter writer(path);
-    writer.expect(image.size());
-    writer.write(image);
-    writer.commit();
+    file.close();
   } catch (const h5::Error& error) {
+    writer.check();
     if (is_out_of_memory(error)) throw std::bad_alloc();
     throw FileError(path, std::string("cannot be composed: ") + error.what(), "report this as a bug of poesy");
   }
+  writer.commit();
 }
 
 void add_names(ResultBuilder& result, const Study& study, std::span<const FactorIndex> factors) {

@@ -29,7 +29,7 @@ struct StoredResult;
 /// How files keep what a kind of study found: a row for each kind.
 struct FileKind {
   /// Adds the names of errors and responses (add_names), and the kind's groups. found: of the type that the kind finds;
-  /// lists that were written may be emptied, so that there is not twice as much in memory.
+  /// lists that were written may be emptied.
   void (*write)(ResultBuilder& result, const Study& study, std::any& found);
   /// Fills in StoredResult::found, and of the header what the kind's files have. The rest of the header is there.
   void (*read)(const h5::File& file, StoredResult& result);

@@ -22,10 +22,9 @@ struct MemoryOutlook {
   std::size_t accumulators = 0;  ///< of the run; the heap does not give all of them back before the result is written
   std::size_t state = 0;         ///< the run as a checkpoint has it; a small one is kept until the end
   std::size_t result = 0;        ///< plain values
-  std::size_t file = 0;          ///< the result file
+  std::size_t file = 0;          ///< the result file, which is composed on the disk
 
-  /// HDF5 composes the file in memory, and what is written is a copy of that (files/h5.h, File::image).
-  std::size_t peak() const { return accumulators + std::min(state, kMostStateInMemory) + result + 2 * file; }
+  std::size_t peak() const { return accumulators + std::min(state, kMostStateInMemory) + result; }
 };
 
 /// Work of a study that can be tried in pieces, to measure how fast a machine does it.

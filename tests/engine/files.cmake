@@ -4,7 +4,7 @@ poesy_test(result_file_test LABELS unit
                    engine/kinds/stored_study_test.cpp engine/kinds/sensitivity/tolerance_files_test.cpp
                    engine/kinds/sensitivity/fidelity_fields_test.cpp engine/kinds/sensitivity/separation_fields_test.cpp
            LINKS poesy_kinds DATA)
-poesy_test(content_hash_test LABELS unit SOURCES engine/files/content_hash_test.cpp LINKS poesy_kinds hdf5::hdf5)
+poesy_test(content_hash_test LABELS unit SOURCES engine/files/content_hash_test.cpp engine/files/h5_disk_test.cpp LINKS poesy_kinds hdf5::hdf5)
 poesy_test(result_robustness_test LABELS robustness SOURCES engine/files/result_robustness_test.cpp engine/files/trial_read_test.cpp
            LINKS poesy_kinds hdf5::hdf5)
 poesy_test(checkpoint_test LABELS robustness SOURCES engine/files/checkpoint_test.cpp engine/files/second_name_test.cpp LINKS poesy_kinds)

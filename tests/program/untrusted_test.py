@@ -115,7 +115,7 @@ class Memory(Untrusted):
     def test_a_run_says_what_it_needs(self):
         sizes = ", ".join(f'"{k + 1} um"' for k in range(20))
         self.write("large.toml", mini("count = 600", f'kind = "coupling"\nlinear = [{sizes}]'))
-        for megabytes in (120, 200):
+        for megabytes in (80, 120):
             code, said = self.with_memory(megabytes, "run", "large.toml", "--quiet", "--threads", 1)
             with self.subTest(megabytes):
                 self.assertEqual(code, 3, said)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -98,18 +100,17 @@ std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::
 /// Fills a result: for each response, size and subset, in this order, its poses and then their summary.
 class Composer {
  public:
-  Composer(const EvaluationResult& evaluation, const CouplingStudy& study, const ModelDescription& model,
-           NotConverged policy)
-      : evaluation_(&evaluation), study_(&study), rows_(coupling_rows(study, model)), policy_(policy) {
-    POESY_EXPECTS(evaluation.samples == study.sizes() * rows_.errors.size());
-    found_.responses = evaluation.responses;
+  Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy)
+      : evaluation_(std::move(evaluation)), study_(&study), rows_(coupling_rows(study, model)), policy_(policy) {
+    POESY_EXPECTS(evaluation_.samples == study.sizes() * rows_.errors.size());
+    found_.responses = evaluation_.responses;
     found_.sizes = study.sizes();
     found_.subsets = rows_.subsets.size();
-    found_.poses = evaluation.poses;
+    found_.poses = evaluation_.poses;
     // A list that grows has all its numbers twice while it is copied.
     const std::size_t numbers = found_.responses * found_.sizes * found_.subsets * found_.poses;
-    for (std::vector<double>* curve : {&found_.effect, &found_.sum, &found_.interaction, &found_.worst_case,
-                                       &found_.root_sum_square, &found_.cancellation}) {
+    for (std::vector<double>* curve :
+         {&found_.effect, &found_.sum, &found_.worst_case, &found_.root_sum_square, &found_.cancellation}) {
       curve->reserve(numbers);
     }
   }
@@ -124,13 +125,17 @@ class Composer {
     for (std::size_t z = 0; z < found_.sizes; ++z) {
       for (std::size_t m = 0; m < found_.poses; ++m) found_.solves.push_back(solves_at(z, m));
     }
+    // Last, because it follows from others: the outcomes and all curves need not be in memory both.
+    evaluation_ = {};
+    found_.interaction.reserve(found_.effect.size());
+    std::ranges::transform(found_.effect, found_.sum, std::back_inserter(found_.interaction), std::minus());
     return std::move(found_);
   }
 
  private:
   std::size_t rows() const { return rows_.errors.size(); }
   std::size_t solve(std::size_t z, std::size_t m, std::size_t n) const {
-    return m * evaluation_->samples + z * rows() + n;
+    return m * evaluation_.samples + z * rows() + n;
   }
 
   double rounding_at(std::size_t z) const {
@@ -146,8 +151,8 @@ class Composer {
     for (std::size_t m = 0; m < found_.poses; ++m) {
       for (std::size_t n = 0; n < rows(); ++n) {
         const std::size_t at = solve(z, m, n);
-        const bool is_known = counts(evaluation_->status[at], policy_);
-        effects.push_back(is_known ? evaluation_->response[r * evaluation_->status.size() + at] : kNaN);
+        const bool is_known = counts(evaluation_.status[at], policy_);
+        effects.push_back(is_known ? evaluation_.response[r * evaluation_.status.size() + at] : kNaN);
       }
     }
     return effects;
@@ -155,12 +160,13 @@ class Composer {
 
   void add_subset(std::size_t k, std::span<const double> effects, double rounding) {
     std::vector<std::size_t> known;  // poses
+    std::vector<double> interaction;
     std::size_t opposed = 0;
     for (std::size_t m = 0; m < found_.poses; ++m) {
       const Combination at = combination(rows_, k, effects.subspan(m * rows(), rows()));
       found_.effect.push_back(at.effect);
       found_.sum.push_back(at.sum);
-      found_.interaction.push_back(at.effect - at.sum);
+      interaction.push_back(at.effect - at.sum);
       found_.worst_case.push_back(at.worst_case);
       found_.root_sum_square.push_back(std::sqrt(at.squares));
       found_.cancellation.push_back(at.cancellation(rounding));
@@ -176,7 +182,7 @@ class Composer {
     found_.count.push_back(known.size());
     found_.effect_max.push_back(effect);
     found_.effect_max_pose.push_back(effect_pose);
-    found_.interaction_max.push_back(largest(found_.interaction).first);
+    found_.interaction_max.push_back(largest_at(interaction, known).first);
     found_.worst_case_max.push_back(largest(found_.worst_case).first);
     found_.root_sum_square_max.push_back(largest(found_.root_sum_square).first);
     found_.opposed_share.push_back(known.empty() ? kNaN
@@ -188,12 +194,12 @@ class Composer {
   SolveCounts solves_at(std::size_t z, std::size_t m) const {
     SolveCounts solves;
     for (std::size_t n = 0; n < rows(); ++n) {
-      solves.add(evaluation_->status[solve(z, m, n)], evaluation_->iterations[solve(z, m, n)]);
+      solves.add(evaluation_.status[solve(z, m, n)], evaluation_.iterations[solve(z, m, n)]);
     }
     return solves;
   }
 
-  const EvaluationResult* evaluation_;
+  EvaluationResult evaluation_;
   const CouplingStudy* study_;
   CouplingRows rows_;
   NotConverged policy_;
@@ -203,10 +209,11 @@ class Composer {
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(run.study.analysis);
   const ModelDescription& model = run.model.description();
-  const auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
-                                         Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
+  auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
+                                   Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
   if (!evaluation || !run.makes_result()) return std::nullopt;
-  return StudyResult{coupling_result(*evaluation, coupling, model, run.study.not_converged), std::nullopt, {}};
+  return StudyResult{
+      coupling_result(*std::move(evaluation), coupling, model, run.study.not_converged), std::nullopt, {}};
 }
 
 Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
@@ -217,17 +224,16 @@ Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& 
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
   const std::size_t cells = coupling.sizes() * poses.size();
   const std::size_t curves = 6 * sizeof(double) * cells * rows.subsets.size() * study.model().responses.size();
-  // While the result is composed, the outcomes are there besides their state and the curves. While it is written, its
-  // lists go one by one, and the file comes; one curve is hashed.
-  const std::size_t composing = outcomes + curves;
-  const std::size_t file = curves + cells * kSolverColumns;
+  // While the result is composed, the outcomes are there besides all curves but one. While it is written, its lists go
+  // one by one.
+  const std::size_t composing = outcomes + curves / 6 * 5;
   return {.solves = counted_things(coupling.sizes(), "sizes x ") +
                     counted_things(rows.errors.size(), "sets of errors x ") + counted_things(poses.size(), "poses = ") +
                     counted_things(solves, "solves"),
-          .memory = {.accumulators = std::max(curves / 6, composing - std::min(composing, 2 * file)),
+          .memory = {.accumulators = composing - std::min(composing, curves),
                      .state = outcomes,
-                     .result = cells * sizeof(SolveCounts),
-                     .file = file},
+                     .result = curves + cells * sizeof(SolveCounts),
+                     .file = curves + cells * kSolverColumns},
           .shared = {table_work(study, model, poses, table, Outcomes::responses)},
           .by_one = {}};
 }
@@ -303,9 +309,9 @@ ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& mo
   return table;
 }
 
-CouplingResult coupling_result(const EvaluationResult& evaluation, const CouplingStudy& study,
-                               const ModelDescription& model, NotConverged policy) {
-  return Composer(evaluation, study, model, policy)();
+CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
+                               NotConverged policy) {
+  return Composer(std::move(evaluation), study, model, policy)();
 }
 
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources) {

@@ -139,8 +139,8 @@ struct CouplingResult {
 ///
 /// evaluation: what run_evaluation found for the study's coupling_table. A solve that does not count (see counts())
 /// makes NaN of everything that rests on it, and is counted in `solves`.
-CouplingResult coupling_result(const EvaluationResult& evaluation, const CouplingStudy& study,
-                               const ModelDescription& model, NotConverged policy);
+CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
+                               NotConverged policy);
 
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);

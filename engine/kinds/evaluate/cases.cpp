@@ -31,10 +31,9 @@ Outlook cases_outlook(const Study& study, const Model& model, const PoseSet& pos
   const ErrorTable table = case_table(asked_of<CaseOptions>(study.analysis).cases);
   const std::size_t solves = table.rows * poses.size();
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::with_details);
-  // The file has cases before poses: a transposed copy of the outcomes.
   return {.solves = counted_things(table.rows, "cases x ") + counted_things(poses.size(), "poses = ") +
                     counted_things(solves, "solves"),
-          .memory = {.accumulators = outcomes, .state = outcomes, .result = outcomes, .file = outcomes},
+          .memory = {.state = outcomes, .result = outcomes, .file = outcomes},
           .shared = {table_work(study, model, poses, table, Outcomes::with_details)},
           .by_one = {}};
 }

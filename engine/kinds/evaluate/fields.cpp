@@ -53,7 +53,7 @@ void transpose(std::vector<T>& values, std::size_t rows, std::size_t columns, st
   values = std::move(turned);
 }
 
-/// [pose x sample] turned to [sample x pose], or back.
+/// [sample x pose] turned to [pose x sample].
 EvaluationResult transposed(EvaluationResult found) {
   transpose(found.response, found.poses, found.samples, 1);
   transpose(found.status, found.poses, found.samples, 1);
@@ -63,8 +63,9 @@ EvaluationResult transposed(EvaluationResult found) {
   return found;
 }
 
+template <class Order>
 void add_details(ResultBuilder& result, const std::vector<Detail>& details, const EvaluationResult& found,
-                 const Axes& axes) {
+                 const Axes& axes, const Order& order) {
   if (found.details == 0) return;
   const auto names = texts(details, &Detail::name);
   result.file().set_attribute("/evaluate", "details", std::span(names));
@@ -78,13 +79,11 @@ void add_details(ResultBuilder& result, const std::vector<Detail>& details, cons
       result.add_axis(axis->second, detail.components, {"1", "Component of " + detail.name + " and its like"});
       result.show_axes("/evaluate", {axis->second});
     }
-    std::vector<double> values;
-    for (std::size_t row = 0; row < found.status.size(); ++row) {
-      const auto begin = found.detail.begin() + static_cast<std::ptrdiff_t>(row * found.details + first);
-      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
-    }
+    const auto value = [&](std::size_t at) {
+      return found.detail[order(at / width) * found.details + first + at % width];
+    };
     const std::string path = "/evaluate/" + detail.name;
-    result.add(path, {axes[0], axes[1], axis->second}, values, {detail.unit, detail.description});
+    result.add_computed<double>(path, {axes[0], axes[1], axis->second}, value, {detail.unit, detail.description});
     result.file().set_attribute(path, "components", std::span(detail.components));
     first += width;
   }
@@ -142,23 +141,29 @@ EvaluationResult read_solves(const h5::File& file, const std::vector<NamedUnit>&
   return found;
 }
 
-void add_solves(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found, const Axes& axes) {
+/// axes: of the solves in the file. order(at): position in memory, where they are kept by pose, of one in the file.
+template <class Order>
+void add_solves(ResultBuilder& result, const ModelDescription& model, const EvaluationResult& found, const Axes& axes,
+                const Order& order) {
   result.add_axis("joint", texts(model.joints, &JointDisplacement::name), {"1", "Name of the joint displacement"});
   result.file().make_group("/evaluate");
   result.show_axes("/evaluate", {axes[0], axes[1], "joint"});
   const std::size_t cells = found.poses * found.samples;
   for (std::size_t r = 0; r < model.responses.size(); ++r) {
     const Response& response = model.responses[r];
-    result.add("/evaluate/" + response.name, axes, std::span(found.response).subspan(r * cells, cells),
-               {unit_of(response), response.description});
+    const auto value = [&](std::size_t at) { return found.response[r * cells + order(at)]; };
+    result.add_computed<double>("/evaluate/" + response.name, axes, value, {unit_of(response), response.description});
   }
-  add_details(result, model.details, found, axes);
-  std::vector<std::uint8_t> status;
-  for (const SolveStatus ending : found.status) status.push_back(static_cast<std::uint8_t>(ending));
+  add_details(result, model.details, found, axes, order);
   const auto status_names = texts(kStatusNames, std::identity());
-  result.add("/evaluate/status", axes, status, {"1", "How the solve ended: a position in status_names, from 0"});
+  result.add_computed<std::uint8_t>("/evaluate/status", axes, [&](std::size_t at) { return found.status[order(at)]; },
+                                    {"1", "How the solve ended: a position in status_names, from 0"});
   result.file().set_attribute("/evaluate/status", "status_names", std::span(status_names));
-  write_fields(result, "/evaluate", solve_fields(axes), found);
+  const Fields<EvaluationResult> fields = solve_fields(axes);
+  result.add_computed<std::uint32_t>("/evaluate/" + fields[0].name, axes,
+                                     [&](std::size_t at) { return found.iterations[order(at)]; },
+                                     {fields[0].unit, fields[0].description});
+  write_field(result, "/evaluate", fields[1], std::span(&found, 1));
 }
 
 /// rows: the axis of the rows of errors.
@@ -344,7 +349,7 @@ void write_table(ResultBuilder& result, const Study& study, const EvaluatedTable
   const ModelDescription& model = study.model();
   add_names(result, study, table.errors.factors);
   result.add_axis("sample", axis_numbers(table.found.samples), {"1", "Number of the sample at each pose, from 0"});
-  add_solves(result, model, table.found, kTableAxes);
+  add_solves(result, model, table.found, kTableAxes, std::identity());
   add_errors(result, table.errors, table.pairing == Pairing::row_by_row ? "pose" : "sample", table.pairing);
   add_limits(result, model, table.found.verdicts);
 }
@@ -354,7 +359,10 @@ void write_cases(ResultBuilder& result, const Study& study, const CaseResult& fo
   const ErrorTable errors = case_table(cases);
   add_names(result, study, errors.factors);
   result.add_axis("case", texts(cases, &ErrorCase::name), {"1", "Name of the case"});
-  add_solves(result, study.model(), transposed(found.evaluation), kCaseAxes);
+  const auto by_pose = [poses = found.evaluation.poses, count = cases.size()](std::size_t at) {
+    return at % poses * count + at / poses;
+  };
+  add_solves(result, study.model(), found.evaluation, kCaseAxes, by_pose);
   add_errors(result, errors, "case", Pairing::every_pose_with_every_row);
   add_limits(result, study.model(), found.evaluation.verdicts);
   result.show_axes("/evaluate", {"response"});

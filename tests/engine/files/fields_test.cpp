@@ -36,7 +36,7 @@ const Fields<Thing> kThings{{"name", &Thing::name, {"line"}, "1", "Names"},
                             {"place", &Thing::place, {"line"}, "1", "Their places"}};
 
 ResultBuilder with_axes() {
-  ResultBuilder builder;
+  ResultBuilder builder(h5::File::in_memory());
   builder.add_axis("line", std::vector<std::int64_t>{0, 1}, {"1", "Lines"});
   builder.add_axis("column", std::vector<std::int64_t>{0, 1, 2}, {"1", "Columns"});
   return builder;

@@ -1,10 +1,8 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <sys/mount.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <functional>
 
@@ -13,6 +11,7 @@
 #include "engine/files/result_file.h"
 #include "engine/files/shard_file.h"
 #include "tests/engine/kinds/example_result.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -71,26 +70,6 @@ TEST(FullDisk, StopsAnExport) {
   write_bytes(folder / "filler", std::string(15000, 'x'));
   expect_contains(file_error([&] { export_tables(results / "r.h5", folder.path()); }), "No space left on device");
 }
-
-/// Lets no file of this process grow beyond a size.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit limit{.rlim_cur = bytes, .rlim_max = old_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, old_handler_);
-  }
-
- private:
-  rlimit old_{};
-  void (*old_handler_)(int);
-};
 
 TEST(FileSizeLimit, GivesAFileErrorAndLeavesTheOldResult) {
   const TempFolder folder;
