@@ -28,8 +28,8 @@ STUDIES = {
     "coupling": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=600, kind="coupling") + SIZES,
     "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=20000, kind="monte-carlo")
     + 'factors = "all"\nsamples = 2\n',
-    "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1500, kind="monte-carlo")
-    + 'draws = "per machine"\nfactors = "all"\nsamples = 2000\nlimits.position = "0.1 mm"\n',
+    "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1000, kind="monte-carlo")
+    + 'draws = "per machine"\nfactors = "all"\nsamples = 8000\nlimits.position = "0.1 mm"\n',
 }
 
 
