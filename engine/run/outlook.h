@@ -20,11 +20,11 @@ namespace poesy {
 /// What a run has in memory at its peak, while it writes its result, without the program itself; bytes.
 struct MemoryOutlook {
   std::size_t accumulators = 0;  ///< of the run; the heap does not give all of them back before the result is written
-  std::size_t state = 0;         ///< the run as a checkpoint has it; a small one is kept until the end
+  std::size_t state = 0;         ///< the run as a checkpoint has it; a large one is on the disk at the end
   std::size_t result = 0;        ///< plain values
   std::size_t file = 0;          ///< the result file, which is composed on the disk
 
-  std::size_t peak() const { return accumulators + std::min(state, kMostStateInMemory) + result; }
+  std::size_t peak() const { return accumulators + (state <= kMostStateInMemory ? state : 0) + result; }
 };
 
 /// Work of a study that can be tried in pieces, to measure how fast a machine does it.

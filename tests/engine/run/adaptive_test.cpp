@@ -223,7 +223,7 @@ TEST_P(Adaptive, StoppedItGoesOnToTheSameBits) {
   for (;;) {
     std::atomic<bool> stop{false};
     Checkpoints checkpoints([] { return false; },
-                            [&](std::span<const ByteSource> stages) { kept = bytes_of_each(stages); }, kept);
+                            [&](std::span<const ByteSource> stages) { kept = test::bytes_of_each(stages); }, kept);
     RunOptions options = on_threads(1 + stops % 2);
     options.stop = &stop;
     options.progress = [&](const Progress& progress) {
@@ -244,7 +244,7 @@ TEST_P(Adaptive, StoppedItGoesOnToTheSameBits) {
 std::vector<States> states_of(const AdaptiveRun& study) {
   std::vector<States> states;
   Checkpoints checkpoints([] { return true; },
-                          [&](std::span<const ByteSource> stages) { states.push_back(bytes_of_each(stages)); });
+                          [&](std::span<const ByteSource> stages) { states.push_back(test::bytes_of_each(stages)); });
   RunOptions options = on_threads(2);
   options.checkpoints = &checkpoints;
   EXPECT_TRUE(run(study, options));

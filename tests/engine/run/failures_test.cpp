@@ -137,7 +137,7 @@ TEST_P(Failures, AreTheSameAfterAStopOrAnExtension) {
   const Prepared longer(study_of(GetParam(), 3300, 2));
   std::vector<std::vector<Bytes>> states;
   Checkpoints keep([] { return true; },
-                   [&](std::span<const ByteSource> stages) { states.push_back(bytes_of_each(stages)); });
+                   [&](std::span<const ByteSource> stages) { states.push_back(test::bytes_of_each(stages)); });
   EXPECT_EQ(run(shorter, {1, {}, {}, &keep}), expected_failures(shorter));
   keep.save();
   ASSERT_GT(states.size(), 3U);
