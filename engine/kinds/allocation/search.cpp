@@ -27,9 +27,15 @@ constexpr std::size_t kMostTrials = 12;
 constexpr double kExact = 1e-5;
 /// Machines below this share of the load that decides do not come to decide while tolerances change a little.
 constexpr double kNear = 0.75;
-/// How much coarser a part is made to see what it does, and how near to 1 loads are that tell it.
+/// How much coarser a part is made to see what it does.
 constexpr double kCoarser = 1.05;
-constexpr double kWindow = 0.1;
+/// So many machines near the limit tell it; more of them of a part whose errors move loads by less than kSmall.
+constexpr std::size_t kTelling = 700;
+constexpr std::size_t kTellingOfSmall = 3000;
+constexpr double kSmall = 0.01;
+/// The first step of a part that may be coarser; each further step is the square of the one before.
+constexpr double kFirstStep = 1.25;
+constexpr std::size_t kMostRoundsOfSteps = 3;
 /// Of all machines so many are tried first.
 constexpr std::size_t kFirstOf = 8;
 /// So many are tried in any case, to find some that were left out.
@@ -56,6 +62,19 @@ double deciding_load(std::vector<double> load, std::uint64_t most) {
   const auto at = load.begin() + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(most, load.size() - 1));
   std::ranges::nth_element(load, at, std::ranges::greater());
   return *at;
+}
+
+/// The load of the machine before that one; infinite where no reject is allowed.
+double load_before_deciding(const std::vector<double>& load, std::uint64_t most) {
+  return most == 0 ? std::numeric_limits<double>::infinity() : deciding_load(load, most - 1);
+}
+
+/// By what all tolerances are multiplied so that the machine which decides comes to the limit, just within, and the one
+/// before it remains beyond, however near to each other they are.
+double factor_to_limit(double deciding, double before) {
+  constexpr double kWithin = 1.0 + 0.5 * kExact;
+  const double between = before > deciding && std::isfinite(before) ? std::sqrt(before / deciding) : kWithin;
+  return 1.0 / std::clamp(deciding * std::min(between, kWithin), 0.5, 2.0);
 }
 
 double largest_ratio(std::span<const double> a, std::span<const double> b) {
@@ -241,7 +260,7 @@ std::optional<bool> ToleranceSearch::lower_what_rejects() {
     if (!try_found()) return std::nullopt;
     const double load = deciding_load(trial_.load, allowed_.design);
     if (load <= 1.0) {
-      if (!scale_near()) return std::nullopt;
+      if (!scale_near(none_stays())) return std::nullopt;
       add_stage("finer where machines fail", trial_.load.size(), near_.trial.rejects());
       return true;
     }
@@ -469,61 +488,163 @@ bool ToleranceSearch::improve_by_gradient() {
   return true;
 }
 
-/// Finds what each part would do if it alone were coarser. Counts of rejects would drown a small part in noise, so the
-/// rejects to come are as many as machines have loads near 1, per load, times what the part adds to these loads.
-bool ToleranceSearch::try_coarser() {
-  std::vector<std::uint32_t> machines;
-  std::vector<double> now;
-  for (std::size_t k = 0; k < near_.machines.size(); ++k) {
-    if (std::abs(near_.trial.load[k] - 1.0) > kWindow) continue;
-    machines.push_back(near_.machines[k]);
-    now.push_back(near_.trial.load[k]);
-  }
+/// Finds what each of these parts would do if it alone were coarser. Many machines tell it of a part that hardly
+/// changes loads, each with its mirror; fewer of any other part. A step to the next value that can be had may be large,
+/// and few machines come that far: the rejects of a small step are taken, in the ratio of the growth of T^2.
+bool ToleranceSearch::try_coarser(std::span<const std::size_t> parts) {
+  const NearLimit few(near_.machines, near_.trial.load, kTelling);
+  std::vector<CoarserPart> coarser;
   std::vector<Variation> variations;
-  std::vector<std::size_t> parts;
-  for (std::size_t i = 0; i < programme_.size(); ++i) {
+  for (const std::size_t i : parts) {
+    coarser_yield_[i] = kNaN;
     const auto next = programme_.coarser(found_, i, kCoarser);
     if (!next) continue;
-    const auto errors = programme_.errors(i);
-    variations.push_back({{errors.begin(), errors.end()}, next->tolerance[i] / found_.tolerance[i]});
-    parts.push_back(i);
+    const double whole = next->tolerance[i] / found_.tolerance[i];
+    const double step = std::min(whole, kCoarser);
+    coarser.push_back({i, step, (whole * whole - 1.0) / (step * step - 1.0)});
+    variations.push_back(varied(i, step));
   }
-  const Study study = tried_at(found_.tolerance);
-  const auto loads =
-      try_variations(Plan(study, run_.poses), run_.model, study.analysis.limits, machines, variations, run_.options);
+  const auto loads = try_varied(few, variations);
   if (!loads) return false;
-  const auto count = static_cast<double>(trial_.load.size());
-  for (std::size_t v = 0; v < variations.size(); ++v) {
-    double added = 0.0;
-    for (std::size_t k = 0; k < now.size(); ++k) added += (*loads)[v * now.size() + k] - now[k];
-    const double rejects = static_cast<double>(trial_.rejects()) + added / (2.0 * kWindow);
-    coarser_yield_[parts[v]] = std::clamp(1.0 - rejects / count, 0.0, 1.0);
+  std::vector<CoarserPart> small;
+  for (std::size_t v = 0; v < coarser.size(); ++v) {
+    const auto with_part = few.of_variation(*loads, v);
+    if (few.change(with_part) < kSmall * (coarser[v].step - 1.0)) small.push_back(coarser[v]);
+    set_coarser_yield(coarser[v], few.rejects_to_come(with_part));
+  }
+  return try_small(small);
+}
+
+/// The same for parts that hardly change loads.
+bool ToleranceSearch::try_small(std::span<const CoarserPart> parts) {
+  const NearLimit many(near_.machines, near_.trial.load, kTellingOfSmall);
+  std::vector<Variation> variations;
+  for (const CoarserPart& one : parts) {
+    for (const double factor : {one.step, -1.0, -one.step}) variations.push_back(varied(one.part, factor));
+  }
+  const auto loads = try_varied(many, variations);
+  if (!loads) return false;
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    const auto of = [&](std::size_t variation) { return many.of_variation(*loads, 3 * v + variation); };
+    set_coarser_yield(parts[v], many.rejects_to_come(of(0), of(1), of(2)));
   }
   return true;
 }
 
-/// Takes all tolerances times one factor, so that the machines near the limit use up what the design allows: after
-/// this it allows none to be coarser. Where not even the lowest tolerances hold among them, which held among others, it
+Variation ToleranceSearch::varied(std::size_t part, double factor) const {
+  const auto errors = programme_.errors(part);
+  return {{errors.begin(), errors.end()}, factor};
+}
+
+std::optional<std::vector<double>> ToleranceSearch::try_varied(const NearLimit& near,
+                                                               std::span<const Variation> variations) const {
+  const Study study = tried_at(found_.tolerance);
+  return try_variations(Plan(study, run_.poses), run_.model, study.analysis.limits, near.machines(), variations,
+                        run_.options);
+}
+
+/// come: rejects that the step of this part adds
+void ToleranceSearch::set_coarser_yield(const CoarserPart& of, double come) {
+  const double rejects = static_cast<double>(near_.trial.rejects()) + of.steps * come;
+  coarser_yield_[of.part] = std::clamp(1.0 - rejects / static_cast<double>(trial_.load.size()), 0.0, 1.0);
+}
+
+/// Those of these parts that could be coarser alone and the design would still have no more rejects than it may, to
+/// save costs. Of parts that together would use up more than is left those of the least effect.
+std::vector<std::size_t> ToleranceSearch::idle_parts(std::span<const std::size_t> parts) const {
+  if (asked_.aim != Aim::least_cost) return {};
+  const double count = static_cast<double>(trial_.load.size());
+  const double least_yield = 1.0 - static_cast<double>(allowed_.design) / count;
+  std::vector<std::size_t> idle;
+  for (const std::size_t i : parts) {
+    const auto next = programme_.coarser(found_, i, kCoarser);
+    if (next && next->cost < found_.cost && coarser_yield_[i] >= least_yield) idle.push_back(i);
+  }
+  std::ranges::stable_sort(idle, std::ranges::greater(), [&](std::size_t i) { return coarser_yield_[i]; });
+  const double yield = 1.0 - static_cast<double>(near_.trial.rejects()) / count;
+  double left = yield - least_yield;
+  std::size_t taken = 0;
+  while (taken < idle.size() && (left -= yield - coarser_yield_[idle[taken]]) >= 0.0) ++taken;
+  idle.resize(std::min(idle.size(), std::max<std::size_t>(taken, 1)));
+  return idle;
+}
+
+/// Makes these parts coarser by steps that grow, until each would break the yield or can be no coarser; the others are
+/// scaled to what that leaves. Whether that costs less, and keeps the yield; else all stays as it was. None when
+/// stopped.
+std::optional<bool> ToleranceSearch::loosen(std::vector<std::size_t> idle) {
+  const TolerancePoint point = found_;
+  const Trial trial = trial_;
+  const Tried near = near_;
+  const std::vector<double> coarser_yield = coarser_yield_;
+  std::vector<bool> stays(programme_.size(), false);
+  double step = kFirstStep;
+  for (std::size_t round = 0; round < kMostTrials && !idle.empty(); ++round, step *= step) {
+    for (const std::size_t i : idle) {
+      if (auto next = programme_.coarser(found_, i, step)) found_ = *std::move(next);
+      stays[i] = true;
+    }
+    auto tried = try_near(found_);
+    if (!tried) return std::nullopt;
+    near_ = *std::move(tried);
+    if (!try_coarser(idle)) return std::nullopt;
+    idle = idle_parts(idle);
+  }
+  if (!try_found() || !scale_near(stays)) return std::nullopt;
+  for (std::size_t k = 0; k < near_.machines.size(); ++k) trial_.load[near_.machines[k]] = near_.trial.load[k];
+  if (trial_.rejects() <= allowed_.design && found_.cost < point.cost) return true;
+  found_ = point;
+  trial_ = trial;
+  near_ = near;
+  coarser_yield_ = coarser_yield;
+  return false;
+}
+
+/// Finds what each part would do if it alone were coarser, and loosens those that would do nothing: at the least cost
+/// there are none.
+bool ToleranceSearch::leave_none_idle() {
+  std::vector<std::size_t> all(programme_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (!try_coarser(all)) return false;
+  bool better = false;
+  for (std::size_t round = 0; round < kMostRoundsOfSteps; ++round) {
+    std::vector<std::size_t> idle = idle_parts(all);
+    if (idle.empty()) break;
+    const std::optional<bool> loosened = loosen(std::move(idle));
+    if (!loosened) return false;
+    if (!*loosened) break;
+    if (!try_coarser(all)) return false;
+    better = true;
+  }
+  if (better) add_stage("coarser where nothing breaks", trial_.load.size(), trial_.rejects());
+  return true;
+}
+
+/// Takes all tolerances times one factor, but for those that stay [N], so that the machines near the limit use up what
+/// the design allows. Where not even the lowest tolerances hold among them, which held among others, it
 /// leaves all as they are: the certificate decides. Precondition: near_ was tried at found_.
-bool ToleranceSearch::scale_near() {
+bool ToleranceSearch::scale_near(const std::vector<bool>& stays) {
   const TolerancePoint before = found_;
   const Tried near_before = near_;
   double low = 0.0;  // a factor that holds
   double high = std::numeric_limits<double>::infinity();
   double factor = 1.0;
   double load = deciding_load(near_.trial.load, allowed_.design);
+  double load_before = load_before_deciding(near_.trial.load, allowed_.design);
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
     (load <= 1.0 ? low : high) = factor;
-    if ((load <= 1.0 && load >= 1.0 - kExact) || high < low * (1.0 + kExact)) break;
-    factor *= (1.0 - 0.5 * kExact) / std::clamp(load, 0.5, 2.0);
+    if (load <= 1.0 && load >= 1.0 - kExact && load_before > 1.0) break;
+    factor *= factor_to_limit(load, load_before);
     if (factor <= low || factor >= high) factor = std::sqrt(low * high);
+    if (factor <= low || factor >= high) break;
     std::vector<double> wanted = before.tolerance;
-    for (double& tolerance : wanted) tolerance *= factor;
+    for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] *= stays[i] ? 1.0 : factor;
     const TolerancePoint next = programme_.at_most(wanted);
     if (next.tolerance == found_.tolerance) break;
     auto near = try_near(next);
     if (!near) return false;
     load = deciding_load(near->trial.load, allowed_.design);
+    load_before = load_before_deciding(near->trial.load, allowed_.design);
     if (load > 1.0 || (low > 0.0 && next.cost > found_.cost)) continue;
     found_ = next;
     near_ = *std::move(near);
@@ -553,7 +674,7 @@ bool ToleranceSearch::scale_to_others() {
   seed_ = seed_of_others(run_.study, SampleIndex(1));
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
     const std::vector<double> at = found_.tolerance;
-    if (!try_found() || !scale_near()) return false;
+    if (!try_found() || !scale_near(none_stays())) return false;
     const double moved = largest_ratio(found_.tolerance, at);
     for (std::size_t k = 0; k < near_.machines.size(); ++k) trial_.load[near_.machines[k]] = near_.trial.load[k];
     const std::optional<bool> again = left_out();
@@ -567,7 +688,7 @@ bool ToleranceSearch::scale_to_others() {
 bool ToleranceSearch::find() {
   if (!linearise() || !settle_effects() || !meet_yield()) return false;
   if (near_.machines.empty()) return true;  // the lowest tolerances: nothing is left to choose
-  return improve_by_gradient() && scale_to_others() && try_coarser();
+  return improve_by_gradient() && scale_to_others() && leave_none_idle();
 }
 
 double ToleranceSearch::cost_at(double share, double wider) const {
