@@ -57,7 +57,7 @@ class VariationEvaluator : private LoadSolver {
     drawn_.assign(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(plan_->factors().size() * count_));
     VariedPiece found{std::vector<double>(varied_.loads_of(piece)), 0};
     solve_without(found);
-    change_.assign(found.load.size(), 0.0);
+    change_.assign(varied_.variations.size(), 0.0);
     for (const bool deciding : {true, false}) {
       for (std::size_t m = 0; m < plan_->poses().size(); ++m) solve_at(m, deciding, found);
     }
@@ -76,13 +76,14 @@ class VariationEvaluator : private LoadSolver {
     found.solves += at_pose_.size();
   }
 
-  /// Variations of machines at a pose: where it decides, or where it does not and the variation changes much.
+  /// Variations of machines at a pose: where it decides; or where it does not, those that change much for any of the
+  /// machines, because what hardly acts at the pose that decides for one may act at another.
   void solve_at(std::size_t m, bool deciding, VariedPiece& found) {
     pairs_.clear();
     for (std::size_t pair = 0; pair < found.load.size(); ++pair) {
       const std::size_t b = pair % count_;
       const bool decides = at_pose_[m * count_ + b] >= load_[b] - kDeciding;
-      if (decides != deciding || (!decides && change_[pair] <= 0.5 * kDeciding)) continue;
+      if (decides != deciding || (!decides && change_[pair / count_] <= 0.5 * kDeciding)) continue;
       pairs_.push_back(pair);
       if (pairs_.size() == kMachinesOfPiece) solve_pairs(m, found);
     }
@@ -104,7 +105,8 @@ class VariationEvaluator : private LoadSolver {
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t pair = pairs_[k];
       found.load[pair] = std::max(found.load[pair], of_pairs_[k]);
-      change_[pair] = std::max(change_[pair], std::abs(of_pairs_[k] - at_pose_[m * count_ + pair % count_]));
+      double& change = change_[pair / count_];
+      change = std::max(change, std::abs(of_pairs_[k] - at_pose_[m * count_ + pair % count_]));
     }
     found.solves += count;
     pairs_.clear();
@@ -126,7 +128,7 @@ class VariationEvaluator : private LoadSolver {
   std::vector<double> drawn_;         ///< [P x B] errors
   std::vector<double> at_pose_;       ///< [M x B] loads as they are
   std::vector<double> load_;          ///< [B] the largest of them
-  std::vector<double> change_;        ///< [V x B] the largest change of a load at a pose
+  std::vector<double> change_;        ///< [V] the largest change of a load at a pose
   std::vector<std::size_t> pairs_;    ///< positions among [V x B]
   std::vector<double> of_pairs_;      ///< loads of these at a pose
   std::vector<std::uint8_t> missing_;
