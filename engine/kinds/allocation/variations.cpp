@@ -13,8 +13,8 @@ namespace poesy {
 namespace {
 
 constexpr std::uint64_t kKind = 73;  ///< no other state begins with this number
-/// Machines that are varied together: few enough that all threads have work.
-constexpr std::size_t kVariedAtOnce = 100;
+/// Machines that are varied together: few, so that a piece of work ends soon however many variations there are.
+constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// About so many of the poses decide, for a guess of the solves to come.
 constexpr std::size_t kOfPosesDecide = 4;

@@ -22,7 +22,7 @@ struct Variation {
 
 /// Loads (Trial) [V x n] of the listed machines, ascending numbers below plan.samples(), with one variation after the
 /// other. Each machine is tried at the poses that decide: those where its load is within kDeciding of its largest. A
-/// variation that changes a load there by more than half of that, for one of some hundred machines, may bring other
+/// variation that changes a load there by more than half of that, for one of some forty machines, may bring other
 /// poses up: these machines are tried with it at all poses. On all ranks of a team, the same bits for any number of
 /// threads. Empty when stopped. Precondition: Draws::per_machine.
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
