@@ -92,6 +92,25 @@ class Allocation(ResumptionTest):
             self.assertLessEqual(group["rejects"][()], group["most_rejects"][()])
             self.assertLessEqual(group["design_rejects"][()], group["design_most"][()])
 
+    def check_no_part_is_idle(self, result, parts):
+        """Each part made coarser alone breaks the yield, or is as coarse as it may be."""
+        with h5py.File(self.folder / result) as found:
+            certificate = found["allocation/certificate"]
+            machines = int(certificate["design_machines"][()])
+            # A design that had rejects to spare would let parts be coarser.
+            self.assertEqual(certificate["design_rejects"][()], certificate["design_most"][()])
+            most = 1 - certificate["design_most"][()] / machines
+            bounds = found["allocation/bound"][:]
+            coarser = found["allocation/coarser_yield"][:]
+        self.assertEqual(len(coarser), parts)
+        for part, (share, bound) in enumerate(zip(coarser, bounds)):
+            self.assertTrue(share < most or bound == 2, f"part {part}: {machines * (1 - share)} rejects, bound {bound}")
+
+    def test_no_part_could_be_coarser(self):
+        for study, parts in ((GAP, 47), (TIP, 60)):
+            self.run_study(study)
+            self.check_no_part_is_idle("out.h5", parts)
+
     def test_the_certificate_is_what_its_study_finds(self):
         done = self.run_study(GAP)
         self.assertTrue(done.stdout.decode().splitlines()[1].startswith("out_certificate.toml: "), done.stdout)

@@ -27,9 +27,6 @@ constexpr std::size_t kMostTrials = 12;
 constexpr double kExact = 1e-5;
 /// Machines below this share of the load that decides do not come to decide while tolerances change a little.
 constexpr double kNear = 0.75;
-/// How much coarser a part is made to see what it does, and how near to 1 loads are that tell it.
-constexpr double kCoarser = 1.05;
-constexpr double kWindow = 0.1;
 /// Of all machines so many are tried first.
 constexpr std::size_t kFirstOf = 8;
 /// So many are tried in any case, to find some that were left out.
@@ -56,6 +53,19 @@ double deciding_load(std::vector<double> load, std::uint64_t most) {
   const auto at = load.begin() + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(most, load.size() - 1));
   std::ranges::nth_element(load, at, std::ranges::greater());
   return *at;
+}
+
+/// The load of the machine before that one; infinite where no reject is allowed.
+double load_before_deciding(const std::vector<double>& load, std::uint64_t most) {
+  return most == 0 ? std::numeric_limits<double>::infinity() : deciding_load(load, most - 1);
+}
+
+/// By what all tolerances are multiplied so that the machine which decides comes to the limit, just within, and the one
+/// before it remains beyond, however near to each other they are.
+double factor_to_limit(double deciding, double before) {
+  constexpr double kWithin = 1.0 + 0.5 * kExact;
+  const double between = before > deciding && std::isfinite(before) ? std::sqrt(before / deciding) : kWithin;
+  return 1.0 / std::clamp(deciding * std::min(between, kWithin), 0.5, 2.0);
 }
 
 double largest_ratio(std::span<const double> a, std::span<const double> b) {
@@ -241,7 +251,7 @@ std::optional<bool> ToleranceSearch::lower_what_rejects() {
     if (!try_found()) return std::nullopt;
     const double load = deciding_load(trial_.load, allowed_.design);
     if (load <= 1.0) {
-      if (!scale_near()) return std::nullopt;
+      if (!scale_near(none_stays())) return std::nullopt;
       add_stage("finer where machines fail", trial_.load.size(), near_.trial.rejects());
       return true;
     }
@@ -469,61 +479,31 @@ bool ToleranceSearch::improve_by_gradient() {
   return true;
 }
 
-/// Finds what each part would do if it alone were coarser. Counts of rejects would drown a small part in noise, so the
-/// rejects to come are as many as machines have loads near 1, per load, times what the part adds to these loads.
-bool ToleranceSearch::try_coarser() {
-  std::vector<std::uint32_t> machines;
-  std::vector<double> now;
-  for (std::size_t k = 0; k < near_.machines.size(); ++k) {
-    if (std::abs(near_.trial.load[k] - 1.0) > kWindow) continue;
-    machines.push_back(near_.machines[k]);
-    now.push_back(near_.trial.load[k]);
-  }
-  std::vector<Variation> variations;
-  std::vector<std::size_t> parts;
-  for (std::size_t i = 0; i < programme_.size(); ++i) {
-    const auto next = programme_.coarser(found_, i, kCoarser);
-    if (!next) continue;
-    const auto errors = programme_.errors(i);
-    variations.push_back({{errors.begin(), errors.end()}, next->tolerance[i] / found_.tolerance[i]});
-    parts.push_back(i);
-  }
-  const Study study = tried_at(found_.tolerance);
-  const auto loads =
-      try_variations(Plan(study, run_.poses), run_.model, study.analysis.limits, machines, variations, run_.options);
-  if (!loads) return false;
-  const auto count = static_cast<double>(trial_.load.size());
-  for (std::size_t v = 0; v < variations.size(); ++v) {
-    double added = 0.0;
-    for (std::size_t k = 0; k < now.size(); ++k) added += (*loads)[v * now.size() + k] - now[k];
-    const double rejects = static_cast<double>(trial_.rejects()) + added / (2.0 * kWindow);
-    coarser_yield_[parts[v]] = std::clamp(1.0 - rejects / count, 0.0, 1.0);
-  }
-  return true;
-}
-
-/// Takes all tolerances times one factor, so that the machines near the limit use up what the design allows: after
-/// this it allows none to be coarser. Where not even the lowest tolerances hold among them, which held among others, it
+/// Takes all tolerances times one factor, but for those that stay [N], so that the machines near the limit use up what
+/// the design allows. Where not even the lowest tolerances hold among them, which held among others, it
 /// leaves all as they are: the certificate decides. Precondition: near_ was tried at found_.
-bool ToleranceSearch::scale_near() {
+bool ToleranceSearch::scale_near(const std::vector<bool>& stays) {
   const TolerancePoint before = found_;
   const Tried near_before = near_;
   double low = 0.0;  // a factor that holds
   double high = std::numeric_limits<double>::infinity();
   double factor = 1.0;
   double load = deciding_load(near_.trial.load, allowed_.design);
+  double load_before = load_before_deciding(near_.trial.load, allowed_.design);
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
     (load <= 1.0 ? low : high) = factor;
-    if ((load <= 1.0 && load >= 1.0 - kExact) || high < low * (1.0 + kExact)) break;
-    factor *= (1.0 - 0.5 * kExact) / std::clamp(load, 0.5, 2.0);
+    if (load <= 1.0 && load >= 1.0 - kExact && load_before > 1.0) break;
+    factor *= factor_to_limit(load, load_before);
     if (factor <= low || factor >= high) factor = std::sqrt(low * high);
+    if (factor <= low || factor >= high) break;
     std::vector<double> wanted = before.tolerance;
-    for (double& tolerance : wanted) tolerance *= factor;
+    for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] *= stays[i] ? 1.0 : factor;
     const TolerancePoint next = programme_.at_most(wanted);
     if (next.tolerance == found_.tolerance) break;
     auto near = try_near(next);
     if (!near) return false;
     load = deciding_load(near->trial.load, allowed_.design);
+    load_before = load_before_deciding(near->trial.load, allowed_.design);
     if (load > 1.0 || (low > 0.0 && next.cost > found_.cost)) continue;
     found_ = next;
     near_ = *std::move(near);
@@ -553,7 +533,7 @@ bool ToleranceSearch::scale_to_others() {
   seed_ = seed_of_others(run_.study, SampleIndex(1));
   for (std::size_t trial = 0; trial < kMostTrials; ++trial) {
     const std::vector<double> at = found_.tolerance;
-    if (!try_found() || !scale_near()) return false;
+    if (!try_found() || !scale_near(none_stays())) return false;
     const double moved = largest_ratio(found_.tolerance, at);
     for (std::size_t k = 0; k < near_.machines.size(); ++k) trial_.load[near_.machines[k]] = near_.trial.load[k];
     const std::optional<bool> again = left_out();
@@ -567,7 +547,7 @@ bool ToleranceSearch::scale_to_others() {
 bool ToleranceSearch::find() {
   if (!linearise() || !settle_effects() || !meet_yield()) return false;
   if (near_.machines.empty()) return true;  // the lowest tolerances: nothing is left to choose
-  return improve_by_gradient() && scale_to_others() && try_coarser();
+  return improve_by_gradient() && scale_to_others() && leave_none_idle();
 }
 
 double ToleranceSearch::cost_at(double share, double wider) const {

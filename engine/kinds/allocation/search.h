@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "engine/kinds/allocation/mean_squares.h"
+#include "engine/kinds/allocation/near_limit.h"
 #include "engine/kinds/allocation/programme.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/trial.h"
+#include "engine/kinds/allocation/variations.h"
 #include "engine/kinds/kind.h"
 
 namespace poesy {
@@ -67,10 +69,11 @@ class ToleranceSearch {
   bool come_near();
   bool meet_yield();
   bool improve_by_gradient();
-  bool scale_near();
+  bool scale_near(const std::vector<bool>& stays);
+  std::vector<bool> none_stays() const { return std::vector<bool>(programme_.size(), false); }
   std::optional<bool> left_out() const;
   bool scale_to_others();
-  bool try_coarser();
+  bool leave_none_idle();
 
   /// Machines of the design that were tried at some tolerances.
   struct Tried {
@@ -92,6 +95,21 @@ class ToleranceSearch {
   std::vector<std::uint32_t> near_machines() const;
   std::optional<Tried> try_near(const TolerancePoint& point) const;
   bool try_found();
+
+  /// A part that is made coarser.
+  struct CoarserPart {
+    std::size_t part;
+    double step;   ///< its errors are so many times as large
+    double steps;  ///< to the next tolerance that can be had, in T^2
+  };
+
+  bool try_coarser(std::span<const std::size_t> parts);
+  bool try_small(std::span<const CoarserPart> parts);
+  Variation varied(std::size_t part, double factor) const;
+  std::optional<std::vector<double>> try_varied(const NearLimit& near, std::span<const Variation> variations) const;
+  void set_coarser_yield(const CoarserPart& of, double come);
+  std::vector<std::size_t> idle_parts(std::span<const std::size_t> parts) const;
+  std::optional<bool> loosen(std::vector<std::size_t> idle);
   void take(const Programmed& of);
   std::optional<bool> lower_what_rejects();
   bool lower_to_least();

@@ -190,120 +190,6 @@ class TrialWork {
   std::size_t begun_ = 0;
 };
 
-/// Variations of some machines: for each variation pieces of all machines.
-struct VariedMachines {
-  std::span<const std::uint32_t> machines;  ///< [n]
-  std::span<const Variation> variations;    ///< [V]
-
-  std::size_t of_variation() const { return (machines.size() + kMachinesOfPiece - 1) / kMachinesOfPiece; }
-  std::size_t pieces() const { return variations.size() * of_variation(); }
-  const Variation& variation(std::size_t piece) const { return variations[piece / of_variation()]; }
-  std::span<const std::uint32_t> machines_of(std::size_t piece) const {
-    const std::size_t first = piece % of_variation() * kMachinesOfPiece;
-    return machines.subspan(first, std::min(kMachinesOfPiece, machines.size() - first));
-  }
-};
-
-/// Owns the scratch of one thread.
-class VariationEvaluator : private LoadSolver {
- public:
-  VariationEvaluator(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
-                     const VariedMachines& varied)
-      : LoadSolver(plan, model, limits), varied_(varied) {}
-
-  std::vector<double> operator()(std::size_t piece) {
-    const auto machines = varied_.machines_of(piece);
-    const std::size_t count = machines.size();
-    numbers_.assign(machines.begin(), machines.end());
-    draw(numbers_);
-    const Variation& variation = varied_.variation(piece);
-    for (const std::size_t p : variation.errors) {
-      for (double& error : std::span(values_).subspan(p * count, count)) error *= variation.factor;
-    }
-    std::vector<double> loads(count);
-    missing_.assign(count, 0);
-    beyond_.assign(limits_.size() * count, 0);
-    for (std::size_t m = 0; m < plan_->poses().size(); ++m) add_pose(PoseIndex(m), loads, missing_, beyond_);
-    for (std::size_t b = 0; b < count; ++b) {
-      if (missing_[b] == 1) loads[b] = std::numeric_limits<double>::infinity();
-    }
-    return loads;
-  }
-
- private:
-  const VariedMachines& varied_;
-  std::vector<std::size_t> numbers_;
-  std::vector<std::uint8_t> missing_;
-  std::vector<std::uint8_t> beyond_;
-};
-
-/// All pieces in their order: the work of fold().
-class VariationWork {
- public:
-  VariationWork(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits, VariedMachines varied)
-      : plan_(plan), model_(model), limits_(limits), varied_(varied) {}
-  VariationWork(const VariationWork&) = delete;
-  VariationWork& operator=(const VariationWork&) = delete;
-
-  std::size_t begin_round() {
-    begun_ = next_;
-    return varied_.pieces() - next_;
-  }
-  VariationEvaluator worker() const { return {plan_, model_, limits_, varied_}; }
-  std::vector<double> solve(VariationEvaluator& evaluate, std::size_t n) const { return evaluate(begun_ + n); }
-  SolveCounts merge(std::size_t, const std::vector<double>& loads) {
-    loads_.insert(loads_.end(), loads.begin(), loads.end());
-    ++next_;
-    return solves_of(loads.size());
-  }
-  static void write(std::size_t, const std::vector<double>& loads, ByteWriter& to) { to.reals(loads); }
-  std::vector<double> read(std::size_t n, ByteReader& from) const {
-    return from.reals(varied_.machines_of(begun_ + n).size());
-  }
-  SolveCounts solved() const { return solves_of(loads_.size()); }
-  std::uint64_t left() const {
-    return solves_of(varied_.variations.size() * varied_.machines.size()).total() - solved().total();
-  }
-  void write_state(ByteWriter& to) const {
-    for (const std::uint64_t size : sizes()) to.number(size);
-    to.number(next_);
-    to.reals(loads_);
-  }
-  void restore(std::span<const std::byte> state) {
-    ByteReader from(state);
-    for (const std::uint64_t size : sizes()) {
-      if (from.number() != size) throw BytesError("is the state of another kind or size of study");
-    }
-    next_ = static_cast<std::size_t>(from.number_up_to(varied_.pieces()));
-    std::size_t count = 0;
-    for (std::size_t piece = 0; piece < next_; ++piece) count += varied_.machines_of(piece).size();
-    loads_ = from.reals(count);
-    from.expect_end();
-  }
-  static bool next_round() { return false; }
-
-  std::vector<double> result() && { return std::move(loads_); }
-
- private:
-  std::array<std::uint64_t, 4> sizes() const {
-    return {kKind + 1, varied_.machines.size(), varied_.variations.size(), plan_.poses().size()};
-  }
-  /// How solves end is told by the machines that are tried plainly.
-  SolveCounts solves_of(std::size_t machines) const {
-    SolveCounts counts;
-    counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = std::uint64_t{machines} * plan_.poses().size();
-    return counts;
-  }
-
-  const Plan& plan_;
-  const Model& model_;
-  std::span<const ResponseLimit> limits_;
-  VariedMachines varied_;
-  std::vector<double> loads_;
-  std::size_t next_ = 0;
-  std::size_t begun_ = 0;
-};
-
 std::optional<Trial> run(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                          const Machines& machines, const RunOptions& options) {
   TrialWork work(plan, model, limits, machines);
@@ -325,15 +211,6 @@ std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::spa
 std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                   std::span<const std::uint32_t> machines, const RunOptions& options) {
   return run(plan, model, limits, {machines.size(), machines}, options);
-}
-
-std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
-                                                  std::span<const ResponseLimit> limits,
-                                                  std::span<const std::uint32_t> machines,
-                                                  std::span<const Variation> variations, const RunOptions& options) {
-  VariationWork work(plan, model, limits, {machines, variations});
-  if (!fold(work, options)) return std::nullopt;
-  return std::move(work).result();
 }
 
 }  // namespace poesy

@@ -37,16 +37,4 @@ std::optional<Trial> try_machines(const Plan& plan, const Model& model, std::spa
                                   std::span<const std::uint32_t> machines, const RunOptions& options);
 /// @}
 
-/// Errors of these positions in a plan that are all so many times as large: a tolerance that is changed.
-struct Variation {
-  std::vector<std::size_t> errors;  ///< positions among the plan's factors
-  double factor;                    ///< > 0
-};
-
-/// Loads [V x n] of the listed machines with one variation after the other. Otherwise as try_machines.
-std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
-                                                  std::span<const ResponseLimit> limits,
-                                                  std::span<const std::uint32_t> machines,
-                                                  std::span<const Variation> variations, const RunOptions& options);
-
 }  // namespace poesy

@@ -194,6 +194,52 @@ TEST(ToleranceSearch, LeavesNoRejectUnused) {
   for (std::size_t i = 0; i < found.parts(); ++i) EXPECT_LT(found.coarser_yield[i], most) << found.part_names[i];
 }
 
+/// Parts that can be coarser although the design's yield would still hold.
+std::size_t idle_parts(const AllocationResult& found) {
+  const double most = 1.0 - static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
+  return static_cast<std::size_t>(std::ranges::count_if(found.coarser_yield, [&](double one) { return one >= most; }));
+}
+
+// Thirty parts that each take some 2e-5 of the mean square, 0.003 rejects of 310: noise of a count would make half of
+// them look as if they could be coarser.
+TEST(ToleranceSearch, LeavesNoPartCoarserThatHardlyActs) {
+  constexpr std::size_t kSmall = 30;
+  const auto function = [](std::span<const double> x, double, std::span<double> y) {
+    y[0] = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) y[0] += (i < 2 ? 1.0 : 0.01) * x[i];
+  };
+  FunctionStudy study(2 + kSmall, function, 0.3, 149'000);
+  for (std::size_t i = 0; i < 2 + kSmall; ++i) {
+    study.asked().parts.push_back(part_of(i, reciprocal(0.0, i < 2 ? 1.0 : 1e-5)));
+  }
+  const AllocationResult found = study.find();
+  EXPECT_TRUE(found.certified());
+  EXPECT_LT(found.mean_square_share.back(), 1e-4);
+  EXPECT_EQ(idle_parts(found), 0u);
+}
+
+// The last scaling takes the third part, which does nothing, off its upper bound with the others: it is put back.
+TEST(ToleranceSearch, MakesAPartThatDoesNothingAsCoarseAsItMayBe) {
+  const auto function = [](std::span<const double> x, double, std::span<double> y) { y[0] = x[0] + x[1]; };
+  std::size_t loosened = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    FunctionStudy study(3, function, 0.3, 20'000);
+    study.study.seed = seed;
+    study.asked().yield = 0.99;
+    for (std::size_t i = 0; i < 3; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
+    study.asked().parts.back().hi = 0.7;
+    const AllocationResult found = study.find();
+    EXPECT_EQ(found.tolerance[2], 0.7);
+    EXPECT_EQ(idle_parts(found), 0u);
+    EXPECT_EQ(found.design_rejects, found.design_most);
+    if (found.stages.back().name == "coarser where nothing breaks") {
+      ++loosened;
+      EXPECT_LT(found.stages.back().cost, found.stages[found.stages.size() - 2].cost);
+    }
+  }
+  EXPECT_GE(loosened, 1u);
+}
+
 TEST(ToleranceSearch, FindsTheSameOnAnyNumberOfThreads) {
   const FunctionStudy study = weighted_sum_study(20'000);
   const AllocationResult one = study.find(1);
