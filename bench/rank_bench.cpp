@@ -73,7 +73,7 @@ void measure(const char* kind, const Plan& plan, const Output& unit, Team& team,
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double writer = thread_seconds() - cpu;
   stage.end(
-      true, [] { return SolveCounts(); }, [] { return Bytes{std::byte{1}}; }, [](std::span<const std::byte>) {});
+      true, [] { return SolveCounts(); }, [](ByteWriter& to) { to.number(1); }, [](std::span<const std::byte>) {});
   if (!leads) return;
   const auto units = static_cast<double>(plan.units());
   fmt::print("{:12} {} ranks, {} units of {} bytes: {:.0f} units/s; writer {:.2f} us of CPU time for a unit\n", kind,
