@@ -24,7 +24,9 @@ struct MemoryOutlook {
   std::size_t result = 0;        ///< plain values
   std::size_t file = 0;          ///< the result file, which is composed on the disk
 
-  std::size_t peak() const { return accumulators + (state <= kMostStateInMemory ? state : 0) + result; }
+  std::size_t peak() const {  ///< Of all of it.
+    return accumulators + (state <= kMostStateInMemory ? state : 0) + result;
+  }
 };
 
 /// Work of a study that can be tried in pieces, to measure how fast a machine does it.

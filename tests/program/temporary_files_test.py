@@ -142,7 +142,8 @@ class TemporaryFiles(ResumptionTest):
         self.assertEqual(self.victim.read_text(), PRECIOUS)
 
     def test_killed_while_it_writes(self):
-        """A large result: killed when its temporary file is seen; the next run leaves nothing but results."""
+        """A large result: killed when its temporary file is seen; its checkpoint is there, and who goes on from that leaves
+        nothing but the result."""
         self.write("study.toml", CASES.replace("count = 4000", "count = 40000"))
         command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "1 h"]
         seen = []
@@ -155,7 +156,7 @@ class TemporaryFiles(ResumptionTest):
                 break
         self.assertTrue(all(TEMPORARY.search(name) for name in seen), seen)
         self.assertTrue(seen)
-        self.poesy("run", "quick.toml", "-o", "out.h5", "--quiet")
+        self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet", "--resume")
         self.assertEqual(self.names(), {"quick.toml", "study.toml", "victim", "out.h5"})
 
 

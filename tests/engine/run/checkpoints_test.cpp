@@ -63,7 +63,7 @@ TEST(Checkpoints, ASmallEndStaysInMemory) {
   EXPECT_EQ(saved.fetches, 0U);
 }
 
-TEST(Checkpoints, ALargeEndIsSavedAtOnceAndTakenOverByTheNextStage) {
+TEST(Checkpoints, ALargeEndIsSavedAtOnceAndTakenOver) {
   Saved saved;
   Checkpoints checkpoints = saved.checkpoints();
   checkpoints.begin();
@@ -166,7 +166,7 @@ std::vector<std::string> files_of(const Prepared& prepared, std::size_t most_in_
 
 class CheckpointsInFiles : public testing::TestWithParam<KindOfStudy> {};
 
-TEST_P(CheckpointsInFiles, AreTheSameFromMemoryAndFromTheDiskAndGiveTheSameBits) {
+TEST_P(CheckpointsInFiles, AreTheSameFromTheDisk) {
   const Prepared prepared(study_of(GetParam(), Plan::kUnitSamples + 300));
   const Bits expected = run(prepared, {}).value();
   const std::vector<std::string> contents = files_of(prepared, 0, expected);

@@ -219,7 +219,7 @@ TEST(ToleranceSearch, LeavesNoPartCoarserThatHardlyActs) {
 }
 
 // The last scaling takes the third part, which does nothing, off its upper bound with the others: it is put back.
-TEST(ToleranceSearch, MakesAPartThatDoesNothingAsCoarseAsItMayBe) {
+TEST(ToleranceSearch, MakesAPartThatDoesNothingCoarse) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) { y[0] = x[0] + x[1]; };
   std::size_t loosened = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
