@@ -166,7 +166,7 @@ std::vector<std::string> files_of(const Prepared& prepared, std::size_t most_in_
 
 class CheckpointsInFiles : public testing::TestWithParam<KindOfStudy> {};
 
-TEST_P(CheckpointsInFiles, AreTheSameFromTheDisk) {
+TEST_P(CheckpointsInFiles, AreTheSameFromDisk) {
   const Prepared prepared(study_of(GetParam(), Plan::kUnitSamples + 300));
   const Bits expected = run(prepared, {}).value();
   const std::vector<std::string> contents = files_of(prepared, 0, expected);
