@@ -56,7 +56,7 @@ std::size_t MachineTable::unit_machines(std::size_t poses) {
   // Rows of 500 numbers would lie nearly a page apart, which costs a third of the solver's speed.
   constexpr std::array<std::size_t, 4> kSizes{1000, 200, 100, 40};
   static_assert(std::ranges::all_of(kSizes, [](std::size_t size) { return Plan::kUnitSamples % size == 0; }));
-  constexpr std::size_t kMostSamples = 100'000;
+  constexpr std::size_t kMostSamples = 160'000;
   const auto* const size = std::ranges::find_if(kSizes, [&](std::size_t one) { return one * poses <= kMostSamples; });
   return size == kSizes.end() ? kSizes.back() : *size;
 }
