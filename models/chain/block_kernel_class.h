@@ -123,13 +123,14 @@ class BlockKernel {
   static constexpr double kSameBranch = 0.5;
   static constexpr double kSamePlace = 1e-9;
   static constexpr double kMet = 1e-9;         ///< limbs meet that are closer, relative to the reach
-  static constexpr double kShortLength = 1e5;  ///< times the tolerance
+  static constexpr double kShortLength = 1e3;  ///< times the tolerance
+  static constexpr double kShortStart = 3e-4;  ///< a first step below this is short
   static constexpr std::uint32_t kFirstMemory = 16;
   static constexpr std::uint32_t kDirectIterations = 12;
   static constexpr std::uint32_t kFollowFactor = 8;
   static constexpr std::uint32_t kMatrixRounds = 4;
   static constexpr std::size_t kMapErrors = 8;
-  static constexpr std::size_t kStartJoints = 6;
+  static constexpr std::size_t kStartJoints = 9;
 
   std::size_t limbs() const {
     if constexpr (Shape::kFixed) return Shape::kLimbs;
@@ -212,7 +213,8 @@ class BlockKernel {
   unsigned iterate(std::size_t at, unsigned open, std::uint32_t rounds);
   template <KernelPass pass>
   void start(std::size_t at);
-  T nominal_step();
+  T nominal_step(T* x) const;
+  unsigned first_step(T& length);
   unsigned finish_fitted(std::size_t at, unsigned open);
   Verdict newton_by_metric(std::size_t at, std::uint32_t round, T& before, typename T::MaskType& safe);
   template <KernelPass pass>

@@ -85,7 +85,7 @@ template <class T, class Shape, class Measure>
 unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned open) {
   residuals();
   gradient();
-  const T length = nominal_step();
+  const T length = nominal_step(step_);
   const auto there = finite_residual() & (length < T(10.0 * options_.tolerance));
   if (!any(there)) return open;
   carry_residual(step_, there);
@@ -99,13 +99,32 @@ unsigned BlockKernel<T, Shape, Measure>::finish_fitted(std::size_t at, unsigned 
 
 /// The step with the matrix at nominal displacements. Gives its length.
 template <class T, class Shape, class Measure>
-T BlockKernel<T, Shape, Measure>::nominal_step() {
+T BlockKernel<T, Shape, Measure>::nominal_step(T* x) const {
   for (std::size_t a = 0; a < joints(); ++a) {
     T sum(0.0);
     for (std::size_t b = 0; b < joints(); ++b) sum = madd(T(start_.inverse[a * joints() + b]), f_[b], sum);
-    step_[a] = sum;
+    x[a] = sum;
   }
-  return step_length(step_, [&](std::size_t a) { return T(start_.diagonal[a]); });
+  return step_length(x, [&](std::size_t a) { return T(start_.diagonal[a]); });
+}
+
+/// The first round of a start in proportion to the errors, which is off by about their square: where that is little,
+/// the nominal matrix takes most of it away, and Newton's is made in the next round, where it then serves to the end.
+/// Elsewhere a Newton step. Gives the lanes that are refused.
+template <class T, class Shape, class Measure>
+unsigned BlockKernel<T, Shape, Measure>::first_step(T& length) {
+  length = nominal_step(step_);
+  const auto is_short = length < T(kShortStart);
+  if (bits(is_short) == (1u << kLanes) - 1u) return 0;
+  weigh();
+  gauss_newton_matrix();
+  newton_matrix();
+  auto safe = contracts() & finite_residual();
+  safe = safe & newton_step(gauss_newton_);
+  const T of_newton = step_length(gauss_newton_, [&](std::size_t a) { return n_[a * joints() + a]; });
+  length = select(is_short, length, of_newton);
+  for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(is_short, step_[j], gauss_newton_[j]);
+  return bits((!safe) & (!is_short));
 }
 
 /// One round of the first pass. before: the length of the last step; safe: where the matrix at hand is. Both are of
@@ -113,14 +132,13 @@ T BlockKernel<T, Shape, Measure>::nominal_step() {
 template <class T, class Shape, class Measure>
 auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint32_t round, T& before,
                                                       typename T::MaskType& safe) -> Verdict {
-  // A start in proportion to the errors is off by about their square: the nominal matrix takes most of it away for
-  // little, and Newton's is made where it then serves to the end.
   const bool has_nominal = start_.fits == 0 && start_.inverse != nullptr;
   if (has_nominal && round == 0) {
-    before = nominal_step();
+    Verdict verdict;
+    verdict.refused = first_step(before);
     take_step(at, step_);
     for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
-    return Verdict();
+    return verdict;
   }
   const bool is_new = round % kMatrixRounds == (has_nominal ? 1 : 0);
   if (is_new) {
@@ -133,9 +151,8 @@ auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint3
     newton_step_again(step_);
   }
   const T length = step_length(step_, [&](std::size_t a) { return n_[a * joints() + a]; });
-  // With a matrix from where the step before began, or ended, the next step would be twice length^2 / before at most.
   auto small =
-      (length * length < T(0.5 * options_.tolerance) * before) & (length < T(kShortLength * options_.tolerance));
+      (length * length < T(0.1 * options_.tolerance) * before) & (length < T(kShortLength * options_.tolerance));
   if (is_new) small = small | (length < T(options_.last_step));
   const auto converged = safe & finite_residual() & small;
   before = length;

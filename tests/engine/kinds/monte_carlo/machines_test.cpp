@@ -349,7 +349,7 @@ TEST(MachineTable, HasSmallerUnitsForMorePoses) {
   EXPECT_EQ(MachineTable::unit_machines(160), 1000u);
   EXPECT_EQ(MachineTable::unit_machines(161), 200u);
   EXPECT_EQ(MachineTable::unit_machines(2000), 40u);
-  EXPECT_EQ(MachineTable::units_for(1001, 158), 6u);
+  EXPECT_EQ(MachineTable::units_for(1001, 161), 6u);
 }
 
 }  // namespace
