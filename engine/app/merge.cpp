@@ -45,7 +45,7 @@ int merge(const MergeOptions& options) {
   const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   // The whole run from here on: as one that is resumed when all its stages are done.
-  Checkpoints done([] { return false; }, {}, std::move(merged));
+  Checkpoints done({}, {}, std::move(merged));
   const Job job{.study = study,
                 .model = *model,
                 .poses = whole.poses,

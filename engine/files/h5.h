@@ -10,13 +10,12 @@
 #include <string>
 #include <vector>
 
-/// The part of HDF5 that result files use: objects are named by their absolute path, every call is checked, every id is
-/// closed. HDF5 stays behind this header, h5.cpp and h5_disk.cpp; opening a File turns off HDF5's own printing of
-/// errors.
 namespace poesy {
 class FileWriter;
 }
 
+/// The part of HDF5 that result files use: objects are named by their absolute path, every call is checked, every id is
+/// closed. HDF5 is behind this header, h5.cpp and h5_disk.cpp; opening a File turns off HDF5's own printing of errors.
 namespace poesy::h5 {
 
 class Disk;

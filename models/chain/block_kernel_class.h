@@ -203,6 +203,7 @@ class BlockKernel {
   typename T::MaskType cycles(std::size_t at, std::uint32_t round);
   T largest(const T* x) const;
   void take_step(std::size_t at, const T* x);
+  void advance(std::size_t at);
   void finish(std::size_t at, std::size_t lane, SolveStatus status, std::uint32_t iterations);
   template <KernelPass pass>
   void move(std::size_t from, std::size_t to);
@@ -214,6 +215,7 @@ class BlockKernel {
   template <KernelPass pass>
   void start(std::size_t at);
   T nominal_step(T* x) const;
+  typename T::MaskType new_newton_step(T* x);
   unsigned first_step(T& length);
   unsigned finish_fitted(std::size_t at, unsigned open);
   Verdict newton_by_metric(std::size_t at, std::uint32_t round, T& before, typename T::MaskType& safe);

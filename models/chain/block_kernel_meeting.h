@@ -21,8 +21,7 @@ void BlockKernel<T, Shape, Measure>::solve_meeting() {
     start<KernelPass::direct>(at);
     for (std::uint32_t round = 0; open != 0; ++round) {
       const Verdict verdict = round % kMatrixRounds == 0 ? meeting_round<true>(meeting) : meeting_round<false>(meeting);
-      take_step(at, step_);
-      for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
+      advance(at);
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         if ((open >> lane & 1u) == 0 || (!verdict.ended(lane) && round + 1 < cap)) continue;
         open &= ~(1u << lane);

@@ -108,6 +108,16 @@ T BlockKernel<T, Shape, Measure>::nominal_step(T* x) const {
   return step_length(x, [&](std::size_t a) { return T(start_.diagonal[a]); });
 }
 
+/// A Newton step with matrices of this place. Gives the lanes where it is safe, and Gauss-Newton contracts.
+template <class T, class Shape, class Measure>
+typename T::MaskType BlockKernel<T, Shape, Measure>::new_newton_step(T* x) {
+  weigh();
+  gauss_newton_matrix();
+  newton_matrix();
+  const auto safe = contracts();
+  return safe & newton_step(x);
+}
+
 /// The first round of a start in proportion to the errors, which is off by about their square: where that is little,
 /// the nominal matrix takes most of it away, and Newton's is made in the next round, where it then serves to the end.
 /// Elsewhere a Newton step. Gives the lanes that are refused.
@@ -116,11 +126,7 @@ unsigned BlockKernel<T, Shape, Measure>::first_step(T& length) {
   length = nominal_step(step_);
   const auto is_short = length < T(kShortStart);
   if (bits(is_short) == (1u << kLanes) - 1u) return 0;
-  weigh();
-  gauss_newton_matrix();
-  newton_matrix();
-  auto safe = contracts() & finite_residual();
-  safe = safe & newton_step(gauss_newton_);
+  const auto safe = new_newton_step(gauss_newton_) & finite_residual();
   const T of_newton = step_length(gauss_newton_, [&](std::size_t a) { return n_[a * joints() + a]; });
   length = select(is_short, length, of_newton);
   for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(is_short, step_[j], gauss_newton_[j]);
@@ -136,17 +142,12 @@ auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint3
   if (has_nominal && round == 0) {
     Verdict verdict;
     verdict.refused = first_step(before);
-    take_step(at, step_);
-    for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
+    advance(at);
     return verdict;
   }
   const bool is_new = round % kMatrixRounds == (has_nominal ? 1 : 0);
   if (is_new) {
-    weigh();
-    gauss_newton_matrix();
-    newton_matrix();
-    safe = contracts();
-    safe = safe & newton_step(step_);
+    safe = new_newton_step(step_);
   } else {
     newton_step_again(step_);
   }
@@ -159,9 +160,8 @@ auto BlockKernel<T, Shape, Measure>::newton_by_metric(std::size_t at, std::uint3
   Verdict verdict;
   verdict.converged = bits(converged);
   verdict.refused = bits(!(safe & finite_residual()));
-  take_step(at, step_);
   if (any(converged)) carry_residual(step_, converged);
-  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
+  advance(at);
   return verdict;
 }
 
@@ -201,9 +201,8 @@ auto BlockKernel<T, Shape, Measure>::careful_by_metric(std::size_t at) -> Verdic
   verdict.non_finite = bits(!finite);
   const T damping(follows ? 1.0 : 0.5);
   for (std::size_t j = 0; j < joints(); ++j) step_[j] = select(safe, step_[j], damping * gauss_newton_[j]);
-  take_step(at, step_);
   if (any(converged)) carry_residual(step_, converged);
-  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
+  advance(at);
   return verdict;
 }
 
@@ -233,8 +232,7 @@ auto BlockKernel<T, Shape, Measure>::gauss_newton_by_metric(std::size_t at, std:
   weigh();
   gauss_newton_matrix();
   verdict.singular = bits(!gauss_newton_step(step_));
-  take_step(at, step_);
-  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
+  advance(at);
   return verdict;
 }
 

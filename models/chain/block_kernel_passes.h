@@ -331,6 +331,13 @@ void BlockKernel<T, Shape, Measure>::take_step(std::size_t at, const T* x) {
   for (std::size_t j = 0; j < joints(); ++j) (joint_[j] + x[j]).store(q_ + j * capacity_ + at);
 }
 
+/// The step of a batch whose joints go on where they are.
+template <class T, class Shape, class Measure>
+void BlockKernel<T, Shape, Measure>::advance(std::size_t at) {
+  take_step(at, step_);
+  for (std::size_t j = 0; j < joints(); ++j) joint_[j] = joint_[j] + step_[j];
+}
+
 template <class T, class Shape, class Measure>
 auto BlockKernel<T, Shape, Measure>::published_round(std::size_t at, std::uint32_t round, bool last_round) -> Verdict {
   evaluate(at);

@@ -55,20 +55,25 @@ class RankTest(ResumptionTest):
         self.assertEqual(code, 0, messages)
         return out
 
+    @staticmethod
+    def started_by(run):
+        """(folder in /proc, state) of each process that the launcher has started."""
+        for folder in Path("/proc").glob("[0-9]*"):
+            with suppress(OSError):  # it has gone
+                state, parent = (folder / "stat").read_text().rsplit(")", 1)[1].split()[:2]
+                if int(parent) == run.pid:
+                    yield folder, state
+
     def rank_process(self, run, rank):
         """The process of a rank, as soon as it is there."""
         end = time.monotonic() + 60
         while time.monotonic() < end and run.poll() is None:
-            for folder in Path("/proc").glob("[0-9]*"):
-                try:
+            for folder, _ in self.started_by(run):
+                with suppress(OSError):
                     environment = (folder / "environ").read_bytes().split(b"\0")
-                    started_by = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
                     program = (folder / "exe").resolve()
-                except (OSError, IndexError):
-                    continue
-                if (f"OMPI_COMM_WORLD_RANK={rank}".encode() in environment and program == Path(PROGRAM).resolve()
-                        and started_by == run.pid):
-                    return int(folder.name)
+                    if f"OMPI_COMM_WORLD_RANK={rank}".encode() in environment and program == Path(PROGRAM).resolve():
+                        return int(folder.name)
             time.sleep(0.01)
         return self.fail("the rank did not start")
 
@@ -77,8 +82,7 @@ class RankTest(ResumptionTest):
         try:
             run.communicate(timeout=60)
         except subprocess.TimeoutExpired:
-            stats = [stat.read_text().rsplit(")", 1)[1].split() for stat in Path("/proc").glob("[0-9]*/stat") if stat.exists()]
-            self.assertEqual([state for state, parent, *_ in stats if int(parent) == run.pid and state != "Z"], [])
+            self.assertEqual([state for _, state in self.started_by(run) if state != "Z"], [])
             run.kill()
             run.communicate()
 
@@ -117,7 +121,7 @@ class Mpi(RankTest):
                     process = self.rank_process(run, rank)
                     self.await_checkpoint(run)
                     os.kill(process, signal.SIGKILL)
-                    run.communicate(timeout=60)
+                    self.wait_after_kill(run)
                 self.assertNotEqual(run.returncode, 0)
                 self.assertFalse((self.folder / "out.h5").exists())
                 self.assertTrue(self.newer.exists())

@@ -19,6 +19,13 @@ namespace poesy {
 /// Machines that are solved at once at each pose.
 inline constexpr std::size_t kMachinesOfPiece = 200;
 
+/// So many solves as converged, of work that only counts them: how solves end is told by the machines that are tried.
+inline SolveCounts as_converged(std::uint64_t solves) {
+  SolveCounts counts;
+  counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
+  return counts;
+}
+
 /// Solves machines at all poses of a plan, and finds their loads. Owns the scratch of one thread.
 class LoadSolver : protected UnitSolver {
  protected:

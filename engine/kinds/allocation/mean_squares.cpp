@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/bytes.h"
+#include "engine/kinds/allocation/load_solver.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
 #include "engine/stats/moments.h"
@@ -167,7 +168,7 @@ class MeanSquareWork {
     for (auto* list : {&found.added, &found.counted}) from.reals(std::span(*list));
     return found;
   }
-  SolveCounts solved() const { return converged(solved_); }
+  SolveCounts solved() const { return as_converged(solved_); }
   std::uint64_t left() const {
     std::uint64_t left = 0;
     for (std::size_t n = next_; n < pieces_.count(); ++n) left += solves_of(n).total();
@@ -210,14 +211,8 @@ class MeanSquareWork {
   std::size_t errors() const { return plan_.factors().size(); }
   std::size_t rows() const { return limits_.size() * pieces_.poses; }
   std::array<std::uint64_t, 5> sizes() const { return {kKind, limits_.size(), pieces_.poses, pieces_.draws, errors()}; }
-  /// How solves end is told by the machines that are tried, not here.
-  static SolveCounts converged(std::uint64_t solves) {
-    SolveCounts counts;
-    counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
-    return counts;
-  }
   SolveCounts solves_of(std::size_t n) const {
-    return converged(kNodes * errors() * (pieces_.alone(n) ? 1 : pieces_.draws_of(n)));
+    return as_converged(kNodes * errors() * (pieces_.alone(n) ? 1 : pieces_.draws_of(n)));
   }
 
   const Plan& plan_;

@@ -153,7 +153,7 @@ class VariationWork {
     loads_.insert(loads_.end(), found.load.begin(), found.load.end());
     solves_ += found.solves;
     ++next_;
-    return as_counts(found.solves);
+    return as_converged(found.solves);
   }
   static void write(std::size_t, const VariedPiece& found, ByteWriter& to) {
     to.reals(found.load);
@@ -165,7 +165,7 @@ class VariationWork {
     found.solves = from.number_up_to(varied_.solves_of(piece, plan_.poses().size()));
     return found;
   }
-  SolveCounts solved() const { return as_counts(solves_); }
+  SolveCounts solved() const { return as_converged(solves_); }
   std::uint64_t left() const {
     std::uint64_t left = 0;
     for (std::size_t piece = next_; piece < varied_.pieces(); ++piece) {
@@ -215,12 +215,6 @@ class VariationWork {
  private:
   std::array<std::uint64_t, 4> sizes() const {
     return {kKind, varied_.machines.size(), varied_.variations.size(), plan_.poses().size()};
-  }
-  /// How solves end is told by the machines that are tried plainly.
-  static SolveCounts as_counts(std::uint64_t solves) {
-    SolveCounts counts;
-    counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
-    return counts;
   }
 
   const Plan& plan_;
