@@ -1,16 +1,10 @@
 #pragma once
 
+#include "engine/base/sanitizers.h"
+
 // A copy of a function for each instruction set, chosen when the program is loaded: put before its definition. Where
 // the file is compiled without contraction of multiply-adds (-ffp-contract=off), all copies give the same bits.
 // Sanitizers do not get on with the choosing.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define POESY_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define POESY_SANITIZED
-#endif
-#endif
-
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(POESY_SANITIZED)
 #define POESY_EACH_INSTRUCTION_SET __attribute__((target_clones("avx512f", "avx2", "default")))
 #else

@@ -42,7 +42,9 @@ Rounds::Rounds(const Plan& plan, Rule rule)
       max_(plan.samples()),
       milestones_(adaptive_ ? milestones(adaptive_->min, max_) : std::vector<std::size_t>()),
       samples_(plan.slots(), least_samples(plan)),
-      ended_(plan.slots(), false) {}
+      ended_(plan.slots(), false) {
+  POESY_EXPECTS(!adaptive_ || rule_.rounding.size() == rule_.responses * samples_.size());
+}
 
 std::size_t Rounds::units(std::size_t slot) const { return Plan::units_for(samples_[slot]); }
 

@@ -9,7 +9,9 @@
 #include <thread>
 #include <utility>
 
-#ifdef __SANITIZE_THREAD__
+#include "engine/base/sanitizers.h"
+
+#ifdef POESY_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -22,7 +24,7 @@ namespace handover {
 
 /// Tells ThreadSanitizer what oneTBB guarantees inside its library, which the sanitizer cannot see: what stands before
 /// a publish has happened before what stands after a later receive. Nothing at all in other builds.
-#ifdef __SANITIZE_THREAD__
+#ifdef POESY_THREAD_SANITIZER
 inline char place;
 inline void publish() { __tsan_release(&place); }
 inline void receive() { __tsan_acquire(&place); }
@@ -80,7 +82,8 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
   const std::size_t threads = resolved_threads(options.threads);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));
-  tbb::enumerable_thread_specific<SlotJob> works(make_work);
+  // Called where it is: a copy in memory of oneTBB would be one more thing that goes from thread to thread there.
+  tbb::enumerable_thread_specific<SlotJob> works([&make_work] { return make_work(); });
   const handover::Task start([&](tbb::flow_control& control) -> Ticket {
     if (const auto ticket = source()) return *ticket;
     control.stop();

@@ -157,7 +157,7 @@ TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
 
 TEST(Rounds, ResponsesThatDoNotDecideAreReportedOnly) {
   const AdaptiveRun run(adaptive_study(&kMonteCarloStudy, 0.01, 4000));
-  Rounds rounds(run.plan, {2, {0}, 0.95, {0.0}});
+  Rounds rounds(run.plan, {2, {0}, 0.95, {0.0, 0.0}});
   EXPECT_FALSE(rounds.go_on([](std::size_t) {
     return std::vector<Estimate>{{1.0, {0.995, 1.005}}, {1.0, {0.0, 2.0}}};
   }));

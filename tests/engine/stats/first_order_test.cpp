@@ -101,7 +101,7 @@ TEST(BinnedVariance, HasNoBiasButThatOfItsBins) {
   for (const auto& [samples, expected] : cases) {
     for (std::size_t p = 0; p < 2; ++p) {
       EffectExperiment experiment(60 + samples + p);
-      const auto between = [&] { return experiment.sums(ishigami, samples).variance(0, p, {}).between; };
+      const auto between = [&, drawn = samples] { return experiment.sums(ishigami, drawn).variance(0, p, {}).between; };
       EXPECT_LE(std::abs(z_of_mean(between, expected[p] * kIshigamiVariance, 1500)), 3.291) << samples << ' ' << p;
     }
   }

@@ -18,7 +18,7 @@ struct Sum {
   void write(ByteWriter& to) const { to.real(value); }
 };
 
-Sum leaf(std::size_t n) { return {std::sin(static_cast<double>(n) + 0.1)}; }
+Sum leaf(std::size_t n) { return {1.0 / (static_cast<double>(n) + 1.1)}; }
 
 MergeTree<Sum> range(std::size_t first, std::size_t end) {
   MergeTree<Sum> tree;

@@ -27,7 +27,9 @@ inline std::vector<Regime> regimes() {
 
 inline Vector3<double> random_axis(std::mt19937_64& engine) {
   std::normal_distribution<double> normal;
-  return Vector3<double>(normal(engine), normal(engine), normal(engine)).normalized();
+  // One after the other, because the order of arguments is the compiler's.
+  const double z = normal(engine), y = normal(engine), x = normal(engine);
+  return Vector3<double>(x, y, z).normalized();
 }
 
 /// A screw of this rotation angle about a random axis, with a translation part of order one.

@@ -138,7 +138,7 @@ TEST(PoseOfCarriages, FindsWhatThereIs) {
   std::uniform_real_distribution<double> height(-0.2, 0.7);
   std::size_t found = 0;
   for (int k = 0; k < 2000; ++k) {
-    const lie::Vector3<double> q(height(engine), height(engine), height(engine));
+    const lie::Vector3<double> q{height(engine), height(engine), height(engine)};
     const auto pose = pose_of_carriages({}, q);
     if (!pose) continue;
     ++found;

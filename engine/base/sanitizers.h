@@ -1,0 +1,21 @@
+#pragma once
+
+// Which sanitizers the file is compiled for, whose names differ from compiler to compiler: POESY_ADDRESS_SANITIZER,
+// POESY_THREAD_SANITIZER, and POESY_SANITIZED where it is one of them.
+#if defined(__SANITIZE_ADDRESS__)
+#define POESY_ADDRESS_SANITIZER
+#endif
+#if defined(__SANITIZE_THREAD__)
+#define POESY_THREAD_SANITIZER
+#endif
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define POESY_ADDRESS_SANITIZER
+#endif
+#if __has_feature(thread_sanitizer)
+#define POESY_THREAD_SANITIZER
+#endif
+#endif
+#if defined(POESY_ADDRESS_SANITIZER) || defined(POESY_THREAD_SANITIZER)
+#define POESY_SANITIZED
+#endif
