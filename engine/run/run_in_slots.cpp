@@ -43,6 +43,15 @@ class Block {
   Block& operator=(const Block&) = delete;
 };
 
+/// Ends after every block that has ended before, whether by return or by exception.
+class Waiting {
+ public:
+  Waiting() = default;
+  ~Waiting() { receive(); }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+};
+
 /// A function that oneTBB copies and calls on any of its threads. Calls that overlap stay unordered to the sanitizer,
 /// so real races between them are still found.
 template <class Function>
@@ -94,13 +103,13 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
     return ticket;
   });
   const handover::Task collect([&](Ticket ticket) { finish(ticket.n, ticket.slot); });
+  const handover::Waiting for_all;
   arena.execute([&] {
     tbb::parallel_pipeline(pool_slots(options),
                            tbb::make_filter<void, Ticket>(tbb::filter_mode::serial_in_order, start) &
                                tbb::make_filter<Ticket, Ticket>(tbb::filter_mode::parallel, work) &
                                tbb::make_filter<Ticket, void>(tbb::filter_mode::serial_in_order, collect));
   });
-  handover::receive();
 }
 
 bool run_alone(std::size_t count, const RunOptions& options, const SlotWork& work) {

@@ -21,7 +21,7 @@ from resumption import ResumptionTest
 
 COUNT = int(os.environ.get("POESY_HOSTILE", "200"))
 SEED = int(os.environ.get("POESY_HOSTILE_SEED", "1"))
-LONGEST = 10.0  # seconds
+LONGEST = 60.0 if os.environ.get("POESY_SANITIZE") else 10.0  # seconds
 RULE = "a result is one tree that reads nothing but itself"
 STUDY = """\
 format = "poesy-study"

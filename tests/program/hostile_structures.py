@@ -370,7 +370,7 @@ def shape_structures():
         *each("attribute in place of a dataset", "shape", [*SOME, "pose", "response"], attribute_instead),
         *each("group in place of a dataset", "shape", [*SOME, "pose", "response"], group_instead),
         *each("dataset in place of a group", "shape", GROUPS, dataset_instead),
-        Structure("dataset with 800 names", "shape", many_names),
+        Structure("dataset with 800 names", "tree", many_names),
         *[Structure(f"attribute {name} is {what}", "shape", attribute(name, value))
           for name in ("filetype", "version", "kind", "model", "content_sha256")
           for what, value in (("a number", 3.5), ("a list", np.arange(5)), ("empty", h5py.Empty("f8")),

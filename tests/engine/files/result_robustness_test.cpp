@@ -322,6 +322,13 @@ TEST(StrangeResult, ThatIsNoTreeIsRefusedByName) {
       refusal_of([](hid_t file) { H5Lcreate_hard(file, "/", file, "/poses/strange", H5P_DEFAULT, H5P_DEFAULT); }),
       "/poses/strange is a group that has two names, or is in itself");
   expect_contains(refusal_of([](hid_t file) {
+                    for (int k = 0; k < 20; ++k) {
+                      const std::string name = "/strange" + std::to_string(k);
+                      H5Lcreate_hard(file, "/response", file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+                    }
+                  }),
+                  " has too many names");
+  expect_contains(refusal_of([](hid_t file) {
                     const hid_t type = H5Tcopy(H5T_IEEE_F64LE);
                     H5Tcommit2(file, "/strange", type, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
                     H5Tclose(type);
