@@ -135,6 +135,7 @@ std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank)
 }
 
 void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Matrix& twists, Mobility& found) {
+  if (twists.cols() == 0) return;  // nothing moves; Eigen has no rows of a matrix without columns
   const Matrix rates = platform_columns(unit, pose).fullPivLu().solve(twists);
   Matrix chosen(static_cast<Index>(unit.coordinates.size()), rates.cols());
   for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {

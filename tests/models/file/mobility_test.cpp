@@ -101,6 +101,12 @@ TEST(Mobility, DrivesMustHoldThePlatform) {
       "loose, and the platform turns about (0, 0, 1); write actuated = true at one more joint, or correct the axes");
 }
 
+TEST(Mobility, ThePlatformMustMove) {
+  EXPECT_EQ(problem_of("type = \"P\", at = [\"r\", 0, 0], axis = \"z\"",
+                       "type = \"P\", at = [\"r\", 0, 0], axis = \"x\"", "press"),
+            "m.toml:12:15: the platform cannot move; look at the axes of the joints at home");
+}
+
 /// All arms are stretched.
 TEST(Mobility, HomeMustNotBeSingular) {
   EXPECT_EQ(
