@@ -21,8 +21,9 @@ void draw(const std::string& text) {
   const file::MechanismFile file = file::read_mechanism_file(text, "mechanism.toml");
   const file::Mechanism mechanism = file::mechanism(file, file::default_geometry(file));
   fuzz::expect(!file::structure_text(mechanism).empty(), "its joints are described");
-  const std::string picture = mechanism_picture(file::sketch_of(mechanism), file.title);
-  fuzz::expect(picture.find("nan") == std::string::npos, "every place in a picture is a number");
+  const Sketch sketch = file::sketch_of(mechanism);
+  fuzz::expect(!mechanism_picture(sketch, file.title).empty(), "every title is drawn");
+  fuzz::expect(mechanism_picture(sketch, "").find("nan") == std::string::npos, "every place in a picture is a number");
 }
 
 void build(const std::string& text) {
