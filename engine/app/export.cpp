@@ -2,6 +2,7 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/kinds/result_file.h"
 
 namespace poesy::app {
@@ -14,7 +15,7 @@ struct ExportOptions {
 
 int export_result(const ExportOptions& options) {
   const StoredResult result = read_result_with_warning(options.result);
-  for (const std::string& file : export_tables(result, options.folder)) print(file + "\n");
+  for (const std::string& file : export_tables(result, options.folder)) print(printable_line(file) + "\n");
   return kDone;
 }
 
@@ -24,7 +25,7 @@ int verify(const std::string& path) {
     throw FileError(path, "content hash " + hashes.computed + " does not match the stored " + hashes.stored,
                     "the file was changed or damaged; run the study again");
   }
-  print(path + ": content_sha256 " + hashes.computed + " matches\n");
+  print(printable_line(path) + ": content_sha256 " + hashes.computed + " matches\n");
   return kDone;
 }
 

@@ -1,10 +1,16 @@
+#include <malloc.h>
+#include <sys/resource.h>
+
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
 #include "engine/app/command_line.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/app/terminal.h"
+#include "engine/base/address_space.h"
+#include "engine/base/error.h"
 #include "engine/files/version.h"
 
 namespace poesy::app {
@@ -28,6 +34,8 @@ void describe_program(Command& program) {
                       {"the errors that matter most", "poesy show study.h5"}};
 }
 
+constexpr const char* kAboutTheProgram = "About the program";
+
 /// In the groups of the program's help.
 void add_commands(Command& program) {
   const auto group = [&](const char* title, std::initializer_list<Command& (*)(Command&)> commands) {
@@ -36,7 +44,27 @@ void add_commands(Command& program) {
   group("Prepare a study", {add_models, add_template, add_check});
   group("Compute", {add_run, add_merge, add_evaluate});
   group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
-  group("About the program", {add_help, add_version, add_completion, add_man});
+  group(kAboutTheProgram, {add_help, add_version, add_completion, add_man});
+}
+
+/// Where address space is limited, threads do not reserve 64 MiB each for what they allocate, as glibc has it: others
+/// would not find room for their stacks.
+void save_address_space() {
+#ifdef M_ARENA_MAX
+  if (most_address_space() != RLIM_INFINITY) ::mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
+/// HDF5 1.10 and others crash where they find no memory for a beginning.
+void expect_memory() {
+  constexpr std::size_t kLeast = std::size_t{24} << 20U;
+  constexpr std::uintmax_t kMega = 1'000'000;
+  if (has_address_space(kLeast)) return;
+  throw FileError("",
+                  "this takes " + std::to_string((address_space() + kLeast) / kMega + 1) +
+                      " MB of memory at least, and this process may have " +
+                      std::to_string(most_address_space() / kMega) + " MB",
+                  "raise the limit (ulimit -v)");
 }
 
 int parse_and_run(int argc, char** argv) {
@@ -57,6 +85,7 @@ int parse_and_run(int argc, char** argv) {
   }
   if (const auto problem = empty_value(program)) return complain(*problem, kBadInput);
   const auto& called = dynamic_cast<const Command&>(*program.get_subcommands().front());
+  if (called.get_group() != kAboutTheProgram) expect_memory();
   // Nothing else knows how to share its work; under a launcher the first process does it.
   if (called.get_name() != "run" && !is_first_process()) return kDone;
   return called.action();
@@ -73,6 +102,7 @@ int flushed(int code) {
 }  // namespace poesy::app
 
 int main(int argc, char** argv) {
+  poesy::app::save_address_space();
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error of its write, as is a full disk
   return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

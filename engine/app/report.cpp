@@ -7,6 +7,7 @@
 #include "engine/app/pdf.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
+#include "engine/base/text.h"
 #include "engine/files/file_writer.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
@@ -53,7 +54,7 @@ int report(const ReportOptions& options) {
   } else if (write_pdf(path, page, browser) == Printed::interrupted) {
     return complain("interrupted: " + path + " is not written", kInterrupted);
   }
-  print(path + "\n");
+  print(printable_line(path) + "\n");
   return kDone;
 }
 

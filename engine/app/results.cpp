@@ -12,7 +12,9 @@
 
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/base/units.h"
+#include "engine/files/file_writer.h"
 #include "engine/files/shard_file.h"
 #include "engine/kinds/confirming_study.h"
 #include "engine/kinds/result_file.h"
@@ -172,27 +174,47 @@ namespace {
 /// RESULT_certificate.
 std::string stem_beside(const std::filesystem::path& result) { return result.stem().string() + "_certificate"; }
 
+/// The study that confirms the result, and the files that it may name.
+constexpr std::array<std::string_view, 3> kBeside{".toml", "_mechanism.toml", "_poses.csv"};
+
+/// What such a study says of itself, before the result's name.
+constexpr std::string_view kRepeats = "repeats the certificate of ";
+
 /// Writes it beside the result: RESULT_certificate.toml. Gives its path.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
   const std::string stem = stem_beside(result);
+  for (const std::string_view end : kBeside)
+    remove_left_over((result.parent_path() / (stem + std::string(end))).string());
   name_files_beside(confirming, stem);
   write_files_beside(folder, confirming, job.poses.poses);
-  const std::string comment = "repeats the certificate of " + result.filename().string();
+  const std::string comment = std::string(kRepeats) + printable_line(result.filename().string());
   const std::filesystem::path written = write_confirming_study(folder, stem, confirming, comment);
   return written.lexically_normal().string();
 }
 
 }  // namespace
 
-void check_path_beside(const std::string& result, const std::string& study_path) {
+void check_files_beside(const std::string& result, std::span<const std::string> inputs) {
   const std::filesystem::path path(result);
-  const std::filesystem::path beside = path.parent_path() / (stem_beside(path) + ".toml");
-  std::error_code ignored;  // a path that cannot be looked at is none of these
-  if (!std::filesystem::equivalent(beside, study_path, ignored)) return;
-  throw InputError({study_path}, "would be replaced by the study that confirms the result, " + beside.string(),
-                   "give the result another name (-o)");
+  const auto beside = [&](std::string_view end) {
+    return (path.parent_path() / (stem_beside(path) + std::string(end))).string();
+  };
+  const bool earlier = is_marked(beside(kBeside.front()), kRepeats);
+  for (const std::string_view end : kBeside) {
+    const std::string file = beside(end);
+    std::error_code ignored;  // a path that cannot be looked at is none of these
+    for (const std::string& input : inputs) {
+      if (!std::filesystem::equivalent(file, input, ignored)) continue;
+      throw InputError({input}, "would be replaced by the study that confirms the result, " + file,
+                       "give the result another name (-o)");
+    }
+    if (earlier || !stands(file)) continue;
+    throw InputError({file},
+                     "exists and was not written with this result, and the study that confirms it would replace it",
+                     "move it away, or give the result another name (-o)");
+  }
 }
 
 std::optional<RunOutcome> run_to_file(const Job& job) {
@@ -214,11 +236,11 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
 
 int report_outcome(const Job& job, const std::string& study_path, const RunOutcome& outcome) {
   const std::string ranks = outcome.facts.ranks > 1 ? fmt::format(" of {} ranks", outcome.facts.ranks) : std::string();
-  print(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", job.path, outcome.facts.solves,
-                    outcome.facts.wall_seconds, outcome.facts.threads,
+  print(fmt::format("{}: {} solves in {:.2f} s on {} {}{}, {} not converged\n", printable_line(job.path),
+                    outcome.facts.solves, outcome.facts.wall_seconds, outcome.facts.threads,
                     outcome.facts.threads == 1 ? "thread" : "threads", ranks, outcome.solves.not_converged()));
   if (!outcome.confirming.empty()) {
-    print(fmt::format("{}: the study that repeats the certificate\n", outcome.confirming));
+    print(fmt::format("{}: the study that repeats the certificate\n", printable_line(outcome.confirming)));
   }
   if (job.options.shard) return kDone;  // the whole study is judged
   const std::string remedy = fmt::format("the result is kept; see 'poesy show {}'", job.path);

@@ -40,9 +40,9 @@ struct RunOutcome {
   std::string confirming = {};              ///< path of the study that confirms the result; empty: there is none
 };
 
-/// Throws InputError where the study that a run writes beside its result, to confirm it, would replace the study that
-/// is run.
-void check_path_beside(const std::string& result, const std::string& study_path);
+/// Throws InputError where the study that a run writes beside its result, to confirm it, or a file that it names would
+/// replace one of the inputs, or a file that is not of an earlier such study.
+void check_files_beside(const std::string& result, std::span<const std::string> inputs);
 
 /// Runs a study of any kind, or a shard of it, and writes its result, on rank 0 if there are several. Empty when it was
 /// interrupted. Throws FileError.

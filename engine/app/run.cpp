@@ -22,6 +22,7 @@
 #include "engine/kinds/study_run.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"
+#include "engine/run/threads.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -166,13 +167,25 @@ int leave_before_the_start(const Team& team, ResumableRun& resumable) {
   return code;
 }
 
+/// The study and the files that it names.
+std::vector<std::string> inputs_of(const RunCommandOptions& options, const Study& study) {
+  const std::filesystem::path folder = std::filesystem::path(options.study).parent_path();
+  std::vector<std::string> inputs{options.study};
+  if (!study.poses.file.empty()) inputs.push_back((folder / study.poses.file).string());
+  if (study.poses.trajectory) inputs.push_back((folder / study.poses.trajectory->file).string());
+  if (study.mechanism.file) inputs.push_back((folder / study.mechanism.file->name).string());
+  return inputs;
+}
+
 /// In one process, or as rank 0 of a team.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
   const std::string named = options.result.empty() ? default_result(options) : options.result;
-  const std::string path = check_result_path(named, std::span(&options.study, 1));
-  if (kind_of(study).run.confirms) check_path_beside(path, options.study);
+  const std::vector<std::string> inputs = inputs_of(options, study);
+  const std::string path = check_result_path(named, inputs);
+  if (kind_of(study).run.confirms) check_files_beside(path, inputs);
+  expect_threads(threads);  // before there is a checkpoint, even of nothing
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);

@@ -13,6 +13,7 @@
 #include "engine/app/mpi_ranks.h"
 #include "engine/base/error.h"
 #include "engine/base/printable_lines.h"
+#include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/report/table.h"
 
@@ -65,7 +66,7 @@ std::size_t output_width() {
 void print(const std::string& text) { std::fputs(printable_lines(text).c_str(), stdout); }
 
 void say(Message kind, const std::string& text) {
-  std::fputs((beginning(kind) + " " + printable_lines(text) + "\n").c_str(), stderr);
+  std::fputs((beginning(kind) + " " + printable_line(text) + "\n").c_str(), stderr);
 }
 
 int complain(const std::string& problem, ExitCode code) {

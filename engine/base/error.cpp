@@ -1,6 +1,6 @@
 #include "engine/base/error.h"
 
-#include "engine/base/printable_lines.h"
+#include "engine/base/text.h"
 
 namespace poesy {
 namespace {
@@ -13,7 +13,7 @@ std::string sentence(const std::string& place, std::string_view problem, std::st
     text += "; ";
     text += remedy;
   }
-  return printable_lines(text);  // names of files and words of users, who may have put a NUL or an escape in
+  return printable_line(text);  // names of files and words of users, who may have put an escape or a line end in
 }
 
 }  // namespace

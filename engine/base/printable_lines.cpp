@@ -11,7 +11,7 @@ std::string printable_lines(std::string_view text) {
   shown.reserve(text.size());
   while (!text.empty()) {
     const std::size_t end = std::min(text.find_first_of("\n\t"), text.size());
-    shown += printable(text.substr(0, end), std::string_view::npos);
+    shown += printable_line(text.substr(0, end));
     if (end < text.size()) shown += text[end];
     text.remove_prefix(std::min(end + 1, text.size()));
   }

@@ -13,12 +13,6 @@ namespace {
 
 constexpr std::size_t kMostWords = 12;
 
-bool is_control(std::string_view character) {
-  const auto lead = static_cast<unsigned char>(character[0]);
-  const bool c1 = character.size() == 2 && lead == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
-  return lead < 0x20 || lead == 0x7F || c1;
-}
-
 /// Fewest single-character insertions, deletions and replacements between two words (Levenshtein).
 std::size_t edit_distance(std::string_view from, std::string_view to) {
   std::vector<std::size_t> row(to.size() + 1);
@@ -40,6 +34,29 @@ bool is_plain(const std::string& word) {
   return !word.empty() && std::ranges::all_of(word, [&](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
   });
+}
+
+/// In quotes, for a shell.
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// For a shell that knows $'...' (bash, ksh, zsh), with bytes in place of what a terminal would obey.
+std::string escaped_for_shell(const std::string& word) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text = "$'";
+  for (const char c : word) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte > 0x7E) {
+      text.append("\\x").append({kDigits[byte >> 4U], kDigits[byte & 0xFU]});
+    } else {
+      if (c == '\'' || c == '\\') text += '\\';
+      text += c;
+    }
+  }
+  return text + "'";
 }
 
 /// Whether a number goes on behind the blank: "12 000", "5 %".
@@ -74,15 +91,28 @@ std::size_t character_length(std::string_view text) {
   if (byte(0) < 0x80) return 1;
   const auto length = static_cast<std::size_t>(std::countl_one(byte(0)));
   if (length < 2 || length > 4 || length > text.size()) return 0;
-  std::uint32_t code = byte(0) & (0x7FU >> length);
   for (std::size_t k = 1; k < length; ++k) {
     if ((byte(k) & 0xC0U) != 0x80) return 0;
-    code = code << 6U | (byte(k) & 0x3FU);
   }
+  const std::uint32_t code = code_point(text.substr(0, length));
   // Each code point has one form, the shortest, and surrogates have none (RFC 3629).
   constexpr std::array<std::uint32_t, 6> kFirst{0, 0, 0x80, 0x800, 0x10000, 0x110000};
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate ? length : 0;
+}
+
+std::uint32_t code_point(std::string_view character) {
+  const auto lead = static_cast<unsigned char>(character[0]);
+  if (character.size() == 1) return lead;
+  std::uint32_t code = lead & (0x7FU >> character.size());
+  for (const char byte : character.substr(1)) code = code << 6U | (static_cast<unsigned char>(byte) & 0x3FU);
+  return code;
+}
+
+bool is_control(std::uint32_t code) {
+  const auto within = [&](std::uint32_t first, std::uint32_t last) { return code >= first && code <= last; };
+  return code < 0x20 || within(0x7F, 0x9F) || code == 0x061C || within(0x200E, 0x200F) || within(0x2028, 0x202E) ||
+         within(0x2066, 0x2069);
 }
 
 std::size_t text_width(std::string_view text) {
@@ -111,23 +141,33 @@ std::string printable(std::string_view text, std::size_t most) {
     if (shown.size() >= most) return shown + "...";
     const std::size_t length = character_length(text);
     const std::string_view character = text.substr(0, std::max(length, std::size_t{1}));
-    shown += length == 0 || is_control(character) ? "?" : character;
+    shown += length == 0 || is_control(code_point(character)) ? "?" : character;
     text.remove_prefix(character.size());
   }
   return shown;
+}
+
+std::string printable_line(std::string_view text) { return printable(text, std::string_view::npos); }
+
+std::string_view formula_sign(std::string_view text) {
+  constexpr std::array<std::uint32_t, 8> kSigns{'=', '+', '-', '@', 0xFF1D, 0xFF0B, 0xFF0D, 0xFF20};
+  constexpr std::array<std::uint32_t, 8> kUnseen{' ', 0xA0, 0x200B, 0x200C, 0x200D, 0x2060, 0x3000, 0xFEFF};
+  while (!text.empty()) {
+    const std::string_view character = text.substr(0, character_length(text));
+    if (character.empty()) return {};
+    const std::uint32_t code = code_point(character);
+    if (std::ranges::find(kSigns, code) != kSigns.end()) return character;
+    if (std::ranges::find(kUnseen, code) == kUnseen.end()) return {};
+    text.remove_prefix(character.size());
+  }
+  return {};
 }
 
 std::string shell_command(const std::vector<std::string>& words) {
   std::string command;
   for (const std::string& word : words) {
     if (!command.empty()) command += ' ';
-    if (is_plain(word)) {
-      command += word;
-      continue;
-    }
-    command += '\'';
-    for (const char c : word) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    command += '\'';
+    command += is_plain(word) ? word : printable_line(word) == word ? quoted(word) : escaped_for_shell(word);
   }
   return command;
 }

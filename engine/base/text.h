@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,17 +20,29 @@ std::string_view trimmed(std::string_view text);  ///< The text without the blan
 /// form, a surrogate, a number above U+10FFFF.
 std::size_t character_length(std::string_view text);
 
+std::uint32_t code_point(std::string_view character);  ///< Of a UTF-8 character, which is the whole text.
+
+/// Whether a character acts on those beside it: a control character, the end of a line or paragraph (U+2028, U+2029),
+/// or one that turns the direction of writing (Bidi_Control of Unicode 15), by which a name may look like another.
+bool is_control(std::uint32_t code);
+
 std::size_t text_width(std::string_view text);  ///< Characters of a UTF-8 text.
 
 /// Lines of a text, broken at blanks, but not within numbers ("12 000", "5 %"). Each has at most `width` characters,
 /// the first one `first` where that is given; a longer word has a line of its own.
 std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::optional<std::size_t> first = {});
 
-/// A user's text as a message may show it: on one line, valid UTF-8, no control characters, cut off after
-/// about `most` bytes.
+/// A user's text as a message may show it: on one line, valid UTF-8, cut off after about `most` bytes. "?" stands for
+/// a control character.
 std::string printable(std::string_view text, std::size_t most = 60);
 
-/// A command line, word by word, as a shell takes it.
+std::string printable_line(std::string_view text);  ///< The same, whole.
+
+/// The sign with which a text begins a formula in a spreadsheet (= + - @, also of full width), behind blanks and what
+/// has no width; empty: it begins none.
+std::string_view formula_sign(std::string_view text);
+
+/// A command line, word by word, as a shell takes it, on one line.
 std::string shell_command(const std::vector<std::string>& words);
 
 /// The known word that is close to this one, as after a slip of the pen; empty when none is.

@@ -53,9 +53,8 @@ std::string line_text(const CsvTable& table, std::size_t line) {
 }  // namespace
 
 std::string csv_cell(std::string_view text) {
-  std::string cell = printable(text, std::string_view::npos);
-  const bool formula = !cell.empty() && std::string_view("=+-@").find(cell.front()) != std::string_view::npos;
-  if (formula && !parse_number(cell)) cell.insert(0, 1, '\'');
+  std::string cell = printable_line(text);
+  if (!formula_sign(cell).empty() && !parse_number(cell)) cell.insert(0, 1, '\'');
   if (cell.find_first_of(",;\"") == std::string::npos) return cell;
   std::string quoted = "\"";
   for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);

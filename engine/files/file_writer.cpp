@@ -106,7 +106,7 @@ bool sync_folder(const std::string& path) {
 }  // namespace
 
 bool is_marked(const std::string& path, std::string_view mark) {
-  constexpr std::size_t kHead = 1024;
+  constexpr std::size_t kHead = 1 << 16;
   std::string head(kHead, '\0');
   std::ifstream file(path, std::ios::binary);
   if (!file) return false;

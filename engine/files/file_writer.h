@@ -18,7 +18,7 @@ struct OutputKind {
   bool (*may_be_replaced)(const std::string& path);  ///< whether a file that stands there is of this kind, or empty
 };
 
-/// Whether a file is empty, or has this mark in its first kilobyte.
+/// Whether a file is empty, or has this mark in its first 64 KiB.
 bool is_marked(const std::string& path, std::string_view mark);
 
 /// Gives the path to write to: where a symbolic link leads, whether there is a file yet or not; else the path itself.

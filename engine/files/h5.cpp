@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <new>
 #include <numeric>
 #include <type_traits>
 #include <utility>
 
+#include "engine/base/address_space.h"
 #include "engine/base/contract.h"
 #include "engine/files/h5_disk.h"
 
@@ -364,7 +366,14 @@ Handle group_properties(hid_t kind) {
   return properties;
 }
 
+/// Without memory HDF5 1.10 may crash where it makes a file. It takes half of this.
+void expect_room_for_file() {
+  constexpr std::size_t kRoom = std::size_t{8} << 20U;
+  if (!has_address_space(kRoom)) throw std::bad_alloc();
+}
+
 hid_t make_file(hid_t access) {
+  expect_room_for_file();
   const Handle creation = group_properties(H5P_FILE_CREATE);
   const hid_t id = checked(H5Fcreate("new", H5F_ACC_TRUNC, creation.get(), access), "make", "a file");
   // From version 1.8 of the format on metadata carries checksums. Not asked for before the file exists, so that the
@@ -498,7 +507,7 @@ void File::link(const std::string& existing, const std::string& second) {
 
 void File::expect_plain_tree() const {
   constexpr int kDeepest = 16;    // results have three levels
-  constexpr int kMostNames = 16;  // of a dataset, which is read for each; results have two
+  constexpr int kMostNames = 16;  // of a dataset, which is read for each; results have seven
   struct Group {
     std::string path;
     int depth;

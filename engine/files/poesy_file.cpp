@@ -19,6 +19,7 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/base/address_space.h"
 #include "engine/files/checkpoint.h"
 #include "engine/study/text_file.h"
 
@@ -67,10 +68,6 @@ void check_version(const std::string& path, const h5::File& file) {
   }
 }
 
-/// What such a child says; any other says what the FileError said.
-constexpr std::string_view kEndedWell = "+";
-constexpr std::string_view kNoMemory = "-";
-
 /// A file descriptor.
 class Descriptor {
  public:
@@ -88,6 +85,26 @@ class Descriptor {
   int number_;
 };
 
+/// Bytes of a file that are on its disk: without the holes of a sparse one, which make it look as large as one likes.
+std::uintmax_t stored_bytes(const std::string& path) {
+  constexpr int kMostPieces = 10'000;
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  std::uintmax_t bytes = 0;
+  off_t end = 0;
+  for (int piece = 0; piece < kMostPieces; ++piece) {
+    const off_t begin = ::lseek(file.number(), end, SEEK_DATA);
+    if (begin < 0) break;  // there is none behind the end
+    end = ::lseek(file.number(), begin, SEEK_HOLE);
+    if (end < 0) break;
+    bytes += static_cast<std::uintmax_t>(end - begin);
+  }
+  return bytes;
+}
+
+/// What such a child says; any other says what the FileError said.
+constexpr std::string_view kEndedWell = "+";
+constexpr std::string_view kNoMemory = "-";
+
 [[noreturn]] void fail_to_start(const std::string& path, int reason) {
   throw FileError(path, "cannot be read: no process to try it in (" + std::generic_category().message(reason) + ")",
                   "try again when fewer processes run");
@@ -100,13 +117,6 @@ void limit(int resource, rlim_t most) {
   limits.rlim_cur = std::min(most, limits.rlim_cur);
   limits.rlim_max = std::min(most + 1, limits.rlim_max);
   ::setrlimit(resource, &limits);
-}
-
-/// Bytes of address space that this process has, 0 where the system does not tell.
-rlim_t address_space() {
-  rlim_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
 /// No handler of the parent runs in the child, nothing of it is seen, and it ends whatever happens.
@@ -176,20 +186,17 @@ int status_of(pid_t child) {
 void refuse_for_little_memory(const std::string& path, rlim_t file_bytes) {
   constexpr rlim_t kMega = 1'000'000;
   const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;
-  rlimit limits{};
-  ::getrlimit(RLIMIT_AS, &limits);
-  if (limits.rlim_cur >= most) return;
+  if (most_address_space() >= most) return;
   throw FileError(path,
                   fmt::format("cannot be read for want of memory: {} MB are enough, and this process may have {} MB",
-                              most / kMega + 1, limits.rlim_cur / kMega),
+                              most / kMega + 1, most_address_space() / kMega),
                   "raise the limit (ulimit -v)");
 }
 
 }  // namespace
 
 void trial_read(const std::string& path, const std::function<void()>& read, unsigned long wait_seconds) {
-  std::error_code ignored;
-  const auto file_bytes = static_cast<rlim_t>(std::filesystem::file_size(path, ignored));
+  const rlim_t file_bytes = stored_bytes(path);
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) fail_to_start(path, errno);
   const Descriptor from_child(pipe[0]);
@@ -227,6 +234,7 @@ bool is_out_of_memory(const std::exception& error) {
   // H5E_NOSPACE, and what H5MM_malloc and its users say.
   const std::string_view text = error.what();
   return text.find("memory allocation failed") != std::string_view::npos ||
+         text.find("unable to allocate memory") != std::string_view::npos ||
          text.find("No space available for allocation") != std::string_view::npos;
 }
 

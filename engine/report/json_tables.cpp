@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/report/display.h"
 
@@ -85,22 +86,20 @@ Json ranked_json(const RankedResult& ranked) {
   return all;
 }
 
-/// The library escapes control characters below U+0020. Terminals obey those from U+007F to U+009F as well.
+/// The library escapes control characters below U+0020, and there are others.
 std::string text_of(const Json& all) {
   const std::string json = all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   std::string text;
   text.reserve(json.size());
-  for (std::size_t k = 0; k < json.size(); ++k) {
-    const auto byte = static_cast<unsigned char>(json[k]);
-    const unsigned char next = k + 1 < json.size() ? static_cast<unsigned char>(json[k + 1]) : 0;
-    if (byte == 0x7F) {
-      text += "\\u007f";
-    } else if (byte == 0xC2 && next < 0xA0) {
-      text += fmt::format("\\u{:04x}", next);
-      ++k;
+  for (std::string_view rest = json; !rest.empty();) {
+    const std::string_view character = rest.substr(0, character_length(rest));
+    const std::uint32_t code = code_point(character);
+    if (code != '\n' && is_control(code)) {
+      text += fmt::format("\\u{:04x}", code);
     } else {
-      text += json[k];
+      text += character;
     }
+    rest.remove_prefix(character.size());
   }
   return text;
 }

@@ -116,7 +116,7 @@ std::string failures_text(const StoredResult& result, const SolveTally& tally, c
       tally.second ? line_of_both(solves, *tally.second) : count_line(solves.not_converged(), solves.total()), width);
   if (result.failures.empty()) return text;
   const Failure& first = result.failures.front();
-  const std::string name = printable(result.varied[first.slot], std::string::npos);
+  const std::string name = printable_line(result.varied[first.slot]);
   const std::string pose = std::to_string(first.pose.value);
   const std::string sample = std::to_string(first.failed.sample.value);
   text +=

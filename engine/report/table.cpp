@@ -19,9 +19,6 @@ void add_line(std::string& text, std::string_view line) {
   text.append(line.substr(0, last == std::string_view::npos ? 0 : last + 1)).append("\n");
 }
 
-/// A text that may come from a stranger's file, without what a terminal would obey.
-std::string harmless(std::string_view text) { return printable(text, std::string_view::npos); }
-
 /// A column as it will be printed.
 struct TextColumn {
   const Column& column;
@@ -44,11 +41,11 @@ TextColumn column_text(const Table& table, std::size_t c) {
   made.width = text_width(made.unit);
   for (const std::vector<Cell>& row : table.rows) {
     const std::size_t blanks = row[c].value ? tail - tail_of(row[c]) : 0;
-    made.cells.push_back(harmless(row[c].text) + std::string(blanks, ' '));
+    made.cells.push_back(printable_line(row[c].text) + std::string(blanks, ' '));
     made.width = std::max(made.width, text_width(made.cells.back()));
   }
   // Broken where it is wider than the cells, into no more lines than a heading may have; the column grows as it must.
-  const std::string heading = harmless(column.heading);
+  const std::string heading = printable_line(column.heading);
   made.heading = wrapped(heading, made.width);
   while (made.heading.size() > kHeadingLines) made.heading = wrapped(heading, ++made.width);
   for (const std::string& line : made.heading) made.width = std::max(made.width, text_width(line));
@@ -104,7 +101,7 @@ std::size_t tail_of(const Cell& cell) {
 
 std::string prose_of(std::string_view prose, std::size_t width) {
   std::string text;
-  for (const std::string& line : wrapped(harmless(prose), std::min(width, kReadableWidth))) add_line(text, line);
+  for (const std::string& line : wrapped(printable_line(prose), std::min(width, kReadableWidth))) add_line(text, line);
   return text;
 }
 

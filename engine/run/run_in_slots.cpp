@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/base/sanitizers.h"
+#include "engine/run/threads.h"
 
 #ifdef POESY_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
@@ -89,7 +90,9 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
                   const SlotJob& finish) {
   const handover::Block block;
   const std::size_t threads = resolved_threads(options.threads);
+  expect_threads(threads);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  const tbb::global_control stack(tbb::global_control::thread_stack_size, kThreadStackBytes);
   tbb::task_arena arena(static_cast<int>(threads));
   // Called where it is: a copy in memory of oneTBB would be one more thing that goes from thread to thread there.
   tbb::enumerable_thread_specific<SlotJob> works([&make_work] { return make_work(); });

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -254,8 +255,12 @@ KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   return known;
 }
 
-/// Throws unless the last time comes after the one before.
-void check_order(const std::vector<double>& time, const std::string& path) {
+/// Throws unless the last time is one, and comes after the one before.
+void check_last(const std::vector<double>& time, const std::string& path) {
+  if (!time.empty() && std::abs(time.back()) > kLatestTime) {
+    throw InputError({path, time.size() + 1, 1}, "t = " + shortest(time.back()) + " s is more than 1e9 s from 0",
+                     "count the time from the start of the motion");
+  }
   if (time.size() < 2 || time.back() > time.end()[-2]) return;
   const std::string before = shortest(time.end()[-2]);
   throw InputError(
@@ -285,7 +290,7 @@ TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDes
     const auto time = values.end() - std::ptrdiff_t(order.size());
     points.time.push_back(*time);
     values.erase(time);
-    check_order(points.time, path);
+    check_last(points.time, path);
   }
   if (kind > 0) points.table.chart = kind - 1;
   points.table.points = PoseSet(coordinates(model, points.table.chart).size(), std::move(values));
@@ -366,8 +371,8 @@ std::optional<std::string> label_problem(std::string_view label) {
   if (const std::size_t at = label.find_first_of(",;\"'`"); at != std::string_view::npos) {
     return "has a " + std::string(label[at] == ',' ? "comma" : label[at] == ';' ? "semicolon" : "quote");
   }
-  if (std::string_view("=+-@").find(label.front()) != std::string_view::npos) {
-    return "begins with '" + std::string(1, label.front()) + "'";
+  if (const std::string_view sign = formula_sign(label); !sign.empty()) {
+    return "begins with '" + std::string(sign) + "'";
   }
   return std::nullopt;
 }

@@ -133,6 +133,9 @@ class Parser {
     const char* begin = text_.data() + at_;
     double value = 0.0;
     const auto [end, failure] = std::from_chars(begin, text_.data() + text_.size(), value);
+    if (failure == std::errc::result_out_of_range) {
+      fail(at_, "has a number that is out of range", "write one between 1e-307 and 1e307, or 0");
+    }
     if (failure != std::errc()) unexpected();
     at_ += static_cast<std::size_t>(end - begin);
     skip();

@@ -286,6 +286,24 @@ class Allocation(ResumptionTest):
         expected = self.content_hash()
         self.assertEqual(self.resume_to_end(), expected)
 
+    def test_files_of_the_user_beside_the_result_stay(self):
+        for name in ("out_certificate.toml", "out_certificate_poses.csv", "out_certificate_mechanism.toml"):
+            notes = self.write(name, "notes")
+            done = self.run_study(SMALL, code=2)
+            self.assertIn(name + ": exists and was not written with this result", done.stderr.decode())
+            self.assertEqual(notes.read_text(), "notes")
+            notes.unlink()
+
+    def test_an_earlier_certificate_is_replaced_and_what_its_kill_left_removed(self):
+        self.run_study(SMALL)
+        certificate = self.folder / "out_certificate.toml"
+        first = certificate.read_text()
+        self.write("out_certificate.toml.tmp.0123456789ab", "half")
+        certificate.write_text(first + "# later\n")
+        self.run_study(SMALL)
+        self.assertEqual(certificate.read_text(), first)
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {"study.toml", "out.h5", "out_certificate.toml"})
+
     def test_refusals(self):
         self.refused(SMALL.replace("sigmas = 3\n", ""), "has neither sigmas nor cpk")
         self.refused(SMALL.replace('limits.linear_deformation = "0.5 mm"\n', ""), "'limits' is missing")

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import resource
+import shutil
 import subprocess
 
 import h5py
@@ -25,7 +26,8 @@ fidelity = "first-order"
 ESCAPES = "\x1b]0;pwned\x07\x1b[2J"
 C1 = "\x9b2J"
 CASES = 'kind = "evaluate"\n[[analysis.cases]]\nname = "{}"\nerrors = {{ linear = "0.1 mm" }}'
-CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+TURNED = "a\u202eb\u2028c"
 
 
 def mini(poses="count = 3", analysis="samples = 10"):
@@ -54,6 +56,18 @@ class Untrusted(ProgramTest):
         return done.returncode, done.stderr.decode()
 
 
+    def check_little_memory(self, megabytes, *command):
+        """That it works, or says that it lacks memory."""
+        code, said = self.with_memory(megabytes, *command)
+        with self.subTest(command[0], megabytes=megabytes):
+            self.assertIn(code, (0, 3), said)
+            if code == 3:
+                self.assertRegex(said, "memory|threads cannot be started")
+            self.assertNotIn("is damaged", said)
+            self.assertNotIn("internal", said)
+        return said
+
+
 class Terminals(Untrusted):
     def test_verify_shows_a_stored_hash_without_escapes(self):
         self.run_study(mini())
@@ -61,8 +75,20 @@ class Terminals(Untrusted):
             file.attrs["content_sha256"] = ESCAPES
         self.assertIn("?]0;pwned", self.said(3, "verify", "r.h5"))
 
+    def test_no_file_makes_the_program_say_a_line_of_its_own(self):
+        self.run_study(mini())
+        lie = "0\npoesy: r.h5 is verified\n"
+        with h5py.File(self.folder / "r.h5", "r+") as file:
+            for name in ("content_sha256", "model", "poesy_version", "git_commit"):
+                file.attrs[name] = lie
+        shutil.copy(self.folder / "r.h5", self.folder / lie)
+        for file in ("r.h5", lie):
+            for command in (("verify",), ("show",), ("tolerances",), ("report",), ("replay", "q_1", 0, 0)):
+                said = self.poesy(command[0], file, *command[1:])
+                self.assertNotIn("poesy: r.h5 is verified", (said.stdout + said.stderr).decode().split("\n"), command)
+
     def test_names_of_files_are_shown_without_escapes(self):
-        for name in ("a\x1b[2Jb", "a" + C1 + "b"):
+        for name in ("a\x1b[2Jb", "a" + C1 + "b", TURNED):
             with self.subTest(repr(name)):
                 self.run_study(mini(), name + ".h5")
                 for command in ("verify", "show", "tolerances"):
@@ -75,10 +101,10 @@ class Terminals(Untrusted):
     def test_json_escapes_what_a_terminal_obeys(self):
         self.run_study(mini().replace("version = 1", 'version = 1\ntitle = "plain"'))
         with h5py.File(self.folder / "r.h5", "r+") as file:
-            file.attrs["title"] = "a" + C1 + "\x7f\x1bz"
+            file.attrs["title"] = TURNED + C1 + "\x7f\x1bz"
         done = self.poesy("show", "r.h5", "--json")
         self.assertIsNone(CONTROL.search(done.stdout.decode()))
-        self.assertEqual(json.loads(done.stdout)["title"], "a" + C1 + "\x7f\x1bz")
+        self.assertEqual(json.loads(done.stdout)["title"], TURNED + C1 + "\x7f\x1bz")
 
     def test_a_nul_cuts_no_message_and_names_no_other_file(self):
         self.write("a", "alpha,beta,z\n0,0,0.75\n")
@@ -88,7 +114,8 @@ class Terminals(Untrusted):
 
 class Spreadsheets(Untrusted):
     def test_names_in_studies_that_begin_a_formula_are_refused(self):
-        for name in ("=1+1|cmd", "+1", "-1", "@sum", "a,b", "a;b", "a\\u001bb", "a\\nb", ""):
+        for name in ("=1+1|cmd", "+1", "-1", "@sum", "a,b", "a;b", "a\\u001bb", "a\\nb", "", " =1", "\u00a0=1", "\u200b=1",
+                     "\ufeff+1", "\uff1d1+1", "\uff0b1", "\uff0d1", "\uff20x", TURNED):
             with self.subTest(name):
                 self.write("study.toml", mini(analysis=CASES.format(name)))
                 self.assertIn("11:8", self.said(2, "run", "study.toml"))
@@ -96,11 +123,11 @@ class Spreadsheets(Untrusted):
     def test_cells_are_quoted_or_disarmed(self):
         self.run_study(mini(analysis=CASES.format("one") + CASES.format("two").replace('kind = "evaluate"', "")))
         with h5py.File(self.folder / "r.h5", "r+") as file:
-            file["case"][:] = ['=1+1|cmd', 'x\n9,9;"9"' + C1]
+            file["case"][:] = ["\u00a0\uff1d1+1|cmd", 'x\n9,9;"9"' + C1]
         self.said(0, "export", "r.h5", "-d", "out")
         with open(self.folder / "out" / "cases.csv", newline="") as file:
             lines = list(csv.reader(file))
-        self.assertEqual([line[0] for line in lines[1:]], ["'=1+1|cmd", 'x?9,9;"9"?2J'])
+        self.assertEqual([line[0] for line in lines[1:]], ["'\u00a0\uff1d1+1|cmd", 'x?9,9;"9"?2J'])
         self.assertEqual({len(line) for line in lines}, {len(lines[0])})
 
 
@@ -114,6 +141,28 @@ class Memory(Untrusted):
                 self.assertIn("memory", said)
                 self.assertNotIn("is damaged", said)
                 self.assertNotIn("internal", said)
+
+    def test_any_little_memory_is_said(self):
+        """From where the program is not even loaded to where it has enough, for every command."""
+        self.run_study(mini())
+        for k in (1, 2):
+            self.succeeds("run", "study.toml", "--shard", f"{k}/2", "-o", f"{k}.h5", "--quiet")
+        self.write("p.csv", "alpha,beta,z\n0,0,0.75\n")
+        self.write("e.csv", "q_1,q_2,q_3\n1e-4,1e-4,1e-4\n")
+        commands = [("check", "study.toml"), ("run", "study.toml", "-o", "o.h5"), ("run", "study.toml", "-o", "o.h5", "--threads", 1),
+                    ("evaluate", "study.toml", "--poses", "p.csv", "--errors", "e.csv", "-o", "v.h5"),
+                    ("merge", "1.h5", "2.h5", "-o", "m.h5"), ("show", "r.h5"), ("export", "r.h5", "-d", "out"), ("verify", "r.h5"),
+                    ("report", "r.h5"), ("replay", "r.h5", "q_1", 0, 0)]
+        for command in commands:
+            for megabytes in range(40, 76, 3):
+                self.check_little_memory(megabytes, *command)
+
+    def test_threads_that_cannot_be_started_are_said(self):
+        self.write("study.toml", mini())
+        for megabytes, threads in ((100, 64), (290, 64), (1000, 256), (2000, 1024)):
+            said = self.check_little_memory(megabytes, "run", "study.toml", "-o", "o.h5", "--threads", threads)
+            self.assertIn(f"{threads} threads cannot be started", said)
+            self.assertEqual(list(self.folder.glob("o.h5*")), [])
 
     def test_a_run_says_what_it_needs(self):
         sizes = ", ".join(f'"{k + 1} um"' for k in range(20))
@@ -155,6 +204,35 @@ class Overflow(Untrusted):
                 box = f'count = 3\nworkspace = {{ z = ["{low} m", "{high} m"], beta = ["0 deg", "1 deg"], gamma = ["0 deg", "1 deg"] }}'
                 self.write("study.toml", STUDY.replace("count = 6", box))
                 self.assertIn("the workspace is empty", self.said(2, "run", "study.toml"))
+
+
+    def test_times_that_overflow_are_refused(self):
+        self.write("tr.csv", "t,alpha,beta,z\n-1e308,0,0,0.7\n1e308,0,0,0.71\n")
+        trajectory = 'select = "trajectory"\ntrajectory = {{ file = "tr.csv"{} }}'
+        self.write("study.toml", mini(trajectory.format(', time = ["0 s", "1 s"], points = 3')))
+        self.assertIn("tr.csv:2:1: t = -1e+308 s is more than 1e9 s from 0", self.said(2, "check", "study.toml"))
+        self.write("tr.csv", "t,alpha,beta,z\n0,0,0,0.7\n1,0,0,0.71\n")
+        self.write("study.toml", mini(trajectory.format(', time = ["0 s", "1e10 s"], points = 3')))
+        self.assertIn("more than 1e9 s from 0", self.said(2, "check", "study.toml"))
+
+
+class Locks(Untrusted):
+    def test_a_lock_that_cannot_be_opened_is_one(self):
+        """As another user's is, who lets nobody read his files."""
+        if os.geteuid() != 0:
+            self.skipTest("only root can be another user")
+        self.write("study.toml", mini())
+        lock = self.write("o.h5.lock", "")
+        lock.chmod(0o600)
+        self.folder.chmod(0o777)
+        parents = [parent for parent in self.folder.parents if not os.stat(parent).st_mode & 0o001]
+        if parents:
+            self.skipTest(f"nobody else reaches {parents[0]}")
+        done = subprocess.run([PROGRAM, "run", "study.toml", "-o", "o.h5", "--quiet"], cwd=self.folder, capture_output=True,
+                              timeout=120, check=False, user=54321, group=54321, extra_groups=[])
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("o.h5.lock: cannot be opened", done.stderr.decode())
+        self.assertFalse((self.folder / "o.h5").exists())
 
 
 class Words(Untrusted):

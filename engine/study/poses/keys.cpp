@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "engine/base/text.h"
@@ -20,6 +22,9 @@ Range read_range(const StudyValue& value, Dimension dimension) {
   const auto ends =
       value.list(2, is_time ? "write when it starts and when it ends" : "write the two ends of the range");
   const Range range{ends[0].quantity(dimension), ends[1].quantity(dimension)};
+  if (is_time && std::max(std::abs(range.lower), std::abs(range.upper)) > kLatestTime) {
+    value.fail("is more than 1e9 s from 0", "count the time from the start of the motion");
+  }
   if (range.lower < range.upper) return range;
   const auto text = [&](double end) { return is_time ? readable_text({end, dimension}) : to_text({end, dimension}); };
   value.fail(

@@ -63,6 +63,8 @@ struct TimedPoints {
   PoseTable table;           ///< [M]
 };
 
+inline constexpr double kLatestTime = 1e9;  ///< s, from 0, before and after: 30 years, far from where times overflow
+
 /// What a study says of a trajectory: a named curve of the model, or points of a file.
 struct Trajectory {
   std::optional<std::size_t> curve = {};  ///< position among the model's curves; none: of a file

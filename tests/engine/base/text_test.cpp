@@ -85,12 +85,30 @@ TEST(Printable, TakesEachCodePointInItsShortestFormAlone) {
     for (std::uint32_t code = 0; code < kBeyond[length]; ++code) {
       const std::size_t form = code < 0x80 ? 1 : code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
       const bool has_form = code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
-      const bool control = code >= 0x80 && code < 0xA0;
+      const bool turns = code == 0x61C || code == 0x200E || code == 0x200F || (code >= 0x202A && code <= 0x202E) ||
+                         (code >= 0x2066 && code <= 0x2069);
+      const bool control = (code >= 0x80 && code < 0xA0) || code == 0x2028 || code == 0x2029 || turns;
       const std::string bytes = written_in(length, code);
       const std::string expected = form != length || !has_form ? std::string(length, '?') : control ? "?" : bytes;
       ASSERT_EQ(printable(bytes), expected) << length << " bytes, code point " << code;
     }
   }
+}
+
+TEST(ShellCommand, IsOneLineThatAShellTakesApartAgain) {
+  EXPECT_EQ(shell_command({"poesy", "run", "a b.toml", "it's"}), R"(poesy run 'a b.toml' 'it'\''s')");
+  EXPECT_EQ(shell_command({"\xC3\xA4.toml"}), "'\xC3\xA4.toml'");
+  EXPECT_EQ(shell_command({"a\nb'\\\xE2\x80\xAE"}), R"($'a\x0ab\'\\\xe2\x80\xae')");
+}
+
+TEST(FormulaSign, IsSeenBehindWhatIsNotSeen) {
+  for (const char* sign : {"=", "+", "-", "@", "\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D", "\xEF\xBC\xA0"}) {
+    EXPECT_EQ(formula_sign(std::string(sign) + "1"), sign);
+    EXPECT_EQ(formula_sign(" \xC2\xA0\xE2\x80\x8B\xEF\xBB\xBF" + std::string(sign)), sign);
+    EXPECT_EQ(formula_sign("a" + std::string(sign)), "");
+  }
+  EXPECT_EQ(formula_sign(""), "");
+  EXPECT_EQ(formula_sign("\xFF=1"), "");
 }
 
 TEST(Either, JoinsTheLastByOr) {

@@ -84,6 +84,16 @@ TEST_F(TrialRead, EndsWhatDoesNotEnd) {
   });
 }
 
+/// A file may look as large as one likes, and its limits grow with its size.
+TEST_F(TrialRead, GivesNothingForTheHolesOfAFile) {
+  std::filesystem::resize_file(path_, std::uintmax_t{1} << 35U);
+  EXPECT_NO_THROW(trial_read(path_, [] {
+    rlimit limits{};
+    ::getrlimit(RLIMIT_CPU, &limits);
+    if (limits.rlim_cur > kTrialSeconds) throw FileError("", "has more time", "");
+  }));
+}
+
 TEST_F(TrialRead, EndsWhatWaitsForEver) {
   const auto start = std::chrono::steady_clock::now();
   const auto wait = [] {

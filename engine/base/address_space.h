@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace poesy {
+
+std::uintmax_t address_space();       ///< Bytes of it that this process has; 0 where the system does not tell.
+std::uintmax_t most_address_space();  ///< Bytes that it may have: RLIMIT_AS.
+
+/// Whether this process may take so many more bytes now. Some libraries crash without memory: ask before they are
+/// called.
+bool has_address_space(std::size_t bytes);
+
+}  // namespace poesy

@@ -1,0 +1,104 @@
+#include "engine/run/threads.h"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <pthread.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "engine/base/address_space.h"
+#include "engine/base/error.h"
+
+namespace poesy {
+namespace {
+
+namespace tbb = oneapi::tbb;
+
+/// Threads that wait for the end of this object.
+class WaitingThreads {
+ public:
+  explicit WaitingThreads(std::size_t count) {
+    pthread_attr_t attributes;
+    ::pthread_attr_init(&attributes);
+    ::pthread_attr_setstacksize(&attributes, kThreadStackBytes);
+    threads_.reserve(count);
+    for (pthread_t thread{}; reason_ == 0 && threads_.size() < count;) {
+      reason_ = ::pthread_create(&thread, &attributes, live, this);
+      if (reason_ == 0) threads_.push_back(thread);
+    }
+    ::pthread_attr_destroy(&attributes);
+    for (std::size_t n = ready_; n < threads_.size(); n = ready_) ready_.wait(n);
+  }
+  WaitingThreads(const WaitingThreads&) = delete;
+  WaitingThreads& operator=(const WaitingThreads&) = delete;
+  ~WaitingThreads() {
+    over_ = true;
+    over_.notify_all();
+    for (const pthread_t thread : threads_) ::pthread_join(thread, nullptr);
+  }
+
+  /// 0, or why there are fewer: an errno.
+  int reason() const { return reason_; }
+
+ private:
+  static void* live(void* self) {
+    auto& all = *static_cast<WaitingThreads*>(self);
+    ++all.ready_;
+    all.ready_.notify_all();
+    all.over_.wait(false);
+    return nullptr;
+  }
+
+  std::vector<pthread_t> threads_;
+  int reason_ = 0;
+  std::atomic<std::size_t> ready_{0};
+  std::atomic<bool> over_{false};
+};
+
+/// 0, or why so many threads cannot live at once: an errno.
+int problem_of(std::size_t threads) {
+  constexpr std::size_t kRoom = std::size_t{2} << 20U;
+  constexpr std::size_t kRoomOfThread = std::size_t{1} << 18U;
+  const WaitingThreads others(threads - 1);
+  if (others.reason() != 0) return others.reason();
+  return has_address_space(kRoom + threads * kRoomOfThread) ? 0 : ENOMEM;
+}
+
+/// Has oneTBB start its threads now, while there is memory for them, which a study may need later.
+void start_workers(std::size_t threads) {
+  constexpr std::chrono::milliseconds kLongest{20};
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  const tbb::global_control stack(tbb::global_control::thread_stack_size, kThreadStackBytes);
+  std::atomic<std::size_t> here{0};
+  const auto end = std::chrono::steady_clock::now() + kLongest;
+  const auto meet = [&](std::size_t) {
+    ++here;
+    while (here < threads && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  };
+  tbb::task_arena(static_cast<int>(threads)).execute([&] {
+    tbb::parallel_for(std::size_t{0}, threads, meet, tbb::simple_partitioner());
+  });
+}
+
+}  // namespace
+
+void expect_threads(std::size_t threads) {
+  static std::atomic<std::size_t> started{1};
+  if (threads <= started) return;
+  if (const int problem = problem_of(threads); problem != 0) {
+    throw FileError(
+        "", std::to_string(threads) + " threads cannot be started (" + std::generic_category().message(problem) + ")",
+        "give fewer with --threads, or raise the limits on processes and memory (ulimit -u, ulimit -v)");
+  }
+  start_workers(threads);
+  started = threads;
+}
+
+}  // namespace poesy
