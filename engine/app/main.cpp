@@ -1,6 +1,3 @@
-#include <malloc.h>
-#include <sys/resource.h>
-
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -45,14 +42,6 @@ void add_commands(Command& program) {
   group("Compute", {add_run, add_merge, add_evaluate});
   group("Look at results", {add_show, add_report, add_tolerances, add_replay, add_export, add_verify});
   group(kAboutTheProgram, {add_help, add_version, add_completion, add_man});
-}
-
-/// Where address space is limited, threads do not reserve 64 MiB each for what they allocate, as glibc has it: others
-/// would not find room for their stacks.
-void save_address_space() {
-#ifdef M_ARENA_MAX
-  if (most_address_space() != RLIM_INFINITY) ::mallopt(M_ARENA_MAX, 1);
-#endif
 }
 
 /// HDF5 1.10 and others crash where they find no memory for a beginning.
@@ -102,7 +91,7 @@ int flushed(int code) {
 }  // namespace poesy::app
 
 int main(int argc, char** argv) {
-  poesy::app::save_address_space();
+  poesy::save_address_space();
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error of its write, as is a full disk
   return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

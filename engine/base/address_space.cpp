@@ -1,5 +1,6 @@
 #include "engine/base/address_space.h"
 
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -25,6 +26,12 @@ bool has_address_space(std::size_t bytes) {
   if (room == MAP_FAILED) return false;
   ::munmap(room, bytes);
   return true;
+}
+
+void save_address_space() {
+#ifdef M_ARENA_MAX
+  if (most_address_space() != RLIM_INFINITY) ::mallopt(M_ARENA_MAX, 1);
+#endif
 }
 
 }  // namespace poesy

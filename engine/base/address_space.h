@@ -12,4 +12,8 @@ std::uintmax_t most_address_space();  ///< Bytes that it may have: RLIMIT_AS.
 /// called.
 bool has_address_space(std::size_t bytes);
 
+/// Where address space is limited, threads do not reserve 64 MiB each for what they allocate, as glibc has it: others
+/// would not find room for their stacks. To be called before any thread is started.
+void save_address_space();
+
 }  // namespace poesy

@@ -43,7 +43,7 @@ LIBRARIES = {
     "Google Benchmark": ("benchmark/*",),
     "threads": ("atomic", "barrier", "condition_variable", "future", "latch", "mutex", "semaphore", "shared_mutex",
                 "stop_token", "thread", "pthread.h"),
-    "files": ("filesystem", "fstream", "fcntl.h", "poll.h", "unistd.h", "dirent.h", "stdlib.h", "sys/*"),
+    "files": ("filesystem", "fstream", "fcntl.h", "poll.h", "unistd.h", "dirent.h", "stdlib.h", "malloc.h", "sys/*"),
     "terminal": ("iostream",),
     "std-random": ("random",),
 }
