@@ -169,11 +169,13 @@ int leave_before_the_start(const Team& team, ResumableRun& resumable) {
 
 /// The study and the files that it names.
 std::vector<std::string> inputs_of(const RunCommandOptions& options, const Study& study) {
-  const std::filesystem::path folder = std::filesystem::path(options.study).parent_path();
   std::vector<std::string> inputs{options.study};
-  if (!study.poses.file.empty()) inputs.push_back((folder / study.poses.file).string());
-  if (study.poses.trajectory) inputs.push_back((folder / study.poses.trajectory->file).string());
-  if (study.mechanism.file) inputs.push_back((folder / study.mechanism.file->name).string());
+  const auto add = [&](const std::string& name) {
+    if (!name.empty()) inputs.push_back((std::filesystem::path(options.study).parent_path() / name).string());
+  };
+  add(study.poses.file);
+  if (study.poses.trajectory) add(study.poses.trajectory->file);
+  if (study.mechanism.file) add(study.mechanism.file->name);
   return inputs;
 }
 

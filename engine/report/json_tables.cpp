@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -92,7 +93,7 @@ std::string text_of(const Json& all) {
   std::string text;
   text.reserve(json.size());
   for (std::string_view rest = json; !rest.empty();) {
-    const std::string_view character = rest.substr(0, character_length(rest));
+    const std::string_view character = rest.substr(0, std::max<std::size_t>(character_length(rest), 1));
     const std::uint32_t code = code_point(character);
     if (code != '\n' && is_control(code)) {
       text += fmt::format("\\u{:04x}", code);
