@@ -22,7 +22,6 @@
 #include "engine/kinds/study_run.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"
-#include "engine/run/threads.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -187,7 +186,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::vector<std::string> inputs = inputs_of(options, study);
   const std::string path = check_result_path(named, inputs);
   if (kind_of(study).run.confirms) check_files_beside(path, inputs);
-  expect_threads(threads);  // before there is a checkpoint, even of nothing
+  start_threads(threads);  // before there is a checkpoint, even of nothing
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   SelectedPoses poses = select_poses(study.poses, *model);

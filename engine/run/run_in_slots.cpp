@@ -2,10 +2,13 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -78,6 +81,18 @@ class Task {
 
 }  // namespace handover
 
+/// oneTBB with so many threads.
+struct Pool {
+  explicit Pool(std::size_t threads)
+      : limit(tbb::global_control::max_allowed_parallelism, threads),
+        stack(tbb::global_control::thread_stack_size, kThreadStackBytes),
+        arena(static_cast<int>(threads)) {}
+
+  tbb::global_control limit;
+  tbb::global_control stack;
+  tbb::task_arena arena;
+};
+
 }  // namespace
 
 std::size_t resolved_threads(std::size_t threads) {
@@ -86,14 +101,29 @@ std::size_t resolved_threads(std::size_t threads) {
 
 std::size_t pool_slots(const RunOptions& options) { return 4 * resolved_threads(options.threads); }
 
+void start_threads(std::size_t threads) {
+  constexpr std::chrono::milliseconds kLongest{20};
+  static std::atomic<std::size_t> started{1};
+  if (threads <= started) return;
+  expect_threads(threads);
+  Pool pool(threads);
+  std::atomic<std::size_t> here{0};
+  const auto end = std::chrono::steady_clock::now() + kLongest;
+  const handover::Task meet([&](std::size_t) {
+    ++here;
+    while (here < threads && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  });
+  const handover::Waiting for_all;
+  pool.arena.execute([&] { tbb::parallel_for(std::size_t{0}, threads, meet, tbb::simple_partitioner()); });
+  started = threads;
+}
+
 void run_in_slots(const TicketSource& source, const RunOptions& options, const std::function<SlotJob()>& make_work,
                   const SlotJob& finish) {
   const handover::Block block;
   const std::size_t threads = resolved_threads(options.threads);
-  expect_threads(threads);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  const tbb::global_control stack(tbb::global_control::thread_stack_size, kThreadStackBytes);
-  tbb::task_arena arena(static_cast<int>(threads));
+  start_threads(threads);
+  Pool pool(threads);
   // Called where it is: a copy in memory of oneTBB would be one more thing that goes from thread to thread there.
   tbb::enumerable_thread_specific<SlotJob> works([&make_work] { return make_work(); });
   const handover::Task start([&](tbb::flow_control& control) -> Ticket {
@@ -107,7 +137,7 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
   });
   const handover::Task collect([&](Ticket ticket) { finish(ticket.n, ticket.slot); });
   const handover::Waiting for_all;
-  arena.execute([&] {
+  pool.arena.execute([&] {
     tbb::parallel_pipeline(pool_slots(options),
                            tbb::make_filter<void, Ticket>(tbb::filter_mode::serial_in_order, start) &
                                tbb::make_filter<Ticket, Ticket>(tbb::filter_mode::parallel, work) &

@@ -43,4 +43,9 @@ struct RunOptions {
 /// Number of threads that RunOptions::threads stands for.
 std::size_t resolved_threads(std::size_t threads);
 
+/// Starts so many threads of the pool, unless it has them. Whoever may lose something asks for them first, and while
+/// there is memory: oneTBB ends the whole program when it cannot start one. Throws FileError where this process cannot
+/// have so many.
+void start_threads(std::size_t threads);
+
 }  // namespace poesy

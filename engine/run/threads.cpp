@@ -1,16 +1,11 @@
 #include "engine/run/threads.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 #include <pthread.h>
 
 #include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <string>
 #include <system_error>
-#include <thread>
 #include <vector>
 
 #include "engine/base/address_space.h"
@@ -18,8 +13,6 @@
 
 namespace poesy {
 namespace {
-
-namespace tbb = oneapi::tbb;
 
 /// Threads that wait for the end of this object.
 class WaitingThreads {
@@ -71,34 +64,14 @@ int problem_of(std::size_t threads) {
   return has_address_space(kRoom + threads * kRoomOfThread) ? 0 : ENOMEM;
 }
 
-/// Has oneTBB start its threads now, while there is memory for them, which a study may need later.
-void start_workers(std::size_t threads) {
-  constexpr std::chrono::milliseconds kLongest{20};
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  const tbb::global_control stack(tbb::global_control::thread_stack_size, kThreadStackBytes);
-  std::atomic<std::size_t> here{0};
-  const auto end = std::chrono::steady_clock::now() + kLongest;
-  const auto meet = [&](std::size_t) {
-    ++here;
-    while (here < threads && std::chrono::steady_clock::now() < end) std::this_thread::yield();
-  };
-  tbb::task_arena(static_cast<int>(threads)).execute([&] {
-    tbb::parallel_for(std::size_t{0}, threads, meet, tbb::simple_partitioner());
-  });
-}
-
 }  // namespace
 
 void expect_threads(std::size_t threads) {
-  static std::atomic<std::size_t> started{1};
-  if (threads <= started) return;
   if (const int problem = problem_of(threads); problem != 0) {
     throw FileError(
         "", std::to_string(threads) + " threads cannot be started (" + std::generic_category().message(problem) + ")",
         "give fewer with --threads, or raise the limits on processes and memory (ulimit -u, ulimit -v)");
   }
-  start_workers(threads);
-  started = threads;
 }
 
 }  // namespace poesy
