@@ -93,6 +93,24 @@ struct Pool {
   tbb::task_arena arena;
 };
 
+/// Has oneTBB start its threads now, while there is memory for them: it waits until all have met, but not long.
+#ifdef POESY_THREAD_SANITIZER
+// The sanitizer does not see what orders the tasks of parallel_for, whose nodes are on this thread's stack.
+void start_workers(std::size_t /*threads*/) {}
+#else
+void start_workers(std::size_t threads) {
+  constexpr std::chrono::milliseconds kLongest{20};
+  Pool pool(threads);
+  std::atomic<std::size_t> here{0};
+  const auto end = std::chrono::steady_clock::now() + kLongest;
+  const auto meet = [&](std::size_t) {
+    ++here;
+    while (here < threads && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  };
+  pool.arena.execute([&] { tbb::parallel_for(std::size_t{0}, threads, meet, tbb::simple_partitioner()); });
+}
+#endif
+
 }  // namespace
 
 std::size_t resolved_threads(std::size_t threads) {
@@ -102,19 +120,10 @@ std::size_t resolved_threads(std::size_t threads) {
 std::size_t pool_slots(const RunOptions& options) { return 4 * resolved_threads(options.threads); }
 
 void start_threads(std::size_t threads) {
-  constexpr std::chrono::milliseconds kLongest{20};
   static std::atomic<std::size_t> started{1};
   if (threads <= started) return;
   expect_threads(threads);
-  Pool pool(threads);
-  std::atomic<std::size_t> here{0};
-  const auto end = std::chrono::steady_clock::now() + kLongest;
-  const handover::Task meet([&](std::size_t) {
-    ++here;
-    while (here < threads && std::chrono::steady_clock::now() < end) std::this_thread::yield();
-  });
-  const handover::Waiting for_all;
-  pool.arena.execute([&] { tbb::parallel_for(std::size_t{0}, threads, meet, tbb::simple_partitioner()); });
+  start_workers(threads);
   started = threads;
 }
 
