@@ -1,7 +1,6 @@
 #include "engine/study/study_file.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,15 +8,14 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
+#include "engine/schema/toml_text.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
 
-constexpr std::size_t kMostBytes = 1 << 20;
-/// Bounds the depth to which dotted keys nest tables, which the TOML library frees by recursion.
-constexpr std::size_t kLongestLine = 16384;
+constexpr std::size_t kMostStudyBytes = 1 << 20;
 
 /// Whether a file, not a pipe, has the signature of HDF5.
 bool begins_like_hdf5(const std::string& path) {
@@ -27,34 +25,6 @@ bool begins_like_hdf5(const std::string& path) {
   std::string begin(kSignature.size(), '\0');
   std::ifstream file(path, std::ios::binary);
   return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == kSignature;
-}
-
-void check_lines(const std::string& text, const std::string& path) {
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    throw InputError({path, 1, 1}, "the study is empty", "'poesy template MODEL' writes one to start from");
-  }
-  std::size_t line = 1;
-  for (std::size_t begin = 0; begin < text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    if (end - begin > kLongestLine) {
-      throw InputError({path, line, 1}, "the line is longer than " + std::to_string(kLongestLine) + " bytes",
-                       "break it into several lines");
-    }
-    begin = end + 1;
-  }
-}
-
-toml::table parse(const std::string& text, const std::string& path) {
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    std::string reason(error.description());
-    constexpr std::string_view kPrefix = "Error while ";
-    if (reason.starts_with(kPrefix)) reason.erase(0, kPrefix.size());
-    throw InputError({path, error.source().begin.line, error.source().begin.column},
-                     "this is not TOML: " + printable(reason, 120),
-                     "correct this line; 'poesy template MODEL' shows a complete study");
-  }
 }
 
 /// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.
@@ -156,13 +126,15 @@ Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, 
   if (begins_like_hdf5(path)) {
     throw InputError({path}, "is an HDF5 file, such as a result of poesy, and no study", "give its study, a TOML file");
   }
-  return study_of_text(read_text(path, "study", kMostBytes), path, catalog, use, kinds);
+  return study_of_text(read_text(path, "study", kMostStudyBytes), path, catalog, use, kinds);
 }
 
 Study study_of_text(const std::string& text, const std::string& path, const Catalog& catalog, StudyUse use,
                     const StudyKinds& kinds, const std::string* mechanism_text) {
-  check_lines(text, path);
-  const toml::table table = parse(text, path);
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw InputError({path, 1, 1}, "the study is empty", "'poesy template MODEL' writes one to start from");
+  }
+  const toml::table table = parse_toml(text, path, "correct this line; 'poesy template MODEL' shows a complete study");
   const StudySection root(table, "", {path, 1, 1}, kinds.tables);
   Study study = study_from({root, catalog, kinds, use, mechanism_text});
   const std::unique_ptr<Model> model = build_model(study.mechanism);

@@ -1,17 +1,15 @@
 #include "models/file/mechanism_file.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <tuple>
 
 #include "engine/base/text.h"
+#include "engine/schema/toml_text.h"
 #include "models/file/mechanism.h"
 
 namespace poesy::file {
 namespace {
 
-constexpr std::size_t kLongestLine = 16384;  ///< bytes; bounds the depth to which dotted keys nest tables
 constexpr std::int64_t kMostCopies = 100;
 constexpr std::array<std::string_view, 6> kCoordinates{"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
@@ -550,25 +548,6 @@ StudyTable of_names(std::vector<std::string_view> paths, std::string_view name, 
                     .meaning = meaning}}};
 }
 
-toml::table parse(const std::string& text, const std::string& path) {
-  std::size_t line = 1;
-  for (std::size_t begin = 0; begin < text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    if (end - begin > kLongestLine) {
-      throw InputError({path, line, 1}, "the line is longer than " + std::to_string(kLongestLine) + " bytes",
-                       "break it into several lines");
-    }
-    begin = end + 1;
-  }
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    throw InputError({path, error.source().begin.line, error.source().begin.column},
-                     "this is not TOML: " + printable(error.description(), 120),
-                     "correct this line; names of parameters and expressions stand in quotes");
-  }
-}
-
 }  // namespace
 
 std::string_view name(JointKind kind) {
@@ -616,7 +595,8 @@ std::vector<std::size_t> frame_counts(const MechanismFile& file) {
 }
 
 MechanismFile read_mechanism_file(const std::string& text, const std::string& path) {
-  const toml::table table = parse(text, path);
+  const toml::table table =
+      parse_toml(text, path, "correct this line; names of parameters and expressions stand in quotes");
   const StudySection root(table, "", {path, 1, 1}, mechanism_file_tables());
   MechanismFile file;
   file.path = path;

@@ -1,1 +1,2 @@
-poesy_test(schema_test LABELS unit SOURCES engine/schema/keys_test.cpp LINKS poesy_schema)
+poesy_test(schema_test LABELS unit SOURCES engine/schema/keys_test.cpp engine/schema/toml_text_test.cpp
+           LINKS poesy_schema)

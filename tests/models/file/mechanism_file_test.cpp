@@ -226,7 +226,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:28:53: sets." + std::string(49, 's') + " '" + std::string(49, 's') +
                "' is too long; write at most 48 letters"},
           {"frames = \"all\"", "frames = \"all\"\n[sets",
-           "m.toml:27:6: this is not TOML: Error while parsing table header: expected ']', saw '\\n'; correct this "
+           "m.toml:27:6: this is not TOML: parsing table header: expected ']', saw '\\n'; correct this "
            "line; names of parameters and expressions stand in quotes"},
           {"[\"rx\", \"ry\", \"z\"]\nworkspace   = { ",
            "[\"rx\", \"ry\", \"z\", \"x\"]\nworkspace   = { x = [0, \"1 mm\"], ",
@@ -285,7 +285,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
            "m.toml:40:8: error[2].name 'l_2' makes a second error 'l_2'; give it a name of its own"},
           {"[\"l_*\"]", "[\"m_*\"]", "m.toml:47:12: sets.lengths[0] 'm_*' fits no error; they have names like l_1"},
           {"[[error]]", "[error]",
-           "m.toml:33:1: this is not TOML: Error while parsing table header: cannot redefine existing table 'error' as "
+           "m.toml:33:1: this is not TOML: parsing table header: cannot redefine existing table 'error' as "
            "array-of-tables; correct this line; names of parameters and expressions stand in quotes"},
           {"actuated = true", "actuated = false",
            "m.toml:24:3: the drives do not hold the platform, which has 3 freedoms and 0 drives: joint 'C' of limb 1 "

@@ -1,0 +1,100 @@
+#include "engine/schema/toml_text.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+
+namespace poesy {
+namespace {
+
+/// Bounds the depth to which dotted keys nest tables, which the TOML library frees by recursion.
+constexpr std::size_t kLongestLine = 16384;
+
+/// The lines of a text, which must outlive them.
+std::vector<std::string_view> lines_of(std::string_view text, const std::string& path) {
+  std::vector<std::string_view> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    if (lines.back().size() > kLongestLine) {
+      throw InputError({path, lines.size(), 1}, "the line is longer than " + std::to_string(kLongestLine) + " bytes",
+                       "break it into several lines");
+    }
+    begin = end + 1;
+  }
+  return lines;
+}
+
+toml::table parsed(const std::string& text, const std::string& path, std::string_view remedy) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    std::string_view reason = error.description();
+    constexpr std::string_view kPrefix = "Error while ";
+    if (reason.starts_with(kPrefix)) reason.remove_prefix(kPrefix.size());
+    throw InputError({path, error.source().begin.line, error.source().begin.column},
+                     "this is not TOML: " + printable(reason, 120), remedy);
+  }
+}
+
+/// A number as it was written. lines: of the file; begin: where the number stands, its column in characters.
+std::string_view written_number(const std::vector<std::string_view>& lines, const toml::source_position& begin) {
+  if (begin.line == 0 || begin.line > lines.size()) return {};
+  std::string_view rest = lines[begin.line - 1];
+  for (std::size_t column = 1; column < begin.column && !rest.empty(); ++column) {
+    rest.remove_prefix(std::max<std::size_t>(character_length(rest), 1));
+  }
+  return rest.substr(0, rest.find_first_not_of("0123456789+-._eE"));
+}
+
+/// Whether a digit before the exponent is not 0.
+bool has_digits(std::string_view number) {
+  return number.substr(0, number.find_first_of("eE")).find_first_of("123456789") != std::string_view::npos;
+}
+
+/// Throws for a number that the TOML library took for 0 because it is too small.
+void check_zero(const toml::node& node, std::string_view key, const std::vector<std::string_view>& lines,
+                const std::string& path) {
+  const toml::source_position& begin = node.source().begin;
+  const std::string_view written = written_number(lines, begin);
+  if (!has_digits(written)) return;
+  throw InputError({path, begin.line, begin.column},
+                   printable(key) + " is " + printable(written) + ", which is too small to be told from 0",
+                   "write 0, or a number from 1e-307 on");
+}
+
+/// A value of the file and the key under which it stands; elements of a list have the key of the list.
+struct KeyedNode {
+  const toml::node* node;
+  std::string_view key;
+};
+
+/// Without recursion: tables may be nested as deep as a line is long.
+void check_numbers(const toml::table& table, const std::vector<std::string_view>& lines, const std::string& path) {
+  std::vector<KeyedNode> open{{&table, ""}};
+  while (!open.empty()) {
+    const KeyedNode at = open.back();
+    open.pop_back();
+    if (const toml::table* inner = at.node->as_table()) {
+      for (const auto& [key, value] : *inner) open.push_back({&value, key.str()});
+    } else if (const toml::array* list = at.node->as_array()) {
+      for (const toml::node& element : *list) open.push_back({&element, at.key});
+    } else if (at.node->is_floating_point() && at.node->as_floating_point()->get() == 0.0) {
+      check_zero(*at.node, at.key, lines, path);
+    }
+  }
+}
+
+}  // namespace
+
+toml::table parse_toml(const std::string& text, const std::string& path, std::string_view remedy) {
+  const std::vector<std::string_view> lines = lines_of(text, path);
+  toml::table table = parsed(text, path, remedy);
+  check_numbers(table, lines, path);
+  return table;
+}
+
+}  // namespace poesy

@@ -1,0 +1,60 @@
+#include "engine/schema/toml_text.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/input_error.h"
+
+namespace poesy {
+namespace {
+
+toml::table parsed(const std::string& text) { return parse_toml(text, "f.toml", "correct it"); }
+
+/// The mistake stands at '^'.
+void expect_refused(std::string_view marked, const std::vector<std::string>& words) {
+  const test::Marked wrong(marked);
+  test::expect_input_error([&] { parsed(wrong.text); }, {"f.toml", wrong.line, wrong.column}, words);
+}
+
+TEST(ParseToml, RefusesNumbersThatAreTooSmallToBeToldFromZero) {
+  expect_refused("[solver]\nshare = ^1e-999\n", {"share is 1e-999, which is too small to be told from 0"});
+  expect_refused("share = ^-1_0.5E-4_00 # 0", {"share is -1_0.5E-4_00,"});
+  expect_refused("a.b = { c = 0.0, share = ^+3e-400}", {"share is +3e-400,"});
+  expect_refused("list = [0.0,\r\n  1.5, [^7e-330]]\r\n", {"list is 7e-330,"});
+  expect_refused("share = ^0." + std::string(90, '0') + "1e-250", {"share is 0.000"});
+}
+
+TEST(ParseToml, CountsColumnsInCharacters) {
+  EXPECT_EQ(test::refusal_of([] { parsed("a = { \"\xC3\xA4\" = \"\xE2\x82\xAC\", b = 1e-999 }"); }),
+            "f.toml:1:22: b is 1e-999, which is too small to be told from 0; write 0, or a number from 1e-307 on");
+}
+
+TEST(ParseToml, TakesEveryZeroAndTheSmallestNumbers) {
+  for (const std::string zero : {"0.0", "-0.0", "0e5", "0.000_0e-12", "+0e-999", "1e-307", "5e-324"}) {
+    EXPECT_TRUE(parsed("share = " + zero)["share"].is_floating_point()) << zero;
+  }
+  EXPECT_EQ(parsed("text = \"1e-999\" # 1e-999")["text"].value<std::string>(), "1e-999");
+}
+
+TEST(ParseToml, RefusesNumbersThatAreTooLarge) { expect_refused("share = 1e999^", {"1e999"}); }
+
+TEST(ParseToml, RefusesLongLinesButNotManyLines) {
+  expect_refused("a = 1\n^#" + std::string(16384, ' '), {"longer than 16384 bytes"});
+  EXPECT_EQ(parsed("a = 1\n#" + std::string(16383, ' ') + std::string(100000, '\n') + "b = 2").size(), 2u);
+}
+
+/// Tables as deep as a line can nest them, once in a header and once in a key.
+TEST(ParseToml, LooksIntoTheDeepestTables) {
+  std::string dots = "a";
+  for (int k = 0; k < 8180; ++k) dots += ".a";
+  expect_refused("[" + dots + "]\n" + dots + " = ^1e-999", {"a is 1e-999"});
+}
+
+TEST(ParseToml, SaysWhatIsNotToml) {
+  EXPECT_EQ(test::refusal_of([] { parsed("[a\n"); }),
+            "f.toml:1:3: this is not TOML: parsing table header: expected ']', saw '\\n'; correct it");
+}
+
+}  // namespace
+}  // namespace poesy
