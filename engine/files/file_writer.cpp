@@ -254,7 +254,8 @@ std::string FileWriter::missing_space() const {
   struct stat file {};
   constexpr std::uintmax_t kStatBlock = 512;  // the unit of st_blocks
   if (::fstatvfs(descriptor_, &disk) == 0 && ::fstat(descriptor_, &file) == 0) {
-    const std::uintmax_t free = std::uintmax_t{disk.f_bavail} * disk.f_frsize + file.st_blocks * kStatBlock;
+    const std::uintmax_t taken = static_cast<std::uintmax_t>(file.st_blocks) * kStatBlock;
+    const std::uintmax_t free = std::uintmax_t{disk.f_bavail} * disk.f_frsize + taken;
     text += (text.empty() ? "; " : ", ") + std::to_string(free) + " are free";
   }
   return text;

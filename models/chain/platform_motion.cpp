@@ -1,6 +1,11 @@
 #include "models/chain/platform_motion.h"
 
 namespace poesy::chain {
+namespace {
+
+using Vector3 = lie::Vector3<double>;
+
+}  // namespace
 
 lie::Screw<double> mean_motion(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
                                std::span<const double> displacements, const lie::Transform<double>& nominal) {
@@ -17,7 +22,6 @@ lie::Screw<double> mean_motion(const ParallelChain& chain, std::span<const lie::
 }
 
 std::vector<double> platform_displacement(const lie::Screw<double>& xi, const PlatformPoints& points, bool is_linear) {
-  using Vector3 = lie::Vector3<double>;
   const Vector3 theta = xi.head<3>();
   const auto moved = [&](const Vector3& point) -> Vector3 {
     const Vector3 linear = theta.cross(point) + xi.tail<3>();

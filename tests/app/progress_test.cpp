@@ -67,7 +67,7 @@ TEST(PlainLine, WritesRatesShort) {
 
 TEST(LiveLine, FitsAnyWidth) {
   for (std::size_t width = 0; width <= 250; ++width) {
-    for (const std::uint64_t failed : {0, 12, 400000}) {
+    for (const std::uint64_t failed : {0U, 12U, 400000U}) {
       ProgressFacts any = facts();
       any.progress.not_converged = failed;
       EXPECT_LE(live_line(any, width).size(), width);

@@ -46,8 +46,8 @@ std::size_t cell(double uniform, std::size_t cells) {
 
 TEST(ScrambledSobol, EveryPointIsUniformOverReplicates) {
   const ScrambledSobol points(40, 11);
-  for (const std::size_t point : {0, 1, 77}) {
-    for (const std::size_t dimension : {0, 39}) {
+  for (const std::size_t point : {0U, 1U, 77U}) {
+    for (const std::size_t dimension : {0U, 39U}) {
       std::vector<double> counts(256, 0.0);
       for (std::size_t r = 0; r < 30000; ++r) counts[cell(scrambled(points, dimension, r, point), 256)] += 1.0;
       expect_even(counts);

@@ -16,8 +16,8 @@ std::vector<double> column_of(const LatinHypercube& design, const DesignColumn& 
 }
 
 TEST(LatinHypercube, HasOneSampleInEveryStratum) {
-  for (const std::size_t n : {1, 2, 3, 4, 5, 7, 8, 9, 100, 1000, 4096, 4097, 100003}) {
-    for (const std::size_t dimension : {0, 1, 599}) {
+  for (const std::size_t n : {1U, 2U, 3U, 4U, 5U, 7U, 8U, 9U, 100U, 1000U, 4096U, 4097U, 100003U}) {
+    for (const std::size_t dimension : {0U, 1U, 599U}) {
       std::vector<int> seen(n, 0);
       for (const double u : column_of(LatinHypercube(n, 3), {.dimension = dimension, .replicate = 2}, n)) {
         ASSERT_GT(u, 0.0);

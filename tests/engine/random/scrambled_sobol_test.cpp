@@ -42,7 +42,7 @@ TEST(ScrambledSobol, KeepsTheDigitsThatAnyTwoPointsShare) {
   constexpr std::size_t kPoints = 600;
   const ScrambledSobol points(8, 3);
   const auto before = plain(8, kPoints);
-  for (const std::size_t dimension : {0, 1, 2, 7}) {
+  for (const std::size_t dimension : {0U, 1U, 2U, 7U}) {
     const auto after = scrambled(points, {.dimension = dimension, .replicate = 5}, kPoints);
     for (std::size_t p = 0; p < kPoints; ++p) {
       for (std::size_t q = 0; q < p; ++q) {
@@ -56,8 +56,8 @@ TEST(ScrambledSobol, KeepsTheDigitsThatAnyTwoPointsShare) {
 TEST(ScrambledSobol, HasOnePointInEveryStratumOfEachAxis) {
   constexpr std::size_t kDimensions = 600;
   const ScrambledSobol points(kDimensions, 1);
-  for (const std::size_t dimension : {0, 1, 50, 299, 300, 598, 599}) {
-    for (const std::size_t count : {1, 2, 64, 4096}) {
+  for (const std::size_t dimension : {0U, 1U, 50U, 299U, 300U, 598U, 599U}) {
+    for (const std::size_t count : {1U, 2U, 64U, 4096U}) {
       std::vector<int> seen(count, 0);
       for (const double u : scrambled(points, {.dimension = dimension}, count)) {
         ++seen[static_cast<std::size_t>(u * static_cast<double>(count))];

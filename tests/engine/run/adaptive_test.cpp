@@ -213,7 +213,7 @@ class Adaptive : public testing::TestWithParam<Case> {
 
 TEST_P(Adaptive, SameBitsOnAnyNumberOfThreads) {
   const Bits expected = run(study_, on_threads(1)).value();
-  for (const std::size_t threads : {2, 3, 7}) EXPECT_EQ(run(study_, on_threads(threads)), expected) << threads;
+  for (const std::size_t threads : {2U, 3U, 7U}) EXPECT_EQ(run(study_, on_threads(threads)), expected) << threads;
 }
 
 TEST_P(Adaptive, StoppedItGoesOnToTheSameBits) {

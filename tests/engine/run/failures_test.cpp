@@ -122,7 +122,7 @@ TEST_P(Failures, AreTheFirstOfEachCellForAnyThreads) {
   const Prepared prepared(study_of(GetParam(), 3300, 3));
   const std::vector<Failure> expected = expected_failures(prepared);
   ASSERT_GT(expected.size(), 20U);
-  for (const std::size_t threads : {1, 2, 3}) EXPECT_EQ(run(prepared, {threads, {}, {}}), expected);
+  for (const std::size_t threads : {1U, 2U, 3U}) EXPECT_EQ(run(prepared, {threads, {}, {}}), expected);
 }
 
 TEST_P(Failures, AreTheFirstThousandInAll) {

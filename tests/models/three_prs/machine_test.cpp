@@ -214,7 +214,7 @@ TEST(Slides, SquarenessMovesAcrossInProportionToY) {
     const double y = pose[4];
     const Solved linear = solve(*machine("first-order"), pose, errors);
     const Solved exact = solve(*machine("exact"), pose, errors);
-    for (const std::size_t point : {3, 6}) {
+    for (const std::size_t point : {3U, 6U}) {
       EXPECT_NEAR(linear.responses[point], -squareness * y, 1e-18);
       EXPECT_EQ(linear.responses[point + 1], 0.0);
       EXPECT_NEAR(exact.responses[point], -std::sin(squareness) * y, 1e-15);

@@ -22,7 +22,7 @@ std::size_t place_of(const std::string& short_name) {
   const json& names = oracle().at("names");
   const std::string source = short_name.substr(0, short_name.size() - 1);
   const auto found = std::find(names.begin(), names.end(), source);
-  return (short_name.back() - '1') * kSources + static_cast<std::size_t>(found - names.begin());
+  return static_cast<std::size_t>(short_name.back() - '1') * kSources + static_cast<std::size_t>(found - names.begin());
 }
 
 void set(std::vector<double>& errors, std::string_view group, std::size_t limb, double value) {
@@ -284,7 +284,7 @@ TEST(Model, WorkspaceIsReachableAndRegular) {
         EXPECT_EQ(model->unreachable(pose), std::nullopt);
         EXPECT_LT(model->condition(pose), 50.0);
         const std::vector<double> q = model->joint_displacements(pose);
-        for (const std::size_t k : {0, 2, 4}) lowest = std::min(lowest, q[k]), highest = std::max(highest, q[k]);
+        for (const std::size_t k : {0U, 2U, 4U}) lowest = std::min(lowest, q[k]), highest = std::max(highest, q[k]);
       }
     }
   }

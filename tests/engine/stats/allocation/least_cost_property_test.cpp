@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,6 @@ using testing::random_programme;
 using testing::RandomProgramme;
 
 constexpr std::uint64_t kProgrammes = 1000;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 long double plain_size(long double tolerance, Stacking stacking) {
   return stacking == Stacking::root_sum_square ? tolerance * tolerance : tolerance;
