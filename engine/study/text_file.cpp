@@ -1,10 +1,13 @@
 #include "engine/study/text_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <system_error>
 
@@ -21,34 +24,59 @@ namespace {
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
+using File = std::unique_ptr<std::FILE, Close>;
 
 constexpr std::size_t kMostCsvBytes = std::size_t{1} << 31;
 
-}  // namespace
-
-std::string_view other_than_file(const std::string& path) {
-  std::error_code ignored;
-  switch (std::filesystem::status(path, ignored).type()) {
-    case std::filesystem::file_type::directory:
+/// What a mode says; empty for a plain file.
+std::string_view other_of(mode_t mode) {
+  switch (mode & S_IFMT) {
+    case S_IFDIR:
       return "a folder";
-    case std::filesystem::file_type::fifo:
+    case S_IFIFO:
       return "a FIFO";
-    case std::filesystem::file_type::character:
-    case std::filesystem::file_type::block:
+    case S_IFCHR:
+    case S_IFBLK:
       return "a device";
-    case std::filesystem::file_type::socket:
+    case S_IFSOCK:
       return "a socket";
     default:
       return {};
   }
 }
 
-std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes) {
-  if (const std::string_view other = other_than_file(path); !other.empty()) {
-    throw InputError({path}, "is " + std::string(other) + ", not a " + std::string(what), "name a file");
+void expect_plain(const std::string& path, std::string_view what, std::string_view other) {
+  if (other.empty()) return;
+  throw InputError({path}, "is " + std::string(other) + ", not a " + std::string(what), "name a file");
+}
+
+/// Opens without waiting, and looks at what was opened: the path may have become another file's. Reading does not wait
+/// either, as for the next message of /proc/kmsg, which looks like a plain file.
+File open_plain(const std::string& path, std::string_view what) {
+  expect_plain(path, what, other_than_file(path));
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (descriptor < 0) unreadable(path, errno);
+  File file(::fdopen(descriptor, "rb"));
+  if (!file) {
+    const int reason = errno;
+    ::close(descriptor);
+    unreadable(path, reason);
   }
-  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
-  if (!file) unreadable(path, errno);
+  struct stat opened {};
+  if (::fstat(descriptor, &opened) != 0) unreadable(path, errno);
+  expect_plain(path, what, other_of(opened.st_mode));
+  return file;
+}
+
+}  // namespace
+
+std::string_view other_than_file(const std::string& path) {
+  struct stat there {};
+  return ::stat(path.c_str(), &there) == 0 ? other_of(there.st_mode) : std::string_view();
+}
+
+std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes) {
+  const File file = open_plain(path, what);
   std::string text;
   std::array<char, 65536> part{};
   while (const std::size_t bytes = std::fread(part.data(), 1, part.size(), file.get())) {
