@@ -92,6 +92,7 @@ int flushed(int code) {
 
 int main(int argc, char** argv) {
   poesy::save_address_space();
+  poesy::return_large_lists();
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error of its write, as is a full disk
   return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

@@ -34,4 +34,11 @@ void save_address_space() {
 #endif
 }
 
+void return_large_lists() {
+#ifdef M_MMAP_THRESHOLD
+  constexpr int kLarge = 4 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, kLarge);
+#endif
+}
+
 }  // namespace poesy

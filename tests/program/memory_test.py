@@ -25,7 +25,10 @@ BLOCKS = 'limbs = "independent"\ncomponents = "independent"\n'
 SIZES = "linear = [" + ", ".join(f'"{k + 1} um"' for k in range(20)) + "]\n"
 
 STUDIES = {
-    "sensitivity": HEAD.format(model="2upr-rpu", fidelity="", poses=1600, kind="sensitivity") + 'factors = "all"\nsamples = 2\n',
+    "sensitivity": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=5000, kind="sensitivity")
+    + 'factors = "all"\nsamples = 2\n',
+    "two fidelities": HEAD.format(model="3-prs", fidelity='fidelity = "both"', poses=5000, kind="sensitivity")
+    + 'factors = "all"\nsamples = 2\n',
     "cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=24000, kind="evaluate") + CASES,
     "coupling": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=900, kind="coupling") + BLOCKS + SIZES,
     "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=25000, kind="monte-carlo")
@@ -33,7 +36,7 @@ STUDIES = {
     "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1000, kind="monte-carlo")
     + 'draws = "per machine"\nfactors = "all"\nsamples = 8000\nlimits.position = "0.1 mm"\n',
 }
-MOST_TIMES_THE_FILE = {"cases": 1.5, "coupling": 1.5}
+MOST_TIMES_THE_FILE = {"sensitivity": 1.5, "two fidelities": 2.2, "cases": 1.5, "coupling": 1.5}
 
 
 def peak_of(*arguments, cwd):

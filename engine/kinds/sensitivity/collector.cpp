@@ -133,60 +133,69 @@ void HistoryCollector::read(ByteReader& from, std::span<const std::size_t> units
   }
 }
 
-SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level)
-    : plan_(&plan), responses_(responses), whole_(plan.cells()), history_(plan, responses, conf_level) {
-  if (plan.samples() % Plan::kUnitSamples != 0) parts_.resize(plan.cells());
-}
+SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level,
+                                           const Shard& shard)
+    : plan_(&plan), responses_(responses), cells_(shard.of(plan.cells())), history_(plan, responses, conf_level) {}
 
 void SensitivityCollector::add(const WorkUnit& unit, const CellUnit& found) {
   const std::size_t cell = cell_of(unit);
-  POESY_EXPECTS(unit.first.value == units_done(cell) * Plan::kUnitSamples);
-  UnitStats& stats = (unit.count == Plan::kUnitSamples ? whole_ : parts_)[cell];
-  stats.merge(found);
-  history_.add(unit, found.within, stats);
+  POESY_EXPECTS(cells_.holds(cell) && unit.first.value == units_done(cell) * Plan::kUnitSamples);
+  CellStats& stats = unit.count == Plan::kUnitSamples ? whole_ : parts_;
+  merge(stats, cell, found);
+  history_.add(unit, found.within, stats.at(cell - cells_.first));
+}
+
+void SensitivityCollector::merge(CellStats& stats, std::size_t cell, const UnitStats& unit) {
+  if (stats.size() == 0) stats = CellStats(responses_, cells_.end - cells_.first);
+  stats.merge(cell - cells_.first, unit);
+}
+
+std::uint64_t SensitivityCollector::samples_in(const CellStats& stats, std::size_t cell) const {
+  return stats.size() > 0 && cells_.holds(cell) ? stats.solves[cell - cells_.first].total() : 0;
 }
 
 std::size_t SensitivityCollector::units_done(std::size_t cell) const {
-  return static_cast<std::size_t>(whole_[cell].solves.total() / Plan::kUnitSamples) + (has_part(cell) ? 1 : 0);
+  return static_cast<std::size_t>(whole_samples(cell) / Plan::kUnitSamples) + (part_samples(cell) > 0 ? 1 : 0);
 }
 
 SolveCounts SensitivityCollector::total() const {
-  SolveCounts sum;
-  for (const UnitStats& cell : whole_) sum.merge(cell.solves);
-  for (const UnitStats& part : parts_) sum.merge(part.solves);
+  SolveCounts sum = total_of(whole_.solves);
+  sum.merge(total_of(parts_.solves));
   return sum;
 }
 
-std::vector<UnitStats> SensitivityCollector::cells_of(std::size_t slot) const {
+CellStats SensitivityCollector::cells_of(std::size_t slot) const {
   const std::size_t poses = plan_->poses().size();
-  std::vector<UnitStats> cells;
-  for (std::size_t cell = slot * poses; cell < (slot + 1) * poses; ++cell) {
-    cells.push_back(whole_[cell]);
-    if (has_part(cell)) cells.back().merge(parts_[cell]);
-  }
+  const NumberRange range{slot * poses, (slot + 1) * poses};
+  POESY_EXPECTS(cells_.first == 0 && range.end <= cells_.end);
+  if (whole_.size() == 0) return parts_.part(range);
+  CellStats cells = whole_.part(range);
+  if (parts_.size() > 0) cells.merge(parts_.part(range));
   return cells;
 }
 
-std::vector<UnitStats> SensitivityCollector::cells() && {
-  for (std::size_t cell = 0; cell < whole_.size(); ++cell) {
-    if (has_part(cell)) whole_[cell].merge(parts_[cell]);
-  }
-  return std::move(whole_);
+CellStats SensitivityCollector::cells() && {
+  POESY_EXPECTS(cells_.first == 0 && cells_.end == plan_->cells());
+  if (whole_.size() == 0) return std::exchange(parts_, {});
+  if (parts_.size() > 0) whole_.merge(std::exchange(parts_, {}));
+  return std::exchange(whole_, {});
 }
 
 void SensitivityCollector::write_state(ByteWriter& to) const {
   to.number(kKind);
   to.number(responses_);
-  to.number(whole_.size());
+  to.number(plan_->cells());
   to.number(plan_->samples());
-  for (std::size_t cell = 0; cell < whole_.size(); ++cell) {
-    const bool has_whole = whole_[cell].solves.total() > 0;
-    to.number((has_whole ? kWhole : 0) | (has_part(cell) ? kPart : 0));
-    if (has_whole) whole_[cell].write(to);
-    if (has_part(cell)) parts_[cell].write(to);
-  }
   std::vector<std::size_t> units;
-  for (std::size_t cell = 0; cell < whole_.size(); ++cell) units.push_back(units_done(cell));
+  units.reserve(plan_->cells());
+  for (std::size_t cell = 0; cell < plan_->cells(); ++cell) {
+    const bool has_whole = whole_samples(cell) > 0;
+    const bool has_part = part_samples(cell) > 0;
+    to.number((has_whole ? kWhole : 0) | (has_part ? kPart : 0));
+    if (has_whole) whole_.at(cell - cells_.first).write(to);
+    if (has_part) parts_.at(cell - cells_.first).write(to);
+    units.push_back(units_done(cell));
+  }
   history_.write(to, units);
 }
 
@@ -196,33 +205,36 @@ void SensitivityCollector::restore(std::span<const std::byte> state) {
 }
 
 void SensitivityCollector::restore_one(ByteReader& from) {
-  if (from.number() != kKind || from.number() != responses_ || from.number() != whole_.size()) {
+  if (from.number() != kKind || from.number() != responses_ || from.number() != plan_->cells()) {
     throw BytesError("is the state of another kind or size of study");
   }
   const auto samples = static_cast<std::size_t>(from.number_up_to(plan_->samples()));
   std::vector<std::size_t> units;
-  for (std::size_t cell = 0; cell < whole_.size(); ++cell) units.push_back(restore_cell(from, cell, samples));
+  for (std::size_t cell = 0; cell < plan_->cells(); ++cell) units.push_back(restore_cell(from, cell, samples));
   history_.read(from, units, samples);
 }
 
 std::size_t SensitivityCollector::restore_cell(ByteReader& from, std::size_t cell, std::size_t samples) {
   const std::uint64_t holds = from.number_up_to(kWhole | kPart);
   if (holds == 0) return 0;
+  if (!cells_.holds(cell)) throw BytesError("has a cell of another shard");
   if (units_done(cell) > 0) throw BytesError("has a cell twice");
+  std::uint64_t whole_solves = 0;
   if ((holds & kWhole) != 0) {
-    whole_[cell] = UnitStats::read(from, responses_, 0);
-    const std::uint64_t solves = whole_[cell].solves.total();
-    if (solves == 0 || solves % Plan::kUnitSamples != 0 || solves > samples) {
+    const UnitStats whole = UnitStats::read(from, responses_, 0);
+    whole_solves = whole.solves.total();
+    if (whole_solves == 0 || whole_solves % Plan::kUnitSamples != 0 || whole_solves > samples) {
       throw BytesError("has a cell that is no number of whole units");
     }
+    merge(whole_, cell, whole);
   }
-  if ((holds & kPart) == 0) return units_of(whole_[cell].solves.total());
-  UnitStats part = UnitStats::read(from, responses_, whole_[cell].solves.total());
+  if ((holds & kPart) == 0) return units_of(whole_solves);
+  const UnitStats part = UnitStats::read(from, responses_, whole_solves);
   const std::uint64_t solves = part.solves.total();
-  if (solves == 0 || solves >= Plan::kUnitSamples || whole_[cell].solves.total() + solves != samples) {
+  if (solves == 0 || solves >= Plan::kUnitSamples || whole_solves + solves != samples) {
     throw BytesError("has a last unit of the wrong size");
   }
-  if (samples == plan_->samples()) parts_[cell] = std::move(part);
+  if (samples == plan_->samples()) merge(parts_, cell, part);
   return units_of(samples);
 }
 

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
+#include "engine/kinds/sensitivity/cell_stats.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
+#include "engine/run/shard.h"
 #include "engine/stats/indices.h"
-#include "engine/stats/moments.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -64,8 +65,8 @@ class HistoryCollector {
 /// any unit of a study with more samples; all others are.
 class SensitivityCollector {
  public:
-  /// Refers to the plan.
-  SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level);
+  /// Of the cells that this shard of the plan has: no others are added. Refers to the plan.
+  SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level, const Shard& shard = Shard());
 
   /// Precondition: the unit after those done in its cell.
   void add(const WorkUnit& unit, const CellUnit& found);
@@ -74,10 +75,10 @@ class SensitivityCollector {
   std::size_t units_done(std::size_t cell) const;
   /// Over all that was added.
   SolveCounts total() const;
-  /// One slot at all poses, [M], from what was added.
-  std::vector<UnitStats> cells_of(std::size_t slot) const;
-  /// From what was added.
-  std::vector<UnitStats> cells() &&;
+  /// One slot at all poses, [M] cells, from what was added. Precondition: the shard has them all.
+  CellStats cells_of(std::size_t slot) const;
+  /// From what was added, [cells]. Precondition: likewise.
+  CellStats cells() &&;
   /// Of the indices, whose last are those of `end`. Precondition: all units were added, those of all cells; the study
   /// has a fixed number of samples.
   EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
@@ -90,15 +91,23 @@ class SensitivityCollector {
 
  private:
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
-  bool has_part(std::size_t cell) const { return !parts_.empty() && parts_[cell].solves.total() > 0; }
+  /// In the cell's units of full size; those of its smaller one.
+  /// @{
+  std::uint64_t whole_samples(std::size_t cell) const { return samples_in(whole_, cell); }
+  std::uint64_t part_samples(std::size_t cell) const { return samples_in(parts_, cell); }
+  /// @}
+  std::uint64_t samples_in(const CellStats& stats, std::size_t cell) const;
+  /// Makes room in `stats` when it has none.
+  void merge(CellStats& stats, std::size_t cell, const UnitStats& unit);
   void restore_one(ByteReader& from);
   /// Gives the cell's units in that state.
   std::size_t restore_cell(ByteReader& from, std::size_t cell, std::size_t samples);
 
   const Plan* plan_;
   std::size_t responses_;
-  std::vector<UnitStats> whole_;  ///< [cells] units of full size
-  std::vector<UnitStats> parts_;  ///< [cells] the last unit where it is smaller; empty when the plan has none such
+  NumberRange cells_;  ///< of the shard
+  CellStats whole_;    ///< [cells of the shard] units of full size; no cells before the first of them
+  CellStats parts_;    ///< [cells of the shard] the last unit where it is smaller; likewise
   HistoryCollector history_;
 };
 

@@ -18,10 +18,10 @@ void append(const Estimate& estimate, std::vector<double>& value, std::vector<do
   high.push_back(estimate.interval.high);
 }
 
-std::vector<LocalIndex> local_indices(std::span<const UnitStats> at_poses, std::size_t response, double sigma) {
+std::vector<LocalIndex> local_indices(std::span<const Moments> at_poses, double sigma) {
   std::vector<LocalIndex> indices;
   indices.reserve(at_poses.size());
-  for (const UnitStats& cell : at_poses) indices.push_back(local_index_with_error(cell.responses[response], sigma));
+  for (const Moments& moments : at_poses) indices.push_back(local_index_with_error(moments, sigma));
   return indices;
 }
 
@@ -31,16 +31,24 @@ Estimate told_index(std::span<const LocalIndex> poses, double rounding, double c
   return is_too_small_to_tell(index.value, rounding) ? Estimate{kNaN, {kNaN, kNaN}} : index;
 }
 
+/// Room for all numbers of the result, of which only those that are written take memory.
+void reserve(SensitivityResult& result) {
+  const std::size_t of_factors = result.responses * result.factors;
+  for (std::vector<double>* list :
+       {&result.local, &result.local_ci_low, &result.local_ci_high, &result.count, &result.mean, &result.std}) {
+    list->reserve(of_factors * result.poses);
+  }
+}
+
 /// One response of one factor: its indices at all poses and over them.
-void append_row(std::span<const UnitStats> cells, std::size_t response, double sigma, SensitivityResult& result) {
-  for (const UnitStats& cell : cells) {
-    const Moments& moments = cell.responses[response];
+void append_row(std::span<const Moments> at_poses, std::size_t response, double sigma, SensitivityResult& result) {
+  for (const Moments& moments : at_poses) {
     append(local_index(moments, sigma, result.conf_level), result.local, result.local_ci_low, result.local_ci_high);
     result.count.push_back(static_cast<double>(moments.count()));
     result.mean.push_back(moments.mean());
     result.std.push_back(moments.standard_deviation());
   }
-  const std::vector<LocalIndex> indices = local_indices(cells, response, sigma);
+  const std::vector<LocalIndex> indices = local_indices(at_poses, sigma);
   append(global_index(indices, result.conf_level), result.global, result.global_ci_low, result.global_ci_high);
   append(told_index(indices, index_rounding(result, response, sigma), result.conf_level), result.global_corrected,
          result.global_corrected_ci_low, result.global_corrected_ci_high);
@@ -73,37 +81,39 @@ std::vector<double> response_rounding(const Model& model) {
   return list;
 }
 
-std::vector<Estimate> global_indices(std::span<const UnitStats> at_poses, double sigma, double conf_level) {
-  POESY_EXPECTS(!at_poses.empty());
+std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, double conf_level) {
+  POESY_EXPECTS(at_poses.size() > 0);
   std::vector<Estimate> indices;
-  for (std::size_t r = 0; r < at_poses.front().responses.size(); ++r) {
-    indices.push_back(global_index(local_indices(at_poses, r, sigma), conf_level));
+  for (const std::vector<Moments>& response : at_poses.responses) {
+    indices.push_back(global_index(local_indices(response, sigma), conf_level));
   }
   return indices;
 }
 
-SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, std::vector<double> background,
+SensitivityResult sensitivity_result(const Plan& plan, CellStats cells, std::vector<double> background,
                                      std::vector<double> rounding, double conf_level) {
   SensitivityResult result;
   result.factors = plan.factors().size();
   result.poses = plan.poses().size();
   result.conf_level = conf_level;
-  POESY_EXPECTS(cells.size() == result.factors * result.poses && !cells.empty());
-  result.responses = cells.front().responses.size();
+  POESY_EXPECTS(cells.size() == result.factors * result.poses && cells.size() > 0);
+  result.responses = cells.responses.size();
   POESY_EXPECTS(background.size() == result.responses * result.poses);
   result.background = std::move(background);
   POESY_EXPECTS(rounding.size() == result.responses);
   result.rounding = std::move(rounding);
+  reserve(result);
   for (std::size_t r = 0; r < result.responses; ++r) {
+    const std::vector<Moments> response = std::exchange(cells.responses[r], {});
     for (std::size_t p = 0; p < result.factors; ++p) {
-      append_row(cells.subspan(p * result.poses, result.poses), r, plan.distributions()[p].standard_deviation(),
-                 result);
+      append_row(std::span(response).subspan(p * result.poses, result.poses), r,
+                 plan.distributions()[p].standard_deviation(), result);
     }
   }
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-    result.solves.push_back(cells[cell].solves);
-    append_failures(cell / result.poses, PoseIndex(cell % result.poses), cells[cell].failed, result.failures);
+    append_failures(cell / result.poses, PoseIndex(cell % result.poses), cells.failed[cell], result.failures);
   }
+  result.solves = std::move(cells.solves);
   return result;
 }
 

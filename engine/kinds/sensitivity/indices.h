@@ -3,8 +3,8 @@
 #include <optional>
 #include <span>
 
+#include "engine/kinds/sensitivity/cell_stats.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/moments.h"
 #include "engine/stats/tolerance.h"
@@ -21,11 +21,12 @@ std::vector<double> response_rounding(const Model& model);
 
 /// The global index of one factor for each response, [R]. at_poses: [M], its cells. sigma: standard deviation of the
 /// error.
-std::vector<Estimate> global_indices(std::span<const UnitStats> at_poses, double sigma, double conf_level);
+std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, double conf_level);
 
-/// The indices of a study from what its cells hold. cells: [P x M], merged over the units of each (factor, pose).
+/// The indices of a study from what its cells hold. cells: [P x M], merged over the units of each (factor, pose); moved
+/// here they take no memory beside the result's, because each response gives its own back.
 /// background, rounding: as background_responses and response_rounding give them.
-SensitivityResult sensitivity_result(const Plan& plan, std::span<const UnitStats> cells, std::vector<double> background,
+SensitivityResult sensitivity_result(const Plan& plan, CellStats cells, std::vector<double> background,
                                      std::vector<double> rounding, double conf_level);
 
 /// Below which an index of an error of this standard deviation is rounding (stats/indices.h).

@@ -1,5 +1,6 @@
 #include "engine/kinds/sensitivity/kind.h"
 
+#include <algorithm>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -37,16 +38,17 @@ class CellWork {
         model_(model),
         responses_(model.description().responses.size()),
         conf_level_(conf_level),
-        cells_(shard.of(plan.cells())),
+        shard_(shard),
         points_(history_points(plan)),
         rule_{responses_, all_positions(responses_), conf_level, index_roundings(plan, model)},
         rounds_(plan, rule_),
-        collect_(plan, responses_, conf_level) {}
+        collect_(plan, responses_, conf_level, shard) {}
 
   std::size_t begin_round() {
+    const NumberRange cells = shard_.of(plan_.cells());
     pending_.emplace(
         plan_, [&](std::size_t cell) { return collect_.units_done(cell); },
-        [&](std::size_t cell) { return cells_.holds(cell) ? rounds_.units(cell / plan_.poses().size()) : 0; });
+        [&](std::size_t cell) { return cells.holds(cell) ? rounds_.units(cell / plan_.poses().size()) : 0; });
     return pending_->size();
   }
   UnitEvaluator worker() const { return {plan_, model_}; }
@@ -67,7 +69,7 @@ class CellWork {
     collect_.write_state(to);
   }
   void restore(std::span<const std::byte> state) {
-    collect_ = SensitivityCollector(plan_, responses_, conf_level_);
+    collect_ = SensitivityCollector(plan_, responses_, conf_level_, shard_);
     rounds_ = Rounds(plan_, rule_);
     ByteReader from(state);
     rounds_.restore(from);
@@ -99,7 +101,7 @@ class CellWork {
   const Model& model_;
   std::size_t responses_;
   double conf_level_;
-  NumberRange cells_;  ///< of the shard
+  Shard shard_;  ///< whose cells are solved
   std::vector<std::size_t> points_;
   Rounds::Rule rule_;
   Rounds rounds_;
@@ -174,12 +176,18 @@ WorkOutlook separating(const Study& study, const Model& model, const PoseSet& po
   }};
 }
 
+/// The result takes up the room that accumulators give back, one response after the other.
 MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size_t fidelities) {
   const std::size_t responses = study.model().responses.size();
   const std::size_t numbers = 6 * responses * sizeof(double);  // local, its interval, count, mean, std
   const std::size_t separated = study.model().separation ? 5 * sizeof(double) : 0;
-  const std::size_t last_units = plan.samples() % Plan::kUnitSamples != 0 ? 2 : 1;  // kept apart from whole ones
-  MemoryOutlook of_cell{last_units * (sizeof(UnitStats) + kAllocation + responses * sizeof(Moments)),
+  const std::size_t result = numbers + sizeof(SolveCounts) + separated;
+  const std::size_t ends = sizeof(SolveCounts) + sizeof(FailedSamples);
+  const std::size_t kept = responses * sizeof(Moments) + ends;
+  // A smaller last unit is kept apart from whole ones.
+  const bool both = plan.samples() > Plan::kUnitSamples && plan.samples() % Plan::kUnitSamples != 0;
+  const std::size_t at_once = (both ? 2 : 1) * kept;
+  MemoryOutlook of_cell{at_once - std::min(at_once, result) + sizeof(Moments) + ends,
                         fidelities * (responses * kStoredMoments + kStoredSolves),
                         fidelities * (numbers + sizeof(SolveCounts)) + separated,
                         numbers + kSolverColumns + separated + (fidelities - 1) * sizeof(double)};

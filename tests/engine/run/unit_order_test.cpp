@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "bench/published_study.h"
 #include "engine/kinds/result_file.h"
@@ -20,14 +21,16 @@ std::string hash_of(const Study& study, const Model& model, const std::vector<st
   UnitEvaluator evaluate(plan, model);
   std::vector<UnitStats> stats(plan.units());
   for (const std::size_t u : order) stats[u] = evaluate(plan.unit(u));
-  std::vector<UnitStats> cells(plan.factors().size() * plan.poses().size());
+  CellStats cells(model.description().responses.size(), plan.cells());
   for (std::size_t u = 0; u < plan.units(); ++u) {
     const WorkUnit unit = plan.unit(u);
-    cells[unit.slot * plan.poses().size() + unit.pose.value].merge(stats[u]);
+    cells.merge(unit.slot * plan.poses().size() + unit.pose.value, stats[u]);
   }
   const test::TempFolder folder;
-  write_result(folder / "r.h5", study, poses,
-               sensitivity_result(plan, cells, background_responses(plan, model), response_rounding(model), 0.95), {});
+  write_result(
+      folder / "r.h5", study, poses,
+      sensitivity_result(plan, std::move(cells), background_responses(plan, model), response_rounding(model), 0.95),
+      {});
   return verify_result(folder / "r.h5").computed;
 }
 
