@@ -115,6 +115,17 @@ std::string last_line(const std::string& text) {
   return end == 0 ? "nothing" : printable(std::string_view(text).substr(begin, end - begin), 300);
 }
 
+/// Of a file, for a browser (RFC 8089): a folder's name may hold # or %.
+std::string address_of(const std::string& path) {
+  std::string address = "file://";
+  for (const char c : path) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          std::string_view("/._~-").find(c) != std::string_view::npos;
+    address += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return address;
+}
+
 std::vector<std::string> command(const std::string& browser, const TemporaryFolder& folder) {
   std::vector<std::string> words{browser,
                                  "--headless",
@@ -129,7 +140,7 @@ std::vector<std::string> command(const std::string& browser, const TemporaryFold
                                  "--user-data-dir=" + folder / "profile",
                                  "--print-to-pdf=" + folder / "report.pdf"};
   if (::geteuid() == 0) words.emplace_back("--no-sandbox");  // Chromium refuses to have one as root
-  words.push_back("file://" + folder / "report.html");
+  words.push_back(address_of(folder / "report.html"));
   return words;
 }
 

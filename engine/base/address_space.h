@@ -16,8 +16,8 @@ bool has_address_space(std::size_t bytes);
 /// would not find room for their stacks. To be called before any thread is started.
 void save_address_space();
 
-/// A list of 4 MiB or more returns its memory to the system when it goes. glibc does that for the first one of a size
-/// alone, and keeps the memory of the next ones, so that a run would have it beside its result.
+/// A list of 4 MiB or more returns its memory to the system when it goes. By itself glibc raises that
+/// bound, up to 32 MiB, to the size of the first list that goes, so that a run would have later ones beside its result.
 void return_large_lists();
 
 }  // namespace poesy

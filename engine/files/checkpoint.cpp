@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <system_error>
 #include <utility>
 #include <variant>
@@ -30,6 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kVersion = 3;
+constexpr const char* kNoCheckpoint = "is not a checkpoint of poesy";
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
 
 std::string hash_of(const PoseSet& poses) {
@@ -99,7 +101,7 @@ void read_block(std::istream& file, Bytes& block) {
 double seconds(ByteReader& from) {
   const double value = from.real();
   if (std::isfinite(value) && value >= 0.0) return value;
-  throw BytesError("has a time that is none");
+  throw BytesError("has a time that is negative or no number");
 }
 
 std::string program(const CheckpointIdentity& identity) {
@@ -112,14 +114,18 @@ std::variant<Checkpoint, std::string> read_checkpoint(const std::string& path) {
   if (!fs::is_regular_file(path, ignored)) return stands(path) ? "is not a plain file" : "does not exist";
   errno = 0;
   std::ifstream file(path, std::ios::binary);
-  Bytes bytes(file ? static_cast<std::size_t>(fs::file_size(path, ignored)) : 0);
-  if (!file || !file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-    return "cannot be read (" + std::generic_category().message(errno) + ")";
-  }
+  if (file && !has_mark(path, kCheckpointMagic)) return kNoCheckpoint;
+  const std::uintmax_t size = file ? fs::file_size(path, ignored) : 0;
   try {
+    Bytes bytes(static_cast<std::size_t>(size));
+    if (!file || !file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
+      return "cannot be read (" + std::generic_category().message(errno) + ")";
+    }
     return decode_checkpoint(bytes);
   } catch (const BytesError& error) {
     return error.what();
+  } catch (const std::bad_alloc&) {
+    return fmt::format("needs {} MB of memory to be read, and there is less", size / 1'000'000 + 1);
   }
 }
 
@@ -206,7 +212,7 @@ std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, co
 Checkpoint decode_checkpoint(std::span<const std::byte> file) {
   const auto magic = std::as_bytes(std::span(kCheckpointMagic));
   if (file.size() < magic.size() + kDigestBytes || !std::ranges::equal(file.first(magic.size()), magic)) {
-    throw BytesError("is not a checkpoint of poesy");
+    throw BytesError(kNoCheckpoint);
   }
   const auto content = file.first(file.size() - kDigestBytes);
   if (!std::ranges::equal(sha256(content), file.last(kDigestBytes))) {
@@ -318,6 +324,11 @@ bool RunLock::take(const std::string& result_path) {
   if (looked == 0 && !S_ISREG(file.st_mode)) {
     close();
     throw FileError(path_, "is not a plain file, and a run keeps its lock in one", "remove it");
+  }
+  if (descriptor_ >= 0 && looked == 0 && file.st_size > 0) {
+    close();
+    throw FileError(path_, "is no lock of poesy, which is empty, and a run would remove it",
+                    "move it away, or give another -o");
   }
   if (descriptor_ < 0 && looked == 0) {
     throw FileError(

@@ -47,12 +47,22 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
                    "name another file with -o, or remove it");
 }
 
-/// Where a symbolic link leads, through further ones.
+/// Neither this user's nor the administrator's.
+bool is_of_another_user(const fs::path& link) {
+  struct stat found {};
+  return ::lstat(link.c_str(), &found) == 0 && found.st_uid != 0 && found.st_uid != ::geteuid();
+}
+
+/// Where a symbolic link leads, through further ones, all of them the user's own or the administrator's.
 std::string end_of_links(const std::string& path) {
   constexpr int kMostLinks = 40;  // as the system itself
   fs::path at(path);
   std::error_code ignored;
   for (int links = 0; fs::is_symlink(fs::symlink_status(at, ignored)); ++links) {
+    if (is_of_another_user(at)) {
+      throw InputError({.file = at.string()}, "is a symbolic link that another user made",
+                       "name the file that it leads to, if that is the one you mean");
+    }
     const fs::path to = fs::read_symlink(at, ignored);
     if (links == kMostLinks || to.empty()) {
       throw InputError({.file = path}, "is a symbolic link that leads nowhere, or in a circle", "name another file");
@@ -92,6 +102,19 @@ std::optional<struct stat> model_of(const std::string& path, const std::string& 
   return std::nullopt;
 }
 
+/// The beginning of a plain file; none where there is no such file, or it cannot be read. To open a FIFO is to wait.
+std::optional<std::string> head_of(const std::string& path) {
+  constexpr std::size_t kHead = 1 << 16;
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  std::string head(kHead, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
+}
+
 /// Makes the rename survive a crash. Some file systems cannot sync a folder: the file itself is safe there.
 bool sync_folder(const std::string& path) {
   const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -105,14 +128,14 @@ bool sync_folder(const std::string& path) {
 
 }  // namespace
 
+bool has_mark(const std::string& path, std::string_view mark) {
+  const auto head = head_of(path);
+  return head && head->find(mark) != std::string::npos;
+}
+
 bool is_marked(const std::string& path, std::string_view mark) {
-  constexpr std::size_t kHead = 1 << 16;
-  std::string head(kHead, '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return false;
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return head.empty() || head.find(mark) != std::string::npos;
+  const auto head = head_of(path);
+  return head && (head->empty() || head->find(mark) != std::string::npos);
 }
 
 std::string check_output_path(const std::string& named, const OutputKind& kind, std::span<const std::string> inputs) {

@@ -18,13 +18,15 @@ struct OutputKind {
   bool (*may_be_replaced)(const std::string& path);  ///< whether a file that stands there is of this kind, or empty
 };
 
-/// Whether a file is empty, or has this mark in its first 64 KiB.
+/// Whether a plain file has this mark in its first 64 KiB.
+bool has_mark(const std::string& path, std::string_view mark);
+/// The same, or it is empty.
 bool is_marked(const std::string& path, std::string_view mark);
 
 /// Gives the path to write to: where a symbolic link leads, whether there is a file yet or not; else the path itself.
-/// Throws when no such file can come into being there, before anything is computed: InputError when its folder does not
-/// exist, when what stands there is one of the inputs or must not be replaced, or for links in a circle, FileError when
-/// the folder cannot be written.
+/// A link that another user made is refused. Throws when no such file can come into being there, before anything is
+/// computed: InputError when its folder does not exist, when what stands there is one of the inputs or must not be
+/// replaced, or for links in a circle, FileError when the folder cannot be written.
 std::string check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs);
 
 bool stands(const std::string& path);  ///< Whether anything has this name, a link that leads nowhere too.

@@ -117,8 +117,8 @@ class File {
   std::vector<T> attribute(const std::string& path, const std::string& name) const;
   Value value(const std::string& path) const;  ///< A dataset as it is stored.
   Value head(const std::string& path) const;   ///< The same without its elements.
-  /// Hands the `numbers` of value() out one slice after the other. Only of a dataset that lies in one piece in the file
-  /// they are small; others come at once. Precondition: a dataset of numbers.
+  /// Hands the `numbers` of value() out one slice after the other. They are small where
+  /// the dataset is contiguous in the file; any other comes in one slice. Precondition: a dataset of numbers.
   void read_slices(const std::string& path, const std::function<void(std::span<std::byte>)>& take) const;
   Value attribute_value(const std::string& path, const std::string& name) const;  ///< An attribute as it is stored.
 

@@ -27,7 +27,12 @@ namespace poesy {
 namespace {
 
 constexpr const char* kOther = "give a result file written by poesy";
-constexpr std::uintmax_t kMebibyte = std::uintmax_t{1} << 20U;
+/// Bytes for which a child has a second more, of processor time and by the clock: a slow disk, and a tenth of what a
+/// processor hashes.
+/// @{
+constexpr std::uintmax_t kBytesASecond = std::uintmax_t{16} << 20U;
+constexpr std::uintmax_t kBytesAWaitedSecond = std::uintmax_t{4} << 20U;
+/// @}
 
 bool is_checkpoint(const std::string& path) {
   std::array<char, kCheckpointMagic.size()> begin{};
@@ -88,7 +93,7 @@ class Descriptor {
 /// Bytes of a file that are on its disk: without the holes of a sparse one, which make it look as large as one likes.
 std::uintmax_t stored_bytes(const std::string& path) {
   constexpr int kMostPieces = 10'000;
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   std::uintmax_t bytes = 0;
   off_t end = 0;
   for (int piece = 0; piece < kMostPieces; ++piece) {
@@ -126,7 +131,7 @@ void confine(rlim_t file_bytes) {
   ::dup2(nothing, STDOUT_FILENO);
   ::dup2(nothing, STDERR_FILENO);
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, kTrialSeconds + file_bytes / kMebibyte);
+  limit(RLIMIT_CPU, kTrialSeconds + file_bytes / kBytesASecond);
   if (const rlim_t had = address_space(); had > 0) limit(RLIMIT_AS, had + kTrialBytes + 16 * file_bytes);
 }
 
@@ -205,7 +210,7 @@ void trial_read(const std::string& path, const std::function<void()>& read, unsi
   if (child < 0) fail_to_start(path, errno);
   if (child == 0) live_as_child(to_parent, file_bytes, read);
   to_parent.close();
-  const std::uintmax_t seconds = wait_seconds + 2 * (file_bytes / kMebibyte);
+  const std::uintmax_t seconds = wait_seconds + file_bytes / kBytesAWaitedSecond;
   const std::optional<std::string> said = receive(from_child, seconds);
   if (!said) ::kill(child, SIGKILL);
   const int status = status_of(child);
@@ -215,6 +220,10 @@ void trial_read(const std::string& path, const std::function<void()>& read, unsi
                     "try again, or take another copy");
   }
   if (*said == kEndedWell) return;
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
+    throw FileError(path, "cannot be read: the process that read it was killed, as a system without memory does",
+                    "end other programs, and try again");
+  }
   if (!said->empty() && *said != kNoMemory) throw FileError("", *said, "");
   const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
   if (!slow) refuse_for_little_memory(path, file_bytes);
@@ -242,8 +251,8 @@ void check_readable(const std::string& path) {
   if (const std::string_view other = other_than_file(path); !other.empty()) {
     throw FileError(path, "is " + std::string(other), kOther);
   }
-  errno = 0;
-  if (!std::ifstream(path)) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (file.number() < 0) {
     throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
   }
 }

@@ -39,8 +39,8 @@ inline constexpr unsigned long kTrialBytes = 1UL << 28U;  ///< memory that it ma
 ///
 /// HDF5 1.10 may crash, loop or ask for all memory over a damaged file before it reports an error, or spoil its own
 /// heap and crash later. The child is a copy of this process at this moment, so what ended well there ends well here.
-/// It may take kTrialSeconds of processor time and one more for each MiB of the file, wait_seconds by the clock
-/// and two more for each MiB, and kTrialBytes of memory and 16 more for each byte of the file (where /proc tells how
+/// It may take kTrialSeconds of processor time and one more for each 16 MiB of the file, wait_seconds by the clock
+/// and one more for each 4 MiB, and kTrialBytes of memory and 16 more for each byte of the file (where /proc tells how
 /// much it has already); it says nothing to the terminal.
 ///
 /// Throws FileError as read() did, FileError that says so where read() ran out of memory (std::bad_alloc), because this

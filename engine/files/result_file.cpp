@@ -189,15 +189,9 @@ void add_facts(ResultBuilder& result, const RunFacts& facts) {
   result.add_scalar("/run/solves_per_second", rate, {"1/s", "Solves a second, all threads and ranks together"});
 }
 
-/// Whether a file is named like a result, or is one: then a newer result may replace it. An empty file holds nothing.
-bool may_be_replaced(const std::string& path) {
-  if (std::filesystem::path(path).extension() == ".h5") return true;
-  constexpr std::array kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  std::array<char, kSignature.size()> begin{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(begin.data(), begin.size());
-  return file.gcount() == 0 || begin == kSignature;
-}
+/// Whether a file is a result or a shard, sound or not: then a newer one may replace it. Its type is in its first
+/// kilobyte. An empty file holds nothing.
+bool may_be_replaced(const std::string& path) { return is_marked(path, kResultFile) || has_mark(path, kShardFile); }
 
 }  // namespace
 

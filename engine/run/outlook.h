@@ -19,7 +19,7 @@ namespace poesy {
 
 /// What a run has in memory at its peak, while it writes its result, without the program itself; bytes.
 struct MemoryOutlook {
-  std::size_t accumulators = 0;  ///< of the run; the heap does not give all of them back before the result is written
+  std::size_t accumulators = 0;  ///< what the run still has of them when the result is made
   std::size_t state = 0;         ///< the run as a checkpoint has it; a large one is on the disk at the end
   std::size_t result = 0;        ///< plain values
   std::size_t file = 0;          ///< the result file, which is composed on the disk
@@ -53,8 +53,6 @@ inline constexpr std::size_t kStoredSolves = (kStatusNames.size() + 2) * kWholeN
 /// @}
 /// What /solver has of a cell: failures, mean and most iterations, samples by status.
 inline constexpr std::size_t kSolverColumns = (2 + kStatusNames.size()) * sizeof(double) + sizeof(std::uint32_t);
-/// A list of its own on the heap, as glibc keeps it.
-inline constexpr std::size_t kAllocation = 2 * sizeof(void*);
 
 /// So many of each.
 MemoryOutlook times(std::size_t count, const MemoryOutlook& each);

@@ -37,8 +37,8 @@ inline void publish() {}
 inline void receive() {}
 #endif
 
-/// A block that begins after every such block that has ended. Around objects of oneTBB: their memory goes from thread
-/// to thread inside its allocator.
+/// What one block did is visible to each block that begins after its end. Around objects of oneTBB, because their
+/// memory goes from thread to thread inside its allocator.
 class Block {
  public:
   Block() { receive(); }

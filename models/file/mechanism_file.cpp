@@ -11,6 +11,8 @@ namespace poesy::file {
 namespace {
 
 constexpr std::int64_t kMostCopies = 100;
+/// Of all limbs. Ranks take time with the cube of it: a second or two for so many.
+constexpr std::size_t kMostMovingAxes = 120;
 constexpr std::array<std::string_view, 6> kCoordinates{"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 constexpr std::array<std::string_view, 6> kComponents{"epsilon_x", "epsilon_y", "epsilon_z",
@@ -253,7 +255,7 @@ const Keys<LimbLines, Nothing>& limb_keys() {
                    "Points of this limb alone, as in [points]."),
           needed("joints", kept("list of tables", joints, &LimbLines::joints),
                  "[ { name = \"A\", type = \"R\", at = [0, 0, 0], axis = \"y\" } ]",
-                 "Its joints, from base to platform.")}};
+                 "Its joints, from base to platform. All limbs together have at most 120 moving axes.")}};
   return keys;
 }
 
@@ -262,9 +264,16 @@ std::vector<StudyValue> tables(const StudyValue& value) {
   return value.list();
 }
 
+std::size_t moving_axes(const LimbLines& limb) {
+  std::size_t axes = 0;
+  for (const JointLines& joint : limb.joints) axes += joint.kind == JointKind::fixed ? 0 : elements(joint.kind);
+  return limb.copies * axes;
+}
+
 std::vector<LimbLines> limbs(const StudyValue& value) {
   std::vector<LimbLines> list;
   std::size_t count = 0;
+  std::size_t axes = 0;
   for (const StudyValue& element : tables(value)) {
     LimbLines limb;
     read_keys(limb_keys(), element.section(), limb, Nothing{});
@@ -272,6 +281,11 @@ std::vector<LimbLines> limbs(const StudyValue& value) {
       check_new({named.name, named.point.key, named.point.place}, limb.joints, "joint of this limb");
     }
     count += limb.copies;
+    axes += moving_axes(limb);
+    if (axes > kMostMovingAxes) {
+      element.fail("brings the moving axes of all limbs to " + std::to_string(axes),
+                   "a mechanism may have " + std::to_string(kMostMovingAxes) + "; take fewer joints or copies");
+    }
     list.push_back(std::move(limb));
   }
   if (count < 2) value.fail("is alone, so nothing closes a loop", "write two limbs or more, or copies");

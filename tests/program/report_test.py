@@ -160,6 +160,10 @@ class Report(ProgramTest):
             pdf = (self.folder / "r.pdf").read_bytes()
             self.assertTrue(pdf.startswith(b"%PDF-"))
             self.assertGreater(len(pdf), 20000)
+        temporary = self.folder / "t #1%20"
+        temporary.mkdir()
+        done = self.printed({"TMPDIR": str(temporary)}, "r.h5", "-o", "r.pdf")
+        self.assertEqual(done.returncode, 0, done.stderr)
         foreign = pdf.removesuffix(b"% poesy report\n")
         self.write("foreign.pdf", foreign)
         self.assertIn("would be lost", self.refused(2, "r.h5", "-o", "foreign.pdf"))

@@ -267,7 +267,8 @@ StudyTable parts_table() {
           {.name = "name",
            .type = "text",
            .usual = "the name of its first error",
-           .meaning = "Name of the part, without commas and quotes."},
+           .meaning =
+               "Name of the part: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning."},
           {.name = "factors",
            .type = "text or list of texts",
            .required = true,
@@ -328,24 +329,27 @@ StudyTable parts_table() {
 }  // namespace
 
 StudyTables part_tables() {
-  return {parts_table(),
-          cost_table(),
-          {.paths = {"analysis.parts.processes"},
-           .meaning = "A way to make the part.",
-           .keys = {{.name = "name",
-                     .type = "text",
-                     .usual = "1, 2 and so on",
-                     .meaning = "Name of the process, without commas and quotes."},
-                    {.name = "cost",
-                     .type = "table",
-                     .required = true,
-                     .missing = "write what its tolerances cost, e.g. {}",
-                     .example = "{ law = \"reciprocal\", a = 1, b = 2, unit = \"mm\" }",
-                     .meaning = "What a tolerance by this process costs."},
-                    {.name = "bounds",
-                     .type = "list of two quantities",
-                     .usual = "any tolerance",
-                     .meaning = "The least and the largest tolerance that the process holds."}}}};
+  return {
+      parts_table(),
+      cost_table(),
+      {.paths = {"analysis.parts.processes"},
+       .meaning = "A way to make the part.",
+       .keys = {
+           {.name = "name",
+            .type = "text",
+            .usual = "1, 2 and so on",
+            .meaning =
+                "Name of the process: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning."},
+           {.name = "cost",
+            .type = "table",
+            .required = true,
+            .missing = "write what its tolerances cost, e.g. {}",
+            .example = "{ law = \"reciprocal\", a = 1, b = 2, unit = \"mm\" }",
+            .meaning = "What a tolerance by this process costs."},
+           {.name = "bounds",
+            .type = "list of two quantities",
+            .usual = "any tolerance",
+            .meaning = "The least and the largest tolerance that the process holds."}}}};
 }
 
 std::optional<double> read_sigmas(const StudySection& section) {
@@ -394,28 +398,33 @@ std::string part_text(const AllocatedPart& part, const ModelDescription& model) 
 }
 
 void check_part_sizes(const StudySection& block, const AllocatedPart& part, const Model& model) {
+  const auto list = [&](std::string_view key) { return block.require(key).list(); };
   switch (part.choice) {
     case PartChoice::range:
-      if (std::isfinite(part.hi)) check_size(block.require("bounds").list()[1], part.hi, part, model);
+      if (std::isfinite(part.hi)) check_size(list("bounds")[1], part.hi, part, model);
       break;
-    case PartChoice::values:
-      for (std::size_t v = 0; v < part.values.size(); ++v) {
-        check_size(block.require("values").list()[v], part.values[v], part, model);
-      }
+    case PartChoice::values: {
+      const std::vector<StudyValue> values = list("values");
+      for (std::size_t v = 0; v < part.values.size(); ++v) check_size(values[v], part.values[v], part, model);
       break;
-    case PartChoice::grades:
+    }
+    case PartChoice::grades: {
+      const std::vector<StudyValue> grades = list("grades");
       for (std::size_t g = 0; g < part.grades.size(); ++g) {
         const double width = it_grade_width(part.nominal_size, part.grades[g]).value();
-        check_size(block.require("grades").list()[g], 0.5 * width, part, model);
+        check_size(grades[g], 0.5 * width, part, model);
       }
       break;
-    case PartChoice::processes:
+    }
+    case PartChoice::processes: {
+      const std::vector<StudyValue> processes = list("processes");
       for (std::size_t p = 0; p < part.processes.size(); ++p) {
         if (!std::isfinite(part.processes[p].hi)) continue;
-        const StudySection process = block.require("processes").list()[p].section();
-        check_size(process.require("bounds").list()[1], part.processes[p].hi, part, model);
+        const StudyValue bounds = processes[p].section().require("bounds");
+        check_size(bounds.list()[1], part.processes[p].hi, part, model);
       }
       break;
+    }
     case PartChoice::fixed:
       check_size(block.require("tolerance"), part.lo, part, model);
       break;

@@ -132,18 +132,21 @@ std::vector<StudyRow> cases_rows() {
 }
 
 StudyTables case_tables() {
-  const StudyTable cases{.paths = {"analysis.cases"},
-                         .meaning = "For kind = \"evaluate\".",
-                         .keys = {{.name = "name",
-                                   .type = "text",
-                                   .usual = "case 1, case 2 and so on",
-                                   .meaning = "Name of the case, without commas and quotes."},
-                                  {.name = "errors",
-                                   .type = "table",
-                                   .required = true,
-                                   .missing = "write e.g. {}",
-                                   .example = "{ linear = \"0.1 mm\", angular = \"0.1 deg\" }",
-                                   .meaning = "The errors that the case sets."}}};
+  const StudyTable cases{
+      .paths = {"analysis.cases"},
+      .meaning = "For kind = \"evaluate\".",
+      .keys = {
+          {.name = "name",
+           .type = "text",
+           .usual = "case 1, case 2 and so on",
+           .meaning =
+               "Name of the case: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning."},
+          {.name = "errors",
+           .type = "table",
+           .required = true,
+           .missing = "write e.g. {}",
+           .example = "{ linear = \"0.1 mm\", angular = \"0.1 deg\" }",
+           .meaning = "The errors that the case sets."}}};
   const StudyTable errors{.paths = {"analysis.cases.errors"},
                           .meaning = "The narrower wins. What is not set has the background's value, or is zero.",
                           .keys = {{.name = "FACTOR", .type = "quantity", .meaning = "One error."},

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "engine/base/contract.h"
@@ -170,16 +171,20 @@ Table settings_table(const StoredResult& a, const StoredResult& b, bool same) {
   Table table{.name = same ? "settings_alike" : "settings",
               .caption = same ? "Settings that are the same" : "Settings that differ",
               .columns = {text_column("setting", "setting"), text_column("a", "A"), text_column("b", "B")}};
-  auto of_b = named_settings(b);
+  const auto list_a = named_settings(a);
+  const auto list_b = named_settings(b);
+  const std::map<std::string, std::string> of_a(list_a.begin(), list_a.end());
+  const std::map<std::string, std::string> of_b(list_b.begin(), list_b.end());
   const auto add = [&](const std::string& name, const std::string& in_a, const std::string& in_b) {
     if ((in_a == in_b) == same) table.rows.push_back({text_cell(name), text_cell(in_a), text_cell(in_b)});
   };
-  for (const auto& [name, value] : named_settings(a)) {
-    const auto at = std::ranges::find(of_b, name, [](const auto& setting) { return setting.first; });
+  for (const auto& [name, value] : list_a) {
+    const auto at = of_b.find(name);
     add(name, value, at == of_b.end() ? std::string() : at->second);
-    if (at != of_b.end()) of_b.erase(at);
   }
-  for (const auto& [name, value] : of_b) add(name, {}, value);
+  for (const auto& [name, value] : list_b) {
+    if (!of_a.contains(name)) add(name, {}, value);
+  }
   return table;
 }
 

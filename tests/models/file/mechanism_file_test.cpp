@@ -120,6 +120,10 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"[[limb]]", "[limb]", "m.toml:18:1: limb is one table; write double brackets: [[limb]]"},
           {"count = 3", "count = 0", "m.toml:19:20: limb[0].copies.count is 0; it must be at least 1"},
           {"count = 3", "count = 2.5", "m.toml:19:20: limb[0].copies.count is the number 2.5; write a whole number"},
+          {"count = 3", "count = 100",
+           "m.toml:18:1: limb[0] brings the moving axes of all limbs to 500; a mechanism may have 120; take fewer "
+           "joints "
+           "or copies"},
           {"count = 3", "count = 1",
            "m.toml:18:1: limb is alone, so nothing closes a loop; write two limbs or more, or copies"},
           {"about = \"z\"", "about = \"w\"",
