@@ -38,6 +38,7 @@ except ImportError as missing:
     )
 
 NEWEST_MAJOR = 1
+HDF5_FILTERS = {1, 2, 3, 4, 5, 6}  # any other is a plugin, which HDF5 would look for and run
 ROUNDING = 1e-10  # an index below it, in SI, is zero but for rounding
 # In which unit people read an SI unit, and how many of it are one of that; any other unit is shown as it is.
 DISPLAY = {"m": ("mm", 1e3), "rad": ("deg", 180.0 / math.pi)}
@@ -77,12 +78,45 @@ class RankedError:
     effect_unit: str  # "mm"
 
 
+def stranger(file: h5py.File) -> str:
+    """What is not as poesy writes it, where HDF5 might read other files for it; "" if each link leads to a group or dataset
+    whose values are here. Looks at no value; 'poesy verify' does the same."""
+    seen = {h5py.h5o.get_info(file["/"].id).addr}
+    groups = [(b"/", 0)]
+    while groups:
+        group, depth = groups.pop()
+        links: list[tuple[bytes, int]] = []
+        here = h5py.h5g.open(file.id, group)  # kept, or its links cannot be listed
+        here.links.iterate(lambda name, info: links.append((name, info.type)), info=True)
+        for name, link in links:
+            path = group.rstrip(b"/") + b"/" + name
+            shown = "".join(one if one.isprintable() else "?" for one in path.decode(errors="replace"))[:300]
+            if link != h5py.h5l.TYPE_HARD or b"/" in name or name in (b"", b"."):
+                return f"{shown} is a link to something else"
+            thing = h5py.h5o.open(file.id, path)
+            if isinstance(thing, h5py.h5d.DatasetID):
+                stored = thing.get_create_plist()
+                filters = {stored.get_filter(k)[0] for k in range(stored.get_nfilters())}
+                if stored.get_layout() == h5py.h5d.VIRTUAL or stored.get_external_count() or filters - HDF5_FILTERS:
+                    return f"{shown} has its values in other files, or needs a plugin"
+                continue
+            address = h5py.h5o.get_info(thing).addr
+            if not isinstance(thing, h5py.h5g.GroupID) or address in seen or depth == 16:
+                return f"{shown} is no group of a tree"
+            seen.add(address)
+            groups.append((path, depth + 1))
+    return ""
+
+
 def read_result(path: str) -> Result:
-    """Reads a whole file. Raises ResultError where it is no result, or one of a newer major version."""
+    """Reads a whole file. Raises ResultError where it is no result, one of a newer major version, or reads other files."""
+    if Path(path).exists() and not Path(path).is_file():
+        raise ResultError(f"{path}: is a folder, a FIFO or a device; give a result file")
     try:
         with h5py.File(path, "r") as file:
             about = dict(file.attrs)
-            names = [name for name, thing in file.items() if isinstance(thing, h5py.Group)]
+            strange = stranger(file)
+            names = [] if strange else [name for name, thing in file.items() if isinstance(thing, h5py.Group)]
     except OSError as error:
         raise ResultError(f"{path}: cannot be read as HDF5: {error}") from error
     if about.get("filetype") != "poesy-result":
@@ -91,6 +125,8 @@ def read_result(path: str) -> Result:
     major, minor = about["version"]
     if major > NEWEST_MAJOR:
         raise ResultError(f"{path}: version {major}.{minor}, this reads {NEWEST_MAJOR}.x; take the newer script")
+    if strange:
+        raise ResultError(f"{path}: {strange}, and a result reads nothing but itself; do not trust it; take another copy")
     groups = {name: xarray.load_dataset(path, engine="h5netcdf", group=name) for name in names}
     return Result(str(path), about["kind"], about["model"], about["title"], groups)
 

@@ -1,7 +1,8 @@
 function result = read(source)
 % POESY.READ  What a poesy study of any kind found.
 %
-%   result = poesy.read('study.h5')    a result file. MATLAB reads it itself; Octave, which cannot, lets poesy export it
+%   result = poesy.read('study.h5')    a result file. MATLAB reads it itself; Octave, which cannot, lets poesy export it.
+%                                      MATLAB follows links into other files; `poesy verify` refuses a file that has any
 %   result = poesy.read('tables')      the folder that `poesy export study.h5 -d tables` wrote
 %
 % result.kind is 'sensitivity', 'identification', 'evaluate', 'monte-carlo', 'sobol', 'allocation' or 'coupling'.

@@ -164,7 +164,7 @@ def outside_structures():
         *each("external link to a FIFO", "outside", [*GROUPS, "sensitivity/local"], external_link("fifo.h5", "/")),
         *each("external link to a device", "outside", ["sensitivity"], external_link("/dev/zero", "/")),
         *each("link of its own kind", "outside", ["sensitivity", "sensitivity/local", "study/text"], own_link),
-        *[one for number in (256, 305, 32001, 32015, 65535)
+        *[one for number in (7, 255, 256, 305, 32001, 32015, 65535)
           for one in each(f"filter {number}", "outside", NUMBERS[:2], filtered(number))],
     ]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import stat
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,18 +17,35 @@ from ._errors import DamagedFile, FileError
 
 NEWEST_MAJOR = 1
 _BOOKKEEPING = frozenset({"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"})
+_DEEPEST, _MOST_NAMES = 16, 16  # results have three levels, and datasets of up to seven names
+_OWN_FILTERS = range(1, 7)  # gzip, shuffle, fletcher32, szip, nbit, scaleoffset
+_OTHERS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}
+_LINKS = {h5py.h5l.TYPE_SOFT: "a soft link", h5py.h5l.TYPE_EXTERNAL: "a link to another file"}
+
+
+class _StrangeFile(Exception):
+    """A file has what poesy never writes."""
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
     """The file, open to be read. Raises `FileError` where it is not there, `DamagedFile` where it is no result, is damaged
-    here or when it is read in the block, or is of a newer version."""
+    here or when it is read in the block, is of a newer version, or would read other files."""
     if not path.exists():
         raise FileError(f"{path}: there is no such file; results come from poesy.run")
+    if not path.is_file():  # HDF5 would wait for a FIFO
+        other = _OTHERS.get(stat.S_IFMT(path.stat().st_mode), "a device")
+        raise DamagedFile(f"{path}: is {other}, not a file; results come from poesy.run")
     try:
         with h5py.File(path, "r") as file:
             _check(path, file)
+            _expect_plain_tree(file)
             yield file
+    except _StrangeFile as strange:
+        raise DamagedFile(
+            f"{path}: {_printable(str(strange))[:300]}, and a result is one tree that reads nothing but itself; "
+            "do not trust it; take another copy, or run the study again"
+        ) from None
     except (OSError, KeyError, RuntimeError) as error:
         if isinstance(error, FileError):
             raise
@@ -36,10 +55,65 @@ def opened(path: Path) -> Iterator[h5py.File]:
 def _check(path: Path, file: h5py.File) -> None:
     filetype = file.attrs.get("filetype", "none")
     if filetype != "poesy-result":
-        raise DamagedFile(f"{path}: is no result of poesy (attribute filetype: {filetype}); results come from poesy.run")
+        found = _printable(str(filetype))
+        raise DamagedFile(f"{path}: is no result of poesy (attribute filetype: {found}); results come from poesy.run")
     major, minor = file.attrs["version"]
     if major > NEWEST_MAJOR:
         raise DamagedFile(f"{path}: version {major}.{minor}, this reads {NEWEST_MAJOR}.x; take a newer package")
+
+
+def _printable(text: str) -> str:
+    """What may go to a terminal."""
+    return "".join(one if one.isprintable() else "?" for one in text)
+
+
+def _expect_plain_tree(file: h5py.File) -> None:
+    """Raises `_StrangeFile` where there is anything but groups and datasets in one tree whose values are all in this file.
+
+    Looks at no value. HDF5 by itself reads other files for external links, external storage and virtual datasets. The
+    program refuses the same (h5::File::expect_plain_tree).
+    """
+    names = Counter([h5py.h5o.get_info(h5py.h5g.open(file.id, b"/")).addr])
+    groups = [(b"/", 0)]
+    while groups:
+        group, depth = groups.pop()
+        links: list[tuple[bytes, int]] = []
+        here = h5py.h5g.open(file.id, group)  # kept, or its links cannot be listed
+        here.links.iterate(lambda name, info: links.append((name, info.type)), info=True)
+        for name, link in links:
+            path = group.rstrip(b"/") + b"/" + name
+            shown = path.decode(errors="replace")
+            if link != h5py.h5l.TYPE_HARD:
+                raise _StrangeFile(f"{shown} is {_LINKS.get(link, 'a link of another kind')}")
+            if b"/" in name or name in (b"", b"."):  # HDF5 would look for its parts one by one
+                raise _StrangeFile(f"{shown} has no name of its own")
+            thing = h5py.h5o.open(file.id, path)
+            address = h5py.h5o.get_info(thing).addr
+            names[address] += 1
+            if isinstance(thing, h5py.h5d.DatasetID):
+                if names[address] > _MOST_NAMES:
+                    raise _StrangeFile(f"{shown} has too many names")
+                _expect_own_storage(thing, shown)
+            elif not isinstance(thing, h5py.h5g.GroupID):
+                raise _StrangeFile(f"{shown} is neither a group nor a dataset")
+            elif names[address] > 1:
+                raise _StrangeFile(f"{shown} is a group that has two names, or is in itself")
+            elif depth == _DEEPEST:
+                raise _StrangeFile(f"{shown} is too deep")
+            else:
+                groups.append((path, depth + 1))
+
+
+def _expect_own_storage(dataset: h5py.h5d.DatasetID, shown: str) -> None:
+    storage = dataset.get_create_plist()
+    if storage.get_layout() == h5py.h5d.VIRTUAL:
+        raise _StrangeFile(f"{shown} is a virtual dataset, whose values are elsewhere")
+    if storage.get_external_count() > 0:
+        raise _StrangeFile(f"{shown} has its values in other files (external storage)")
+    for number in range(storage.get_nfilters()):
+        kind = storage.get_filter(number)[0]
+        if kind not in _OWN_FILTERS:  # HDF5 would run what it finds among the plugins of this machine
+            raise _StrangeFile(f"{shown} needs the filter {kind}")
 
 
 def attributes(thing: Any) -> dict[str, Any]:
@@ -92,6 +166,8 @@ def _scales(dataset: h5py.Dataset) -> list[tuple[str, h5py.Dataset | None]]:
     found: list[tuple[str, h5py.Dataset | None]] = []
     for number, dimension in enumerate(dataset.dims):
         scale = dimension[0] if len(dimension) else None
+        if scale is not None and scale.name is None:  # a reference to what no link leads to, so nobody has looked at it
+            raise _StrangeFile(f"{dataset.name} has an axis whose labels are not in the tree")
         found.append((scale.name.rpartition("/")[2], scale) if scale is not None else (f"axis_{number}", None))
     return found
 

@@ -1,5 +1,6 @@
 function result = from_file(file)
-% A result file as MATLAB's h5read gives it.
+% A result file as MATLAB's h5read gives it. h5read follows links and external storage into other files: of a file that
+% somebody else sent, ask `poesy verify` first, which refuses it then.
   try
     filetype = char(h5readatt(file, '/', 'filetype'));
   catch
