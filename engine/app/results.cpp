@@ -202,21 +202,23 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
     return (path.parent_path() / (stem_beside(path) + std::string(end))).string();
   };
   const std::string study = beside(kBeside.front());
-  const bool earlier = has_mark(study, kRepeats);
+  const bool is_earlier = has_mark(study, kRepeats);
+  // An earlier study, or a file that it names.
+  const auto is_ours = [&](const std::string& file) {
+    std::error_code ignored;
+    if (file == study) return is_marked(study, kRepeats);
+    return is_earlier && has_mark(study, std::filesystem::path(file).filename().string()) &&
+           std::filesystem::is_regular_file(file, ignored);
+  };
   for (const std::string_view end : kBeside) {
     const std::string file = beside(end);
-    // The earlier study, or a file that it names.
-    const bool ours = end == kBeside.front()
-                          ? is_marked(study, kRepeats)
-                          : earlier && has_mark(study, std::filesystem::path(file).filename().string()) &&
-                                std::filesystem::is_regular_file(file);
     std::error_code ignored;  // a path that cannot be looked at is none of these
     for (const std::string& input : inputs) {
       if (!std::filesystem::equivalent(file, input, ignored)) continue;
       throw InputError({input}, "would be replaced by the study that confirms the result, " + file,
                        "give the result another name (-o)");
     }
-    if (ours || !stands(file)) continue;
+    if (!stands(file) || is_ours(file)) continue;
     throw InputError({file},
                      "exists and was not written with this result, and the study that confirms it would replace it",
                      "move it away, or give the result another name (-o)");
