@@ -15,6 +15,7 @@ import h5py
 
 from deadline import Deadline
 from hostile_structures import MARK, Outside, Structure, external, replaced, structures
+from hostile_texts import FROM_FILE, text_structures
 from poesy_program import main
 from resumption import ResumptionTest
 
@@ -31,6 +32,10 @@ analysis = { samples = 10 }
 COMMANDS = [("verify", "r.h5"), ("show", "r.h5"), ("show", "r.h5", "--json"), ("export", "r.h5", "-d", "tables"),
             ("report", "r.h5", "-o", "r.html"), ("tolerances", "r.h5", "--response", "tip_x", "-d", "tolerances"),
             ("replay", "r.h5", "a_x_1", "0", "1")]
+# The same of a mechanism from a file, whose errors and responses have other names.
+COMMANDS_FROM_FILE = [[{"tip_x": "position", "a_x_1": "delta_1_0_x"}.get(word, word) for word in command]
+                      for command in COMMANDS]
+CHANGED = b"was changed since it was written"
 # The secrets as text, as doubles in any decimal unit, and as bytes that were taken for numbers.
 SIGNS = [MARK.encode(), b"4242424", b"4.242424", b"84,79,80", b"root:x:0"]
 
@@ -63,17 +68,27 @@ class HostileFiles(ResumptionTest):
         found = [f"tells {sign}" for sign in SIGNS if sign in told]
         if done.returncode not in (0, 2, 3):
             found.append(f"ends with {done.returncode}")
-        if structure.sort != "shape":
+        if structure.sort == "text":
+            if done.returncode == 0 and CHANGED not in done.stderr:
+                found.append("does not warn")
+        elif structure.sort != "shape":
             if done.returncode != 3 or RULE.encode() not in done.stderr or written:
                 found.append(f"is not refused: {done.returncode}, {said[-300:]}")
         return [f"{structure.name}: {command[0]}: {fault}" for fault in found]
 
-    def put_through(self, structure):
+    def put_through(self, structure, commands):
         folder = self.make(structure)
         try:
-            return [fault for command in COMMANDS for fault in self.faults(structure, folder, command)]
+            return [fault for command in commands for fault in self.faults(structure, folder, command)]
         finally:
             shutil.rmtree(folder)
+
+    def put_all_through(self, chosen, commands):
+        with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+            faults = [fault for of_one in pool.map(lambda one: self.put_through(one, commands), chosen) for fault in of_one]
+        print(f"{len(chosen)} structures, {len(chosen) * len(commands)} commands, the longest {self.deadline.slowest:.1f} s, "
+              f"{len(self.deadline.retries)} tried twice")
+        self.assertEqual(faults, [])
 
     def test_structures(self):
         self.succeeds("run", "study.toml", "-o", "sound.h5", "--quiet")
@@ -82,11 +97,14 @@ class HostileFiles(ResumptionTest):
             must = [one for one in chosen if one.sort != "shape"]
             others = [one for one in chosen if one.sort == "shape"]
             chosen = must + random.Random(SEED).sample(others, max(0, min(len(others), COUNT - len(must))))
-        with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-            faults = [fault for of_one in pool.map(self.put_through, chosen) for fault in of_one]
-        print(f"{len(chosen)} structures, {len(chosen) * len(COMMANDS)} commands, the longest {self.deadline.slowest:.1f} s, "
-              f"{len(self.deadline.retries)} tried twice")
-        self.assertEqual(faults, [])
+        self.put_all_through(chosen, COMMANDS)
+
+    def test_texts(self):
+        self.write("study.toml", FROM_FILE)
+        self.succeeds("run", "study.toml", "-o", "sound.h5", "--quiet")
+        for command in COMMANDS_FROM_FILE:
+            self.succeeds(*["sound.h5" if word == "r.h5" else word for word in command])
+        self.put_all_through(text_structures(), COMMANDS_FROM_FILE)
 
     def test_shards(self):
         for shard in (1, 2):
