@@ -14,6 +14,7 @@ poesy_test(tolerance_confirmation_test LABELS statistical SOURCES engine/kinds/s
 poesy_test(fidelity_statistical_test LABELS statistical SOURCES engine/kinds/sensitivity/fidelity_statistical_test.cpp
            LINKS poesy_kinds)
 poesy_test(index_history_test LABELS property SOURCES engine/kinds/sensitivity/index_history_test.cpp LINKS poesy_kinds poesy_models)
+poesy_test(cell_stats_test LABELS determinism SOURCES engine/kinds/sensitivity/cell_stats_test.cpp LINKS poesy_kinds)
 poesy_test(linearity_test LABELS determinism SOURCES engine/kinds/sensitivity/linearity_test.cpp LINKS poesy_kinds)
 poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(failures_test LABELS determinism SOURCES engine/run/failures_test.cpp LINKS poesy_kinds)

@@ -5,6 +5,7 @@ structures() lists them. A structure says which sort it is of:
     outside   reads other files if it is followed: must be refused by name
     tree      no tree of few levels, or neither groups nor datasets: must be refused by name
     shape     anything else that is not as poesy writes it: what is shown is poesy's own to decide
+    text      another study or mechanism (hostile_texts.py): refused, or shown with a warning that it was changed
 """
 
 import ctypes

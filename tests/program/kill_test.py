@@ -9,10 +9,11 @@ import signal
 import time
 
 from poesy_program import main
-from resumption import STUDIES, ResumptionTest
+from resumption import ADAPTIVE_STUDIES, FROM_FILE, STUDIES, ResumptionTest
 
 KILLS = int(os.environ.get("POESY_KILLS", "20"))
 TERMINATIONS = max(4, KILLS // 5)
+KILLED = ADAPTIVE_STUDIES | {"from a file": FROM_FILE} | STUDIES
 MOST = 4  # times as many runs, where the machine's speed varies and too few have something to resume when they end
 
 
@@ -22,10 +23,16 @@ class Kill(ResumptionTest):
         self.random = random.Random(int(os.environ.get("POESY_KILL_SEED", "20240707")))
         self.expected = {}
         self.seconds = {}
-        for kind, study in STUDIES.items():
+
+    def begin(self, runs):
+        """The kind of the run of this number. Its study is in its file, and what an undisturbed run gives is known."""
+        kind = list(KILLED)[runs % len(KILLED)]
+        if kind not in self.expected:
             start = time.monotonic()
-            self.expected[kind] = self.undisturbed(study)
+            self.expected[kind] = self.undisturbed(KILLED[kind])
             self.seconds[kind] = time.monotonic() - start
+        self.write("study.toml", KILLED[kind])
+        return kind
 
     def run_and_stop(self, kind, number, *options, longest=1.0):
         """A run on one to three threads that a signal stops at a random moment, up to so many times an undisturbed run."""
@@ -34,11 +41,10 @@ class Kill(ResumptionTest):
 
     def test_sigkill(self):
         runs = killed = resumed = 0
-        while killed < KILLS or (resumed < KILLS // 3 and killed < MOST * KILLS):
+        while killed < KILLS or runs < len(KILLED) or (resumed < KILLS // 3 and killed < MOST * KILLS):
             runs += 1
-            kind = list(STUDIES)[runs % len(STUDIES)]
+            kind = self.begin(runs)
             with self.subTest(runs=runs, kind=kind):
-                self.write("study.toml", STUDIES[kind])
                 code, messages = self.run_and_stop(kind, signal.SIGKILL)
                 self.assertIn(code, (0, -signal.SIGKILL), messages)
                 while code != 0:
@@ -54,16 +60,15 @@ class Kill(ResumptionTest):
                                  {"study.toml", "undisturbed.h5", "out.h5"})
                 for path in self.folder.glob("out.h5*"):
                     path.unlink()
-        print(f"{killed} kills of {runs} runs, {resumed} times resumed from a checkpoint")
+        print(f"{killed} kills of {runs} runs of {len(KILLED)} studies, {resumed} times resumed from a checkpoint")
         self.assertGreaterEqual(resumed, KILLS // 3)
 
     def test_sigterm(self):
         n = stopped = 0
         while n < TERMINATIONS or (stopped < TERMINATIONS // 2 and n < MOST * TERMINATIONS):
             n += 1
-            kind = list(STUDIES)[n % len(STUDIES)]
+            kind = self.begin(n)
             with self.subTest(n=n, kind=kind):
-                self.write("study.toml", STUDIES[kind])
                 # A signal that comes before the program listens ends it, with nothing to lose.
                 code, messages = self.run_and_stop(kind, signal.SIGTERM)
                 self.assertIn(code, (0, 4, -signal.SIGTERM), messages)

@@ -16,13 +16,13 @@ from pathlib import Path
 import h5py
 
 from poesy_program import PROGRAM, main
-from resumption import ALLOCATION, CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO, SENSITIVITY, SOBOL, STUDIES, ResumptionTest
+from resumption import (ADAPTIVE_STUDIES, ALLOCATION, CASES, COUPLING, FIDELITIES, IDENTIFICATION, MACHINES, MONTE_CARLO,
+                        SENSITIVITY, SOBOL, STUDIES, ResumptionTest)
 
 MPIRUN = shutil.which("mpirun")
 KILLS = int(os.environ.get("POESY_RANK_KILLS", "3"))
 HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
 SMALLER = {
     "sensitivity": SENSITIVITY,
     "monte-carlo": MONTE_CARLO,
@@ -33,9 +33,7 @@ SMALLER = {
     "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
     "coupling": COUPLING.replace("count = 20000", "count = 2000"),
     "fidelities": FIDELITIES,
-    "adaptive sensitivity": SENSITIVITY.replace("samples = 12300", ADAPTIVE),
-    "adaptive machines": MACHINES.replace("samples = 12300", ADAPTIVE),
-    "adaptive monte-carlo": MONTE_CARLO.replace("samples = 12300", ADAPTIVE.replace("0.01", "0.003")),
+    **ADAPTIVE_STUDIES,
 }
 
 

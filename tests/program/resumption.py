@@ -10,6 +10,7 @@ import h5py
 
 from poesy_program import PROGRAM, ProgramTest
 
+GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
 HEAD = """\
 format = "poesy-study"
 version = 1
@@ -101,9 +102,26 @@ poses = { count = 20 }
 errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
 analysis = { kind = "sensitivity", samples = 12300 }
 """
+# Of a mechanism that its file describes: the file's text is in checkpoints and in the result.
+FROM_FILE = HEAD.replace('model = "2upr-rpu"', f'file = "{GALLERY / "3-rrr/3-rrr.toml"}"') + """\
+[poses]
+count = 3
+[analysis]
+kind = "sensitivity"
+factors = "in-plane"
+samples = 2300
+"""
 STUDIES = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "sobol": SOBOL,
            "allocation": ALLOCATION, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
+ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
+# Whose runs go on in rounds, until their intervals are narrow.
+ADAPTIVE_STUDIES = {
+    "adaptive sensitivity": SENSITIVITY.replace("samples = 12300", ADAPTIVE),
+    "adaptive machines": MACHINES.replace("samples = 12300", ADAPTIVE),
+    "adaptive monte-carlo": MONTE_CARLO.replace("samples = 12300", ADAPTIVE.replace("0.01", "0.003")),
+    "adaptive sobol": SOBOL.replace("samples = 2100", ADAPTIVE.replace("0.01", "0.1")),
+}
 
 
 class ResumptionTest(ProgramTest):

@@ -146,16 +146,24 @@ class TemporaryFiles(ResumptionTest):
         nothing but the result."""
         self.write("study.toml", CASES.replace("count = 4000", "count = 40000"))
         command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "1 h"]
-        seen = []
-        for _ in range(5):
-            with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as run:
+        left = []
+        for _ in range(20):  # the file has its last name before the signal comes, now and then
+            resume = ["--resume"] * self.newer.exists()
+            seen = []
+            with subprocess.Popen([*command, *resume], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE) as run:
                 while run.poll() is None and not seen:
                     seen = [path.name for path in self.folder.glob("out.h5.tmp.*")]
                 run.kill()
-            if any(self.folder.glob("out.h5.tmp.*")):
+                messages = run.stderr.read()
+            self.assertIn(run.returncode, (0, -signal.SIGKILL), messages)
+            self.assertTrue(all(TEMPORARY.search(name) for name in seen), seen)
+            left = [path.name for path in self.folder.glob("out.h5.tmp.*")]
+            if left:
                 break
-        self.assertTrue(all(TEMPORARY.search(name) for name in seen), seen)
-        self.assertTrue(seen)
+        self.assertEqual(len(left), 1, left)
+        self.assertTrue(TEMPORARY.search(left[0]), left)
+        self.assertTrue(self.newer.exists())
         self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet", "--resume")
         self.assertEqual(self.names(), {"quick.toml", "study.toml", "victim", "out.h5"})
 

@@ -168,6 +168,7 @@ CellStats SensitivityCollector::cells_of(std::size_t slot) const {
   const std::size_t poses = plan_->poses().size();
   const NumberRange range{slot * poses, (slot + 1) * poses};
   POESY_EXPECTS(cells_.first == 0 && range.end <= cells_.end);
+  POESY_EXPECTS(whole_.size() > 0 || parts_.size() > 0);
   if (whole_.size() == 0) return parts_.part(range);
   CellStats cells = whole_.part(range);
   if (parts_.size() > 0) cells.merge(parts_.part(range));
@@ -176,6 +177,7 @@ CellStats SensitivityCollector::cells_of(std::size_t slot) const {
 
 CellStats SensitivityCollector::cells() && {
   POESY_EXPECTS(cells_.first == 0 && cells_.end == plan_->cells());
+  POESY_EXPECTS(whole_.size() > 0 || parts_.size() > 0);
   if (whole_.size() == 0) return std::exchange(parts_, {});
   if (parts_.size() > 0) whole_.merge(std::exchange(parts_, {}));
   return std::exchange(whole_, {});

@@ -75,9 +75,9 @@ class SensitivityCollector {
   std::size_t units_done(std::size_t cell) const;
   /// Over all that was added.
   SolveCounts total() const;
-  /// One slot at all poses, [M] cells, from what was added. Precondition: the shard has them all.
+  /// One slot at all poses, [M] cells, from what was added. Preconditions: the shard has them all; something was added.
   CellStats cells_of(std::size_t slot) const;
-  /// From what was added, [cells]. Precondition: likewise.
+  /// From what was added, [cells]. Preconditions: likewise.
   CellStats cells() &&;
   /// Of the indices, whose last are those of `end`. Precondition: all units were added, those of all cells; the study
   /// has a fixed number of samples.
@@ -91,7 +91,7 @@ class SensitivityCollector {
 
  private:
   std::size_t cell_of(const WorkUnit& unit) const { return unit.slot * plan_->poses().size() + unit.pose.value; }
-  /// In the cell's units of full size; those of its smaller one.
+  /// Samples in the cell's whole units; in its smaller last unit.
   /// @{
   std::uint64_t whole_samples(std::size_t cell) const { return samples_in(whole_, cell); }
   std::uint64_t part_samples(std::size_t cell) const { return samples_in(parts_, cell); }
