@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -22,6 +23,7 @@
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
+#include "engine/run/outlook.h"
 #include "engine/run/run_options.h"
 #include "engine/study/study_file.h"
 #include "engine/study/study_kind.h"
@@ -92,34 +94,31 @@ void check_size(const EvaluateOptions& options, const PoseSet& poses, const Erro
                    "give fewer rows or poses, or --paired for row by row");
 }
 
-int evaluate(const EvaluateOptions& options) {
-  const Study study = read_study(options.study, registry(), StudyUse::evaluate);
-  if (study.mechanism.compared) {
-    throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but an evaluation solves at one fidelity",
-                     fmt::format("write \"{}\"", fmt::join(study.model().fidelities, "\" or \"")));
-  }
-  const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const SelectedPoses poses = read_reachable_poses(options.poses, *model);
-  if (!options.frames.empty()) return print_frames(options, *model, poses.poses);
-  const ErrorTable errors = read_errors(options.errors, *model);
-  if (options.paired && poses.poses.size() != errors.rows) {
-    throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
-                     "--paired needs one row of errors for each pose");
-  }
-  check_size(options, poses.poses, errors);
-  std::string path;  // of the result; empty: none is kept
-  std::optional<RunLock> lock;
-  if (!options.result.empty()) {
-    path = check_result_path(options.result, std::array{options.study, options.poses, options.errors});
-    lock.emplace(path);
-  }
-  const Pairing pairing = options.paired ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
+/// What an evaluation is of. Refers to all of it.
+struct Evaluated {
+  const Study& study;
+  const Model& model;
+  const SelectedPoses& poses;
+  const ErrorTable& errors;
+  Pairing pairing;
+};
+
+/// Bytes that its outcomes and its errors take.
+std::size_t memory_of(const Evaluated& all) {
+  const std::size_t rows = all.pairing == Pairing::row_by_row ? 1 : all.errors.rows;
+  const std::size_t outcomes = outcome_bytes(all.model.description(), Outcomes::with_details);
+  return all.poses.poses.size() * rows * outcomes + all.errors.values.size() * sizeof(double);
+}
+
+/// path: of the result; empty: none is kept.
+int solve(const EvaluateOptions& options, const Evaluated& all, const std::string& path) {
+  const auto& [study, model, poses, errors, pairing] = all;
   const auto start = std::chrono::steady_clock::now();
   const std::size_t threads = resolved_threads(options.threads);
   std::optional<EvaluationResult> result;
   {
     ProgressPrinter printer(options.quiet);
-    result = run_evaluation(*model, study.solver, poses.poses, errors, pairing,
+    result = run_evaluation(model, study.solver, poses.poses, errors, pairing,
                             {.threads = threads,
                              .progress = [&](const Progress& progress) { printer(progress); },
                              .stop = &catch_interrupts()});
@@ -151,6 +150,36 @@ int evaluate(const EvaluateOptions& options) {
   }
   return judge(study, total, shown, options.study,
                {"the result is kept; see /limits in " + path, "the result is kept: see /evaluate/status in " + path});
+}
+
+int evaluate(const EvaluateOptions& options) {
+  const Study study = read_study(options.study, registry(), StudyUse::evaluate);
+  if (study.mechanism.compared) {
+    throw InputError(study.mechanism.place, "mechanism.fidelity is \"both\", but an evaluation solves at one fidelity",
+                     fmt::format("write \"{}\"", fmt::join(study.model().fidelities, "\" or \"")));
+  }
+  const std::unique_ptr<Model> model = build_model(study.mechanism);
+  const SelectedPoses poses = read_reachable_poses(options.poses, *model);
+  if (!options.frames.empty()) return print_frames(options, *model, poses.poses);
+  const ErrorTable errors = read_errors(options.errors, *model);
+  if (options.paired && poses.poses.size() != errors.rows) {
+    throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
+                     "--paired needs one row of errors for each pose");
+  }
+  check_size(options, poses.poses, errors);
+  std::string path;
+  std::optional<RunLock> lock;
+  if (!options.result.empty()) {
+    path = check_result_path(options.result, std::array{options.study, options.poses, options.errors});
+    lock.emplace(path);
+  }
+  const Pairing pairing = options.paired ? Pairing::row_by_row : Pairing::every_pose_with_every_row;
+  const Evaluated all{study, *model, poses, errors, pairing};
+  try {
+    return solve(options, all, path);
+  } catch (const std::bad_alloc&) {
+    throw too_little_memory(path, "this evaluation", memory_text(memory_of(all)));
+  }
 }
 
 }  // namespace

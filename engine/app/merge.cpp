@@ -1,4 +1,9 @@
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <new>
+#include <span>
+#include <system_error>
 
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
@@ -7,6 +12,8 @@
 #include "engine/files/result_file.h"
 #include "engine/files/shard_file.h"
 #include "engine/kinds/study_file.h"
+#include "engine/kinds/study_run.h"
+#include "engine/run/outlook.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -34,9 +41,31 @@ std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*
   return largest;
 }
 
-int merge(const MergeOptions& options) {
-  const std::string path = check_result_path(options.result, options.shards);
-  const RunLock lock(path);
+/// Of all stages together.
+std::size_t state_bytes(std::span<const Bytes> states) {
+  std::size_t sum = 0;
+  for (const Bytes& state : states) sum += state.size();
+  return sum;
+}
+
+/// What shards take at least while they are read. A file that is not there takes nothing.
+std::size_t file_bytes(std::span<const std::string> paths) {
+  std::size_t sum = 0;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+    if (!error) sum += static_cast<std::size_t>(bytes);
+  }
+  return sum;
+}
+
+/// The states stay until all of them are taken up.
+std::size_t peak_of(std::span<const Bytes> states, const MemoryOutlook& run) {
+  return state_bytes(states) + run.accumulators + run.result;
+}
+
+/// needed: says how much memory that takes, as soon as it is known.
+int merge(const MergeOptions& options, const std::string& path, std::string& needed) {
   std::vector<StoredShard> shards;
   for (const std::string& shard : options.shards) shards.push_back(read_shard(shard));
   std::vector<Bytes> merged = merge_shards(shards);
@@ -44,6 +73,7 @@ int merge(const MergeOptions& options) {
   const StoredStudy whole = stored_study(first, registry());
   const Study& study = whole.study;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
+  needed = memory_text(peak_of(merged, outlook(study, *model, whole.poses.poses).memory));
   // The whole run from here on: as one that is resumed when all its stages are done.
   Checkpoints done({}, {}, std::move(merged));
   const Job job{.study = study,
@@ -61,11 +91,22 @@ int merge(const MergeOptions& options) {
   }
 }
 
+int merge_to_end(const MergeOptions& options) {
+  const std::string path = check_result_path(options.result, options.shards);
+  const RunLock lock(path);
+  std::string needed = memory_text(file_bytes(options.shards)) + ", or more,";
+  try {
+    return merge(options, path, needed);
+  } catch (const std::bad_alloc&) {
+    throw too_little_memory(path, "this merge", needed);
+  }
+}
+
 }  // namespace
 
 Command& add_merge(Command& program) {
   const auto [command, options] =
-      program.add_command("merge", "put the shards of a study together (poesy run --shard)", merge);
+      program.add_command("merge", "put the shards of a study together (poesy run --shard)", merge_to_end);
   command.add_value("shards", options.shards, "SHARD.h5", "all shards of one study, in any order")->required();
   command.add_value("-o,--output", options.result, "RESULT.h5", "result file, the same as that of one run")->required();
   command.examples = {{"two shards", "poesy merge study.1-of-2.h5 study.2-of-2.h5 -o study.h5"},

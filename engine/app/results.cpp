@@ -256,6 +256,16 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
                study_path, {remedy, remedy});
 }
 
+std::string memory_text(std::size_t bytes) {
+  constexpr std::size_t kMega = 1'000'000;
+  return bytes < kMega ? "less than 1 MB" : fmt::format("about {} MB", bytes / kMega);
+}
+
+FileError too_little_memory(const std::string& path, const std::string& work, const std::string& needed) {
+  return {path, fmt::format("there is not enough memory for {}: it takes {} besides the program's own", work, needed),
+          "do it where there is more, raise the limit (ulimit -v), or ask for fewer poses or errors"};
+}
+
 StoredResult read_result_with_warning(const std::string& path) {
   StoredResult result = read_result(path);
   if (result.changed) say(Message::warning, path + " was changed since it was written; see poesy verify");

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "engine/app/terminal.h"
+#include "engine/base/error.h"
 #include "engine/files/checkpoint.h"
 #include "engine/files/result_file.h"
 #include "engine/run/result.h"
@@ -66,6 +68,12 @@ ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult
 /// As much of a study's result as judge() needs.
 StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const std::optional<LimitVerdicts>& verdicts,
                            const std::vector<std::string>& row_names);
+
+/// "about 250 MB", or "less than 1 MB".
+std::string memory_text(std::size_t bytes);
+
+/// Memory was too little for this work ("this run"), which needs this much, a memory_text(). path names its result.
+FileError too_little_memory(const std::string& path, const std::string& work, const std::string& needed);
 
 /// Reads a result, and warns on stderr where it was changed since it was written. Throws FileError.
 StoredResult read_result_with_warning(const std::string& path);

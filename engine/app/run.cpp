@@ -90,17 +90,6 @@ Shard parse_shard(const std::string& text) {
   throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
 }
 
-constexpr const char* kMemoryRemedy =
-    "run it where there is more, raise the limit (ulimit -v), or ask for fewer poses or errors";
-
-/// What a run takes at its peak, as poesy check says.
-std::string memory_text(const Job& job) {
-  const Outlook expected = outlook(job.study, job.model, job.poses.poses);
-  return fmt::format("it takes about {:.3g} MB besides the program's own, {:.3g} MB of which are the result file",
-                     static_cast<double>(expected.memory.peak()) / 1e6,
-                     static_cast<double>(expected.memory.file) / 1e6);
-}
-
 /// run_to_file with progress, and what is left to say about its checkpoints when it fails.
 std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool quiet) {
   try {
@@ -120,7 +109,8 @@ std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool qui
     throw;
   } catch (const std::bad_alloc&) {
     resumable.rescue();
-    throw FileError(job.path, "there is not enough memory for this run: " + memory_text(job), kMemoryRemedy);
+    const std::size_t needed = outlook(job.study, job.model, job.poses.poses).memory.peak();
+    throw too_little_memory(job.path, "this run", memory_text(needed));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
@@ -17,6 +18,12 @@ namespace poesy {
 namespace {
 
 std::string state_path(std::size_t stage) { return fmt::format("/shard/state_{}", stage + 1); }
+
+Bytes read_state(const h5::File& file, const std::string& path) {
+  h5::Value value = file.value(path);
+  if (value.type != h5::Value::Type::unsigned_integer || value.width != 1) throw h5::Error(path + " is not bytes");
+  return std::move(value.numbers);
+}
 
 StoredShard read_checked(const std::string& path, const h5::File& file) {
   expect_filetype(path, file, kShardFile);
@@ -34,11 +41,7 @@ StoredShard read_checked(const std::string& path, const h5::File& file) {
   stored.shard.count = file.attribute<std::uint64_t>("/shard", "shards").at(0);
   stored.shard.index = file.attribute<std::uint64_t>("/shard", "shard").at(0) - 1;
   if (stored.shard.index >= stored.shard.count) throw h5::Error("/shard has a number beyond the last");
-  for (std::size_t k = 0; file.exists(state_path(k)); ++k) {
-    const std::vector<std::uint8_t> state = file.read<std::uint8_t>(state_path(k));
-    const auto bytes = std::as_bytes(std::span(state));
-    stored.stages.emplace_back(bytes.begin(), bytes.end());
-  }
+  for (std::size_t k = 0; file.exists(state_path(k)); ++k) stored.stages.push_back(read_state(file, state_path(k)));
   stored.facts = read_facts(file);
   return stored;
 }
@@ -84,17 +87,45 @@ void check_same_study(const StoredShard& shard, const StoredShard& first) {
   }
 }
 
-/// Precondition: none twice.
+/// "2, 5 and 7 more". A file may say that there are any number of shards, so only the first ones are looked for.
+/// Precondition: shards are in order, none twice, and one is missing.
+std::string missing_text(std::span<const StoredShard> shards) {
+  constexpr std::size_t kMostListed = 20;
+  const std::size_t count = shards.front().shard.count;
+  std::size_t left = count - shards.size();
+  std::string text;
+  auto next = shards.begin();
+  for (std::size_t index = 0, listed = 0; left > 0 && listed < kMostListed; ++index) {
+    if (next != shards.end() && number(*next) == index) {
+      ++next;
+      continue;
+    }
+    text += (listed == 0 ? "" : ", ") + std::to_string(index + 1);
+    ++listed;
+    --left;
+  }
+  return left == 0 ? text : fmt::format("{} and {} more", text, left);
+}
+
+/// Precondition: shards are in order, none twice.
 void check_all_there(std::span<const StoredShard> shards) {
   const std::size_t count = shards.front().shard.count;
-  std::string missing;
-  for (std::size_t index = 0; shards.size() < count && index < count; ++index) {
-    if (std::ranges::find(shards, index, number) != shards.end()) continue;
-    missing += (missing.empty() ? "" : ", ") + std::to_string(index + 1);
-  }
-  if (missing.empty()) return;
-  throw InputError({}, fmt::format("of {} shards these are missing: {}", count, printable(missing, 200)),
+  if (shards.size() == count) return;
+  throw InputError({}, fmt::format("of {} shards these are missing: {}", count, missing_text(shards)),
                    "run them with --shard and merge all of them");
+}
+
+/// The states that all shards have of one run, one behind the other. Takes them out of the shards.
+Bytes take_state(std::span<StoredShard> shards, std::size_t stage) {
+  std::size_t bytes = 0;
+  for (const StoredShard& shard : shards) bytes += shard.stages[stage].size();
+  Bytes whole;
+  whole.reserve(bytes);
+  for (StoredShard& shard : shards) {
+    const Bytes part = std::exchange(shard.stages[stage], {});
+    whole.insert(whole.end(), part.begin(), part.end());
+  }
+  return whole;
 }
 
 }  // namespace
@@ -137,13 +168,9 @@ std::vector<Bytes> merge_shards(std::vector<StoredShard>& shards) {
     refuse(*twice, fmt::format("and {} are both {}", std::next(twice)->path, name_of(twice->shard)), "give each once");
   }
   check_all_there(shards);
-  std::vector<Bytes> merged(shards.front().stages.size());
-  for (StoredShard& shard : shards) {
-    for (std::size_t k = 0; k < merged.size(); ++k) {
-      merged[k].insert(merged[k].end(), shard.stages[k].begin(), shard.stages[k].end());
-      shard.stages[k] = {};
-    }
-  }
+  std::vector<Bytes> merged;
+  const std::size_t stages = shards.front().stages.size();
+  for (std::size_t k = 0; k < stages; ++k) merged.push_back(take_state(shards, k));
   return merged;
 }
 

@@ -57,12 +57,12 @@ class Untrusted(ProgramTest):
 
 
     def check_little_memory(self, megabytes, *command):
-        """That it works, or says that it lacks memory."""
+        """That it works, or says how much memory it lacks."""
         code, said = self.with_memory(megabytes, *command)
         with self.subTest(command[0], megabytes=megabytes):
             self.assertIn(code, (0, 3), said)
             if code == 3:
-                self.assertRegex(said, "memory|threads cannot be started")
+                self.assertRegex(said, r"\d+ MB|threads cannot be started")
             self.assertNotIn("is damaged", said)
             self.assertNotIn("internal", said)
         return said
@@ -147,9 +147,10 @@ class Memory(Untrusted):
         self.run_study(mini())
         for k in (1, 2):
             self.succeeds("run", "study.toml", "--shard", f"{k}/2", "-o", f"{k}.h5", "--quiet")
-        self.write("p.csv", "alpha,beta,z\n0,0,0.75\n")
-        self.write("e.csv", "q_1,q_2,q_3\n1e-4,1e-4,1e-4\n")
-        commands = [("check", "study.toml"), ("run", "study.toml", "-o", "o.h5"), ("run", "study.toml", "-o", "o.h5", "--threads", 1),
+        self.write_tables(1)
+        commands = [("models", "3-prs"), ("models", "3-prs", "-o", "picture.svg"), ("template", "3-prs"),
+                    ("tolerances", "r.h5", "--response", "tip_position"),
+                    ("check", "study.toml"), ("run", "study.toml", "-o", "o.h5"), ("run", "study.toml", "-o", "o.h5", "--threads", 1),
                     ("evaluate", "study.toml", "--poses", "p.csv", "--errors", "e.csv", "-o", "v.h5"),
                     ("merge", "1.h5", "2.h5", "-o", "m.h5"), ("show", "r.h5"), ("export", "r.h5", "-d", "out"), ("verify", "r.h5"),
                     ("report", "r.h5"), ("replay", "r.h5", "q_1", 0, 0)]
@@ -157,12 +158,46 @@ class Memory(Untrusted):
             for megabytes in range(40, 76, 3):
                 self.check_little_memory(megabytes, *command)
 
+    def write_tables(self, rows):
+        """Of so many poses, and of errors."""
+        self.write("p.csv", "alpha,beta,z\n" + "0,0,0.75\n" * rows)
+        self.write("e.csv", "q_1,q_2,q_3\n" + "1e-4,1e-4,1e-4\n" * rows)
+
     def test_threads_that_cannot_be_started_are_said(self):
         self.write("study.toml", mini())
         for megabytes, threads in ((100, 64), (290, 64), (1000, 256), (2000, 1024)):
             said = self.check_little_memory(megabytes, "run", "study.toml", "-o", "o.h5", "--threads", threads)
             self.assertIn(f"{threads} threads cannot be started", said)
             self.assertEqual(list(self.folder.glob("o.h5*")), [])
+
+    def check_need(self, need, megabytes, work, *command):
+        """That it lacks memory for this work, and says how much that takes: `need` MB, about."""
+        code, said = self.with_memory(megabytes, *command)
+        with self.subTest(work, megabytes=megabytes):
+            self.assertEqual(code, 3, said)
+            found = re.search(f"there is not enough memory for this {work}: it takes about (\\d+) MB", said)
+            self.assertTrue(found, said)
+            self.assertAlmostEqual(int(found[1]) / need, 1.0, delta=0.4)
+
+    def test_an_evaluation_says_what_it_needs(self):
+        self.write("study.toml", mini())
+        self.write_tables(1000)
+        for result in ((), ("-o", "v.h5")):
+            for megabytes in (80, 120, 150):
+                self.check_need(130, megabytes, "evaluation", "evaluate", "study.toml", "--poses", "p.csv", "--errors", "e.csv",
+                                "--quiet", "--threads", 1, *result)
+        self.assertEqual(list(self.folder.glob("v.h5*")), [])
+
+    def test_a_merge_says_what_it_needs(self):
+        self.write("study.toml", mini("count = 5000", 'factors = "all"\nsamples = 2'))
+        for k in (1, 2):
+            self.succeeds("run", "study.toml", "--shard", f"{k}/2", "-o", f"{k}.h5", "--quiet")
+        self.check_need(255, 300, "merge", "merge", "1.h5", "2.h5", "-o", "m.h5")
+        self.check_need(104, 200, "merge", "merge", "1.h5", "2.h5", "-o", "m.h5")
+        code, said = self.with_memory(100, "merge", "1.h5", "2.h5", "-o", "m.h5")
+        self.assertEqual(code, 3, said)
+        self.assertRegex(said, r"h5: cannot be read for want of memory: \d+ MB are enough")
+        self.assertEqual(list(self.folder.glob("m.h5*")), [])
 
     def test_a_run_says_what_it_needs(self):
         sizes = ", ".join(f'"{k + 1} um"' for k in range(20))

@@ -186,9 +186,10 @@ MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size
   const std::size_t kept = responses * sizeof(Moments) + ends;
   // A smaller last unit is kept apart from whole ones.
   const bool both = plan.samples() > Plan::kUnitSamples && plan.samples() % Plan::kUnitSamples != 0;
-  const std::size_t at_once = (both ? 2 : 1) * kept;
+  const std::size_t parts = both ? 2 : 1;
+  const std::size_t at_once = parts * kept;
   MemoryOutlook of_cell{at_once - std::min(at_once, result) + sizeof(Moments) + ends,
-                        fidelities * (responses * kStoredMoments + kStoredSolves),
+                        fidelities * parts * (responses * kStoredMoments + kStoredSolves),
                         fidelities * (numbers + sizeof(SolveCounts)) + separated,
                         numbers + kSolverColumns + separated + (fidelities - 1) * sizeof(double)};
   return times(plan.cells(), of_cell);
