@@ -93,12 +93,15 @@ Shard parse_shard(const std::string& text) {
 constexpr const char* kMemoryRemedy =
     "run it where there is more, raise the limit (ulimit -v), or ask for fewer poses or errors";
 
-/// What a run takes at its peak, as poesy check says.
-std::string memory_text(const Job& job) {
-  const Outlook expected = outlook(job.study, job.model, job.poses.poses);
-  return fmt::format("it takes about {:.3g} MB besides the program's own, {:.3g} MB of which are the result file",
-                     static_cast<double>(expected.memory.peak()) / 1e6,
-                     static_cast<double>(expected.memory.file) / 1e6);
+/// Names what a run takes at its peak, as poesy check does.
+FileError too_little_memory(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
+  const Outlook expected = outlook(study, model, poses);
+  return {
+      path,
+      fmt::format("there is not enough memory for this run: it takes about {:.3g} MB besides the program's own, "
+                  "{:.3g} MB of which are the result file",
+                  static_cast<double>(expected.memory.peak()) / 1e6, static_cast<double>(expected.memory.file) / 1e6),
+      kMemoryRemedy};
 }
 
 /// run_to_file with progress, and what is left to say about its checkpoints when it fails.
@@ -120,7 +123,7 @@ std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool qui
     throw;
   } catch (const std::bad_alloc&) {
     resumable.rescue();
-    throw FileError(job.path, "there is not enough memory for this run: " + memory_text(job), kMemoryRemedy);
+    throw too_little_memory(job.path, job.study, job.model, job.poses.poses);
   }
 }
 
@@ -140,6 +143,7 @@ std::string text_of(const CheckpointIdentity& identity) {
 void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
+  start_threads(threads);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = select_poses(study.poses, *model);
   if (!team.agree(text_of(identity_of(study, poses.poses, options.shard)), threads, &stop)) {
@@ -147,13 +151,17 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
                      "give all ranks the same files and the same program");
   }
   Checkpoints not_kept;
-  run_study(study, *model, poses.poses,
-            {.threads = threads,
-             .stop = &stop,
-             .checkpoints = &not_kept,
-             .shard = options.shard,
-             .keep_checkpoint = options.resume.keep_checkpoint,
-             .team = &team});
+  try {
+    run_study(study, *model, poses.poses,
+              {.threads = threads,
+               .stop = &stop,
+               .checkpoints = &not_kept,
+               .shard = options.shard,
+               .keep_checkpoint = options.resume.keep_checkpoint,
+               .team = &team});
+  } catch (const std::bad_alloc&) {
+    throw too_little_memory("", study, *model, poses.poses);
+  }
 }
 
 /// The ranks never began. What an earlier run kept is kept; without one, a checkpoint of nothing is there to be
