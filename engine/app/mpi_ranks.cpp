@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,10 +51,10 @@ bool is_first_process() { return find_launch().value_or(Launch()).rank == 0; }
 
 namespace {
 
-/// MPI counts bytes by int, so a long message goes in pieces. Its last piece has the first tag, all others the second.
-constexpr std::size_t kPieceBytes = std::size_t{1} << 30U;
-constexpr int kLastPiece = 0;
-constexpr int kMoreFollows = 1;
+/// A long message goes in pieces, so that a rank without room for the whole can take it all the same, as its sender
+/// waits for that. The tag of each says how many follow, as far as every MPI has tags.
+constexpr std::size_t kPieceBytes = std::size_t{4} << 20U;
+constexpr std::size_t kMostTag = 32767;
 
 std::string processor_name() {
   std::string name(MPI_MAX_PROCESSOR_NAME, '\0');
@@ -100,10 +102,12 @@ class MpiRanks : public LaunchedRanks {
   bool threads_allowed() const { return threads_allowed_; }
 
   void send(std::size_t to, std::shared_ptr<const Bytes> bytes) override {
+    under_way_.reserve(under_way_.size() + bytes->size() / kPieceBytes + 1);  // all of its pieces are sent, or none
     std::size_t sent = 0;
     do {
       const std::size_t count = std::min(kPieceBytes, bytes->size() - sent);
-      const int tag = sent + count == bytes->size() ? kLastPiece : kMoreFollows;
+      const std::size_t following = (bytes->size() - sent - count + kPieceBytes - 1) / kPieceBytes;
+      const auto tag = static_cast<int>(std::min(kMostTag, following));
       Sending& sending = under_way_.emplace_back(Sending{MPI_REQUEST_NULL, bytes});
       MPI_Isend(bytes->data() + sent, static_cast<int>(count), MPI_BYTE, static_cast<int>(to), tag, MPI_COMM_WORLD,
                 &sending.request);
@@ -122,11 +126,14 @@ class MpiRanks : public LaunchedRanks {
       int count = 0;
       MPI_Get_count(&status, MPI_BYTE, &count);
       const auto from = static_cast<std::size_t>(status.MPI_SOURCE);
-      Bytes& bytes = partial_[from];
-      const std::size_t before = bytes.size();
-      bytes.resize(before + static_cast<std::size_t>(count));
-      MPI_Mrecv(bytes.data() + before, count, MPI_BYTE, &message, &status);
-      if (status.MPI_TAG == kLastPiece) return Message{from, std::exchange(bytes, {})};
+      Receiving& receiving = partial_[from];
+      std::byte* const room =
+          room_in(receiving, static_cast<std::size_t>(count), static_cast<std::size_t>(status.MPI_TAG));
+      MPI_Mrecv(room, count, MPI_BYTE, &message, &status);
+      if (status.MPI_TAG > 0) continue;
+      Receiving received = std::exchange(receiving, {});
+      if (received.lost) throw std::bad_alloc();
+      return Message{from, std::move(received.bytes)};
     }
   }
 
@@ -141,6 +148,26 @@ class MpiRanks : public LaunchedRanks {
     std::shared_ptr<const Bytes> bytes;
   };
 
+  struct Receiving {
+    Bytes bytes;
+    bool lost = false;  ///< there was no room for it
+  };
+
+  /// Where the next piece goes; those of a lost message go where nobody reads them.
+  std::byte* room_in(Receiving& receiving, std::size_t count, std::size_t following) {
+    const std::size_t before = receiving.bytes.size();
+    try {
+      if (!receiving.lost) {
+        receiving.bytes.reserve(before + count + following * kPieceBytes);
+        receiving.bytes.resize(before + count);
+        return receiving.bytes.data() + before;
+      }
+    } catch (const std::bad_alloc&) {
+      receiving = {{}, true};
+    }
+    return nowhere_.get();
+  }
+
   void forget_what_was_sent() {
     std::erase_if(under_way_, [](Sending& sending) {
       int done = 0;
@@ -153,7 +180,8 @@ class MpiRanks : public LaunchedRanks {
   std::size_t size_ = 1;
   bool threads_allowed_ = false;
   std::vector<Sending> under_way_;
-  std::vector<Bytes> partial_;  ///< [size] of messages of which pieces are missing
+  std::vector<Receiving> partial_;  ///< [size] messages of which pieces are missing
+  std::unique_ptr<std::byte[]> nowhere_ = std::make_unique_for_overwrite<std::byte[]>(kPieceBytes);
 };
 
 }  // namespace

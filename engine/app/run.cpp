@@ -90,6 +90,11 @@ Shard parse_shard(const std::string& text) {
   throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
 }
 
+/// Memory was too little for this run.
+FileError too_little_memory(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
+  return too_little_memory(path, "this run", memory_text(outlook(study, model, poses).memory.peak()));
+}
+
 /// run_to_file with progress, and what is left to say about its checkpoints when it fails.
 std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool quiet) {
   try {
@@ -109,8 +114,7 @@ std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool qui
     throw;
   } catch (const std::bad_alloc&) {
     resumable.rescue();
-    const std::size_t needed = outlook(job.study, job.model, job.poses.poses).memory.peak();
-    throw too_little_memory(job.path, "this run", memory_text(needed));
+    throw too_little_memory(job.path, job.study, job.model, job.poses.poses);
   }
 }
 
@@ -130,6 +134,7 @@ std::string text_of(const CheckpointIdentity& identity) {
 void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
+  start_threads(threads);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = select_poses(study.poses, *model);
   if (!team.agree(text_of(identity_of(study, poses.poses, options.shard)), threads, &stop)) {
@@ -137,13 +142,17 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
                      "give all ranks the same files and the same program");
   }
   Checkpoints not_kept;
-  run_study(study, *model, poses.poses,
-            {.threads = threads,
-             .stop = &stop,
-             .checkpoints = &not_kept,
-             .shard = options.shard,
-             .keep_checkpoint = options.resume.keep_checkpoint,
-             .team = &team});
+  try {
+    run_study(study, *model, poses.poses,
+              {.threads = threads,
+               .stop = &stop,
+               .checkpoints = &not_kept,
+               .shard = options.shard,
+               .keep_checkpoint = options.resume.keep_checkpoint,
+               .team = &team});
+  } catch (const std::bad_alloc&) {
+    throw too_little_memory("", study, *model, poses.poses);
+  }
 }
 
 /// The ranks never began. What an earlier run kept is kept; without one, a checkpoint of nothing is there to be

@@ -82,9 +82,7 @@ int exit_code_of(const std::function<int()>& action) {
   } catch (const FileError& error) {
     return complain(error.what(), kFileTrouble);
   } catch (const std::bad_alloc&) {
-    return complain(
-        "there is not enough memory for this; end other programs, raise the limit (ulimit -v), or ask for less",
-        kFileTrouble);
+    return complain(kTooLittleMemory, kFileTrouble);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what() + "; please report it", kInternalError);
   }

@@ -17,6 +17,10 @@ struct Place {
 /// "FILE", "FILE:LINE" or "FILE:LINE:COL", as much as is known; empty where there is no file.
 std::string to_string(const Place& place);
 
+/// Said of std::bad_alloc where it is not known how much is needed; it is a FileError by its exit code.
+inline constexpr const char* kTooLittleMemory =
+    "there is not enough memory for this; end other programs, raise the limit (ulimit -v), or ask for less";
+
 /// The user's command line, study or data is wrong. Ends the program with exit code 2.
 /// what() reads "FILE:LINE:COL: problem; remedy".
 class InputError : public std::runtime_error {

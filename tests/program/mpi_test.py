@@ -216,6 +216,27 @@ class Mpi(RankTest):
         self.assertEqual(code, 3, messages)
         self.assertEqual(messages.count("No space left"), 1, messages)
 
+    def test_too_little_memory(self):
+        """On either rank, from one that cannot begin to one that has no room for what rank 0 found."""
+        self.write("study.toml", COUPLING.replace('model = "3-prs"', 'model = "3-prs", fidelity = "first-order"'))
+        run = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--threads", "1"]
+        little = 0
+        for rank, limit in [(1, 60_000), (1, 90_000), (1, 110_000), (1, 130_000), (1, 150_000), (0, 110_000)]:
+            with self.subTest(rank=rank, limit=limit):
+                limited = ["sh", "-c", f'ulimit -v {limit}; exec "$@"', "sh", *run]
+                of_ranks = (run, limited) if rank == 1 else (limited, run)
+                command = [MPIRUN, "--oversubscribe", "-n", "1", *of_ranks[0], ":", "-n", "1", *of_ranks[1]]
+                done = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True, timeout=60, check=False)
+                self.assertIn(done.returncode, (0, 3), done.stderr)
+                self.assertNotIn(b"internal", done.stderr)
+                self.assertNotIn(b"damaged", done.stderr)
+                if done.returncode == 3:
+                    self.assertIn(b"memory", done.stderr)
+                    little += 1
+                for path in self.folder.glob("out.h5*"):
+                    path.unlink()
+        self.assertGreater(little, 0)
+
     def test_ranks_that_read_another_study(self):
         self.write("study.toml", SENSITIVITY)
         other = self.folder / "elsewhere"

@@ -2,7 +2,9 @@
 
 #include <deque>
 #include <functional>
+#include <limits>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -13,7 +15,8 @@ namespace poesy::test {
 /// Ranks that are threads of this process, with a queue of messages for each.
 class FakeNetwork {
  public:
-  explicit FakeNetwork(std::size_t size) : inboxes_(size) {}
+  /// Ranks after rank 0 have room for messages of so many bytes.
+  FakeNetwork(std::size_t size, std::size_t room) : room_(room), inboxes_(size) {}
 
   void send(std::size_t to, Ranks::Message message) {
     const std::lock_guard lock(mutex_);
@@ -26,6 +29,7 @@ class FakeNetwork {
     if (inboxes_[at].empty()) return std::nullopt;
     Ranks::Message message = std::move(inboxes_[at].front());
     inboxes_[at].pop_front();
+    if (at > 0 && message.bytes.size() > room_) throw std::bad_alloc();
     return message;
   }
 
@@ -41,6 +45,7 @@ class FakeNetwork {
 
  private:
   std::mutex mutex_;
+  std::size_t room_;
   std::vector<std::deque<Ranks::Message>> inboxes_;
   std::size_t bytes_ = 0;
 };
@@ -71,8 +76,9 @@ struct FakeRun {
 
 /// Runs the body on each of the ranks as the program does. Rank 0's exit code: 0, or 9 when it threw, or 7 when the
 /// others were not gone in time.
-inline FakeRun run_on_fake_ranks(std::size_t size, const std::function<void(Team&)>& body) {
-  FakeNetwork network(size);
+inline FakeRun run_on_fake_ranks(std::size_t size, const std::function<void(Team&)>& body,
+                                 std::size_t room = std::numeric_limits<std::size_t>::max()) {
+  FakeNetwork network(size, room);
   FakeRun run;
   run.exit_codes.resize(size);
   std::vector<std::thread> others;

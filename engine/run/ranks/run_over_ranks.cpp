@@ -9,9 +9,11 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include "engine/base/error.h"
 #include "engine/run/run_in_slots.h"
 
 namespace poesy {
@@ -54,14 +56,20 @@ class RankPool {
   RankPool(const RunOptions& options, std::function<SlotJob()> make_work, SlotOf slot_of, SlotJob deliver)
       : slot_of_(std::move(slot_of)), low_(resolved_threads(options.threads)) {
     const auto make_closing = closing([this, make = std::move(make_work)] { return SlotJob(closing(make())); });
-    thread_ = std::thread([this, options, make_closing, give_out = SlotJob(closing(std::move(deliver)))] {
+    const auto run = [this, options, make_closing, give_out = SlotJob(closing(std::move(deliver)))] {
       try {
         run_in_slots([this] { return take(); }, options, make_closing, give_out);
       } catch (...) {
         problem_ = std::current_exception();
         failed_ = true;
       }
-    });
+    };
+    try {
+      thread_ = std::thread(run);
+    } catch (const std::system_error& error) {
+      throw FileError("", "a thread cannot be started (" + error.code().message() + ")",
+                      "raise the limits on processes and memory (ulimit -u, ulimit -v)");
+    }
   }
   RankPool(const RankPool&) = delete;
   RankPool& operator=(const RankPool&) = delete;

@@ -1,5 +1,6 @@
 #include "engine/run/ranks/team.h"
 
+#include <new>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -120,12 +121,18 @@ void Team::leave(LeaveReason reason, const std::string& problem) {
   send(0, leaving);
 }
 
+void Team::pass_over_messages() {
+  try {
+    while (try_receive()) {
+    }
+  } catch (const std::bad_alloc&) {
+    // Long messages are about stages.
+  }
+}
+
 int Team::await_dismissal() {
   try {
-    for (LookPause pause;; pause.sleep()) {
-      while (try_receive()) {
-      }
-    }
+    for (LookPause pause;; pause.sleep()) pass_over_messages();
   } catch (const Dismissed& dismissed) {
     return dismissed.code;
   }
@@ -142,6 +149,8 @@ int Team::follow(const std::function<void()>& body) {
     leave_for(LeaveReason::bad_input, error);
   } catch (const FileError& error) {
     leave_for(LeaveReason::file_trouble, error);
+  } catch (const std::bad_alloc&) {
+    leave(LeaveReason::file_trouble, kTooLittleMemory);
   } catch (const std::exception& error) {
     leave_for(LeaveReason::internal, error);
   }
@@ -161,8 +170,7 @@ bool Team::dismiss(int exit_code, std::chrono::milliseconds patience) {
   send_to_others(over);
   const auto end = std::chrono::steady_clock::now() + patience;
   for (LookPause pause; gone_ + 1 < ranks_->size(); pause.sleep()) {
-    while (try_receive()) {
-    }
+    pass_over_messages();
     if (std::chrono::steady_clock::now() > end) return false;
   }
   return true;

@@ -36,7 +36,8 @@ class Ranks {
   virtual std::string name() const = 0;
   /// Sends bytes to another rank and keeps them until they are on their way.
   virtual void send(std::size_t to, std::shared_ptr<const Bytes> bytes) = 0;
-  /// The next message, if one has come. Those of one sender come in the order in which they were sent.
+  /// The next message, if one has come. Those of one sender come in the order in which they were sent. Throws
+  /// std::bad_alloc when there is no room for it: then it is lost.
   virtual std::optional<Message> try_receive() = 0;
 };
 
@@ -137,6 +138,8 @@ class Team {
  private:
   void send_to_others(ByteWriter& bytes);
   int await_dismissal();
+  /// Takes what has come, when no more is to be done with it. What there is no room for is lost.
+  void pass_over_messages();
   void say_farewell();
   /// Waits for a message; those about other things are passed over.
   Received wait_for(RankMessage about);

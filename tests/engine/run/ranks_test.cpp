@@ -256,6 +256,28 @@ TEST_P(LeavingRank, AlsoWhenItCannotBegin) {
   EXPECT_EQ(ended.left->reason, LeaveReason::internal);
 }
 
+TEST_P(LeavingRank, AlsoWhenItHasNoMemory) {
+  Squares squares{4000};
+  squares.work = [](std::size_t rank, std::size_t n) {
+    doze();
+    if (rank == GetParam() && n > 500) throw std::bad_alloc();
+    return n * n;
+  };
+  Kept kept;
+  const FakeRun ended = kept(4, squares);
+  if (GetParam() == 0) {
+    EXPECT_THROW(std::rethrow_exception(ended.problem), std::bad_alloc);
+    expect_code_everywhere(ended, 9);
+    return;
+  }
+  expect_code_everywhere(ended, 0);
+  ASSERT_TRUE(ended.left);
+  EXPECT_EQ(ended.left->reason, LeaveReason::file_trouble);
+  EXPECT_EQ(ended.left->text, "rank " + std::to_string(GetParam()) + " on fake: " + kTooLittleMemory);
+  EXPECT_EQ(kept.saves, 1U);
+  kept.expect_continued(squares);
+}
+
 TEST_P(LeavingRank, AlsoWhenItCannotPack) {
   Squares squares{4000};
   squares.work = [](std::size_t, std::size_t n) {
@@ -350,6 +372,26 @@ TEST(Ranks, RankZeroInTroubleBetweenStagesEndsTheRunOnAll) {
     Squares{100}(options_of(team));
   });
   expect_code_everywhere(ended, 9);
+}
+
+TEST(Ranks, WithoutRoomForAStateEndTheRunOnAll) {
+  constexpr std::size_t kRoom = 1000;
+  FakeRun ended = run_on_fake_ranks(
+      3,
+      [](Team& team) {
+        EXPECT_EQ(Squares{4000}(options_of(team)), up_to(4000));
+        EXPECT_FALSE(Squares{4000}(options_of(team)));
+      },
+      kRoom);
+  expect_code_everywhere(ended, 0);
+  ASSERT_TRUE(ended.left);
+  EXPECT_EQ(ended.left->reason, LeaveReason::file_trouble);
+  EXPECT_TRUE(ended.left->text.ends_with(kTooLittleMemory)) << ended.left->text;
+
+  // At the end rank 0 has all that it needs.
+  ended = run_on_fake_ranks(
+      3, [](Team& team) { EXPECT_EQ(Squares{4000}(options_of(team)), up_to(4000)); }, kRoom);
+  expect_code_everywhere(ended, 0);
 }
 
 TEST(Ranks, AgreeOnTheStudy) {
