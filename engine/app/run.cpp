@@ -91,7 +91,7 @@ Shard parse_shard(const std::string& text) {
 }
 
 /// Memory was too little for this run.
-FileError too_little_memory(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
+FileError too_little_for_run(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
   return too_little_memory(path, "this run", memory_text(outlook(study, model, poses).memory.peak()));
 }
 
@@ -114,7 +114,7 @@ std::optional<RunOutcome> run_to_end(Job& job, ResumableRun& resumable, bool qui
     throw;
   } catch (const std::bad_alloc&) {
     resumable.rescue();
-    throw too_little_memory(job.path, job.study, job.model, job.poses.poses);
+    throw too_little_for_run(job.path, job.study, job.model, job.poses.poses);
   }
 }
 
@@ -151,7 +151,7 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
                .keep_checkpoint = options.resume.keep_checkpoint,
                .team = &team});
   } catch (const std::bad_alloc&) {
-    throw too_little_memory("", study, *model, poses.poses);
+    throw too_little_for_run("", study, *model, poses.poses);
   }
 }
 

@@ -11,8 +11,11 @@ namespace poesy::file {
 namespace {
 
 constexpr std::int64_t kMostCopies = 100;
-/// Of all limbs. Ranks take time with the cube of it: a second or two for so many.
+/// Of all limbs. Ranks take time with the cube of the axes, descriptions with the square of the frames.
+/// @{
 constexpr std::size_t kMostMovingAxes = 120;
+constexpr std::size_t kMostFrames = 1000;
+/// @}
 constexpr std::array<std::string_view, 6> kCoordinates{"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 constexpr std::array<std::string_view, 6> kComponents{"epsilon_x", "epsilon_y", "epsilon_z",
@@ -253,9 +256,10 @@ const Keys<LimbLines, Nothing>& limb_keys() {
           optional("copies", read_by("table", read_copies), "one", "Limbs alike, turned about an axis of the base."),
           optional("points", kept("table", points, &LimbLines::points), "none",
                    "Points of this limb alone, as in [points]."),
-          needed("joints", kept("list of tables", joints, &LimbLines::joints),
-                 "[ { name = \"A\", type = \"R\", at = [0, 0, 0], axis = \"y\" } ]",
-                 "Its joints, from base to platform. All limbs together have at most 120 moving axes.")}};
+          needed(
+              "joints", kept("list of tables", joints, &LimbLines::joints),
+              "[ { name = \"A\", type = \"R\", at = [0, 0, 0], axis = \"y\" } ]",
+              "Its joints, from base to platform. All limbs together have at most 120 moving axes and 1000 frames.")}};
   return keys;
 }
 
@@ -264,31 +268,47 @@ std::vector<StudyValue> tables(const StudyValue& value) {
   return value.list();
 }
 
-std::size_t moving_axes(const LimbLines& limb) {
-  std::size_t axes = 0;
-  for (const JointLines& joint : limb.joints) axes += joint.kind == JointKind::fixed ? 0 : elements(joint.kind);
-  return limb.copies * axes;
+/// What all limbs have together.
+struct Extent {
+  std::size_t limbs = 0;
+  std::size_t axes = 0;    ///< that move
+  std::size_t frames = 0;  ///< of joints
+
+  void add(const LimbLines& limb) {
+    limbs += limb.copies;
+    for (const JointLines& joint : limb.joints) {
+      const std::size_t count = limb.copies * elements(joint.kind);
+      frames += count;
+      if (joint.kind != JointKind::fixed) axes += count;
+    }
+  }
+};
+
+/// Fails where the limbs up to this one are too many to be studied.
+void check_extent(const Extent& extent, const StudyValue& limb) {
+  const auto check = [&](std::string_view what, std::size_t count, std::size_t most) {
+    if (count <= most) return;
+    limb.fail("brings the " + std::string(what) + " of all limbs to " + std::to_string(count),
+              "a mechanism may have " + std::to_string(most) + "; take fewer joints or copies");
+  };
+  check("moving axes", extent.axes, kMostMovingAxes);
+  check("frames", extent.frames, kMostFrames);
 }
 
 std::vector<LimbLines> limbs(const StudyValue& value) {
   std::vector<LimbLines> list;
-  std::size_t count = 0;
-  std::size_t axes = 0;
+  Extent extent;
   for (const StudyValue& element : tables(value)) {
     LimbLines limb;
     read_keys(limb_keys(), element.section(), limb, Nothing{});
     for (const NamedPoint& named : limb.points) {
       check_new({named.name, named.point.key, named.point.place}, limb.joints, "joint of this limb");
     }
-    count += limb.copies;
-    axes += moving_axes(limb);
-    if (axes > kMostMovingAxes) {
-      element.fail("brings the moving axes of all limbs to " + std::to_string(axes),
-                   "a mechanism may have " + std::to_string(kMostMovingAxes) + "; take fewer joints or copies");
-    }
+    extent.add(limb);
+    check_extent(extent, element);
     list.push_back(std::move(limb));
   }
-  if (count < 2) value.fail("is alone, so nothing closes a loop", "write two limbs or more, or copies");
+  if (extent.limbs < 2) value.fail("is alone, so nothing closes a loop", "write two limbs or more, or copies");
   return list;
 }
 
