@@ -49,11 +49,14 @@ void expect_memory() {
   constexpr std::size_t kLeast = std::size_t{24} << 20U;
   constexpr std::uintmax_t kMega = 1'000'000;
   if (has_address_space(kLeast)) return;
-  throw FileError("",
-                  "this takes " + std::to_string((address_space() + kLeast) / kMega + 1) +
-                      " MB of memory at least, and this process may have " +
-                      std::to_string(most_address_space() / kMega) + " MB",
-                  "raise the limit (ulimit -v)");
+  const FileError error("",
+                        "this takes " + std::to_string((address_space() + kLeast) / kMega + 1) +
+                            " MB of memory at least, and this process may have " +
+                            std::to_string(most_address_space() / kMega) + " MB",
+                        "raise the limit (ulimit -v)");
+  // Not yet connected, it cannot have the first process say so.
+  if (!is_first_process()) say(Message::error, "rank " + std::to_string(find_launch()->rank) + ": " + error.what());
+  throw error;
 }
 
 int parse_and_run(int argc, char** argv) {

@@ -221,7 +221,7 @@ class Mpi(RankTest):
         self.write("study.toml", COUPLING.replace('model = "3-prs"', 'model = "3-prs", fidelity = "first-order"'))
         run = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--threads", "1"]
         little = 0
-        for rank, limit in [(1, 60_000), (1, 90_000), (1, 110_000), (1, 130_000), (1, 150_000), (0, 110_000)]:
+        for rank, limit in [(1, 60_000), (1, 90_000), (1, 130_000), (1, 140_000), (1, 150_000), (1, 160_000), (0, 110_000)]:
             with self.subTest(rank=rank, limit=limit):
                 limited = ["sh", "-c", f'ulimit -v {limit}; exec "$@"', "sh", *run]
                 of_ranks = (run, limited) if rank == 1 else (limited, run)
