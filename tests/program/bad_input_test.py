@@ -1,6 +1,6 @@
 """Bad input gives one clear sentence with its place, exit code 2, and no file; an existing result stays."""
 
-from poesy_program import STUDY, ProgramTest, main
+from poesy_program import AN_OLDER_RESULT, STUDY, ProgramTest, main
 
 
 def changed(old, new):
@@ -115,13 +115,13 @@ class BadInput(ProgramTest):
         for word in words:
             self.assertIn(word, message)
         self.assertEqual(done.stdout, b"")
-        self.assertEqual(result.read_text(), "an older result", "an existing result was touched")
+        self.assertEqual(result.read_text(), AN_OLDER_RESULT, "an existing result was touched")
         self.assertEqual({path.suffix for path in self.folder.iterdir()} - {".toml", ".csv", ".h5"}, set(), "left over")
 
     def test_studies(self):
         for name, (study, place, words) in BAD_STUDIES.items():
             with self.subTest(name):
-                result = self.write("out.h5", "an older result")
+                result = self.write("out.h5", AN_OLDER_RESULT)
                 path = self.write("bad.toml", study)
                 place = f"bad.toml:{place}" if place else "bad.toml"
                 self.check_refusal(self.poesy("run", path.name, "-o", result, "--quiet"), place, words, result)
@@ -131,7 +131,7 @@ class BadInput(ProgramTest):
         self.write("study.toml", STUDY)
         for name, (poses, errors, place, words) in BAD_TABLES.items():
             with self.subTest(name):
-                result = self.write("out.h5", "an older result")
+                result = self.write("out.h5", AN_OLDER_RESULT)
                 self.write("poses.csv", poses)
                 self.write("errors.csv", errors)
                 done = self.poesy("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", result)
@@ -139,7 +139,7 @@ class BadInput(ProgramTest):
 
     def test_pairs_need_equal_numbers(self):
         self.write("study.toml", STUDY)
-        result = self.write("out.h5", "an older result")
+        result = self.write("out.h5", AN_OLDER_RESULT)
         self.write("poses.csv", POSES)
         self.write("errors.csv", ERRORS + "0,0\n")
         done = self.poesy("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "--paired", "-o", result)
@@ -147,7 +147,7 @@ class BadInput(ProgramTest):
 
     def test_folder_as_study(self):
         (self.folder / "dir.toml").mkdir()
-        result = self.write("out.h5", "an older result")
+        result = self.write("out.h5", AN_OLDER_RESULT)
         self.check_refusal(self.poesy("run", "dir.toml", "-o", result), "dir.toml", [], result)
 
     def test_missing_output_folder(self):

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 
-from poesy_program import PROGRAM, main
+from poesy_program import AN_OLDER_RESULT, PROGRAM, main
 from resumption import ALLOCATION, CASES, MONTE_CARLO, SENSITIVITY, ResumptionTest
 
 IN_NAMESPACE = "POESY_IN_MOUNT_NAMESPACE"
@@ -25,7 +25,6 @@ LONG_SENSITIVITY = SENSITIVITY.replace("12300", "40300")
 LONG_MONTE_CARLO = MONTE_CARLO.replace("12300", "40300")
 LONG_ALLOCATION = ALLOCATION.replace("30000", "120000")
 LONG_CASES = CASES.replace("count = 4000", "count = 12000")
-AN_OLDER_RESULT = "an older result"
 
 
 def enter_namespace():

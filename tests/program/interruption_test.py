@@ -4,7 +4,7 @@ import signal
 import subprocess
 import time
 
-from poesy_program import PROGRAM, STUDY, ProgramTest, main
+from poesy_program import AN_OLDER_RESULT, PROGRAM, STUDY, ProgramTest, main
 
 LONG_STUDY = STUDY.replace("samples = 1500", "samples = 100000000").replace("count = 6", "count = 50")
 
@@ -14,14 +14,14 @@ class Interruption(ProgramTest):
         for number in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(number.name):
                 self.write("study.toml", LONG_STUDY)
-                result = self.write("out.h5", "an older result")
+                result = self.write("out.h5", AN_OLDER_RESULT)
                 with subprocess.Popen([PROGRAM, "run", "study.toml", "-o", "out.h5"], cwd=self.folder, stderr=subprocess.PIPE) as run:
                     time.sleep(1.0)
                     run.send_signal(number)
                     _, message = run.communicate(timeout=60)
                 self.assertEqual(run.returncode, 4, message)
                 self.assertIn(b"interrupted", message)
-                self.assertEqual(result.read_text(), "an older result")
+                self.assertEqual(result.read_text(), AN_OLDER_RESULT)
                 self.assertEqual({path.name for path in self.folder.iterdir()}, {"study.toml", "out.h5", "out.h5.part"})
                 (self.folder / "out.h5.part").unlink()
 
