@@ -192,11 +192,11 @@ TEST(ResultFile, ReplacesAnOlderResultAndLeavesNothingBeside) {
 
 TEST(CheckResultPath, TakesNewAndExistingFiles) {
   const TempFolder folder;
-  write_bytes(folder / "old.h5", "old");
+  write_bytes(folder / "old.h5", "poesy-result");
   EXPECT_NO_THROW(check_result_path(folder / "new.h5"));
   EXPECT_NO_THROW(check_result_path(folder / "old.h5"));
   EXPECT_NO_THROW(check_result_path("in-the-current-folder.h5"));
-  EXPECT_EQ(read_bytes(folder / "old.h5"), "old");
+  EXPECT_EQ(read_bytes(folder / "old.h5"), "poesy-result");
   EXPECT_EQ(files_in(folder.path()), 1U);
 }
 
