@@ -56,8 +56,12 @@ std::vector<double> read_column(const std::string& path, std::string_view column
 /// semicolons and quotes, and not beginning with = + - or @, which spreadsheets take for a formula.
 std::optional<std::string> label_problem(std::string_view label);
 
-/// The rule of label_problem() in words, for remedies.
+/// The rule of label_problem() in words: as a remedy, and as the meaning of a key.
+/// @{
 inline constexpr std::string_view kLabelRule =
-    "write at most 60 printable characters, without commas, semicolons and quotes, that do not begin with = + - or @";
+    "write at most 60 bytes of printable text without commas, semicolons and quotes, not beginning with = + - or @";
+inline constexpr std::string_view kNameMeaning =
+    "Its name: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning.";
+/// @}
 
 }  // namespace poesy

@@ -126,7 +126,7 @@ def mechanism_texts():
         ("100 copies of 40 joints", lambda text: instead(joint, joints(40))(instead(copies, "copies = { count = 100,")(text))),
         ("4000 joints", instead(joint, joints(4000))),
         ("400 joints that do not move", instead(joint, joint + joints(400, "fixed"))),
-        ("1000 joints that do not move", instead(joint, joint + joints(1000, "fixed"))),
+        ("20000 joints that do not move", instead(joint, joint + joints(20000, "fixed"))),
         ("1000 limbs", lambda text: text.replace("[errors]", limb(text) * 1000 + "[errors]")),
         ("a limb of no joint", section_instead("[limb]", "[[limb]]\njoints = []\n\n")),
         ("nested brackets in a formula", instead('["a", 0, 0]', '["' + "(" * DEEP + "a" + ")" * DEEP + '", 0, 0]')),

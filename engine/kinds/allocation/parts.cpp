@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/kinds/allocation/cost_keys.h"
 #include "engine/kinds/allocation/members.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 namespace {
@@ -264,11 +265,7 @@ StudyTable parts_table() {
           "bounds, values, grades, processes and tolerance says of what it is chosen; with none of them it is "
           "any value.",
       .keys = {
-          {.name = "name",
-           .type = "text",
-           .usual = "the name of its first error",
-           .meaning =
-               "Name of the part: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning."},
+          {.name = "name", .type = "text", .usual = "the name of its first error", .meaning = kNameMeaning},
           {.name = "factors",
            .type = "text or list of texts",
            .required = true,
@@ -329,27 +326,21 @@ StudyTable parts_table() {
 }  // namespace
 
 StudyTables part_tables() {
-  return {
-      parts_table(),
-      cost_table(),
-      {.paths = {"analysis.parts.processes"},
-       .meaning = "A way to make the part.",
-       .keys = {
-           {.name = "name",
-            .type = "text",
-            .usual = "1, 2 and so on",
-            .meaning =
-                "Name of the process: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning."},
-           {.name = "cost",
-            .type = "table",
-            .required = true,
-            .missing = "write what its tolerances cost, e.g. {}",
-            .example = "{ law = \"reciprocal\", a = 1, b = 2, unit = \"mm\" }",
-            .meaning = "What a tolerance by this process costs."},
-           {.name = "bounds",
-            .type = "list of two quantities",
-            .usual = "any tolerance",
-            .meaning = "The least and the largest tolerance that the process holds."}}}};
+  return {parts_table(),
+          cost_table(),
+          {.paths = {"analysis.parts.processes"},
+           .meaning = "A way to make the part.",
+           .keys = {{.name = "name", .type = "text", .usual = "1, 2 and so on", .meaning = kNameMeaning},
+                    {.name = "cost",
+                     .type = "table",
+                     .required = true,
+                     .missing = "write what its tolerances cost, e.g. {}",
+                     .example = "{ law = \"reciprocal\", a = 1, b = 2, unit = \"mm\" }",
+                     .meaning = "What a tolerance by this process costs."},
+                    {.name = "bounds",
+                     .type = "list of two quantities",
+                     .usual = "any tolerance",
+                     .meaning = "The least and the largest tolerance that the process holds."}}}};
 }
 
 std::optional<double> read_sigmas(const StudySection& section) {

@@ -8,6 +8,7 @@
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 namespace {
@@ -135,18 +136,13 @@ StudyTables case_tables() {
   const StudyTable cases{
       .paths = {"analysis.cases"},
       .meaning = "For kind = \"evaluate\".",
-      .keys = {
-          {.name = "name",
-           .type = "text",
-           .usual = "case 1, case 2 and so on",
-           .meaning =
-               "Name of the case: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning."},
-          {.name = "errors",
-           .type = "table",
-           .required = true,
-           .missing = "write e.g. {}",
-           .example = "{ linear = \"0.1 mm\", angular = \"0.1 deg\" }",
-           .meaning = "The errors that the case sets."}}};
+      .keys = {{.name = "name", .type = "text", .usual = "case 1, case 2 and so on", .meaning = kNameMeaning},
+               {.name = "errors",
+                .type = "table",
+                .required = true,
+                .missing = "write e.g. {}",
+                .example = "{ linear = \"0.1 mm\", angular = \"0.1 deg\" }",
+                .meaning = "The errors that the case sets."}}};
   const StudyTable errors{.paths = {"analysis.cases.errors"},
                           .meaning = "The narrower wins. What is not set has the background's value, or is zero.",
                           .keys = {{.name = "FACTOR", .type = "quantity", .meaning = "One error."},

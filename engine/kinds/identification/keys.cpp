@@ -5,6 +5,7 @@
 #include "engine/base/text.h"
 #include "engine/kinds/identification/identification.h"
 #include "engine/study/study_kind.h"
+#include "engine/study/table_file.h"
 
 namespace poesy {
 namespace {
@@ -18,21 +19,18 @@ const InnerRows<ErrorSize>& group_keys() {
   static const InnerRows<ErrorSize> keys{
       .paths = {"analysis.groups[]"},
       .meaning = "For kind = \"identification\".",
-      .rows = {
-          InnerRow<ErrorSize>{
-              .name = "name",
-              .value = text_at(&ErrorSize::name),
-              .usual = "group 1, group 2 and so on",
-              .meaning =
-                  "Name of the group: at most 60 bytes, no commas, semicolons or quotes, no = + - @ at its beginning."},
-          InnerRow<ErrorSize>{.name = "linear",
-                              .value = positive_at(Dimension::length, &ErrorSize::linear),
-                              .missing = "a group sets both",
-                              .meaning = "Size of errors that are lengths."},
-          InnerRow<ErrorSize>{.name = "angular",
-                              .value = positive_at(Dimension::angle, &ErrorSize::angular),
-                              .missing = "a group sets both",
-                              .meaning = "Size of errors that are angles."}}};
+      .rows = {InnerRow<ErrorSize>{.name = "name",
+                                   .value = text_at(&ErrorSize::name),
+                                   .usual = "group 1, group 2 and so on",
+                                   .meaning = kNameMeaning},
+               InnerRow<ErrorSize>{.name = "linear",
+                                   .value = positive_at(Dimension::length, &ErrorSize::linear),
+                                   .missing = "a group sets both",
+                                   .meaning = "Size of errors that are lengths."},
+               InnerRow<ErrorSize>{.name = "angular",
+                                   .value = positive_at(Dimension::angle, &ErrorSize::angular),
+                                   .missing = "a group sets both",
+                                   .meaning = "Size of errors that are angles."}}};
   return keys;
 }
 
