@@ -180,17 +180,19 @@ constexpr std::array<std::string_view, 3> kBeside{".toml", "_mechanism.toml", "_
 /// What such a study says of itself, before the result's name.
 constexpr std::string_view kRepeats = "repeats the certificate of ";
 
-/// Writes it beside the result: RESULT_certificate.toml. Gives its path.
+/// Writes it beside the result: RESULT_certificate.toml. Gives its path. The study comes first: files that none names
+/// are the user's for the next run (check_files_beside), and a kill in between must leave no such files.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";
   const std::string stem = stem_beside(result);
-  for (const std::string_view end : kBeside)
+  for (const std::string_view end : kBeside) {
     remove_left_over((result.parent_path() / (stem + std::string(end))).string());
+  }
   name_files_beside(confirming, stem);
-  write_files_beside(folder, confirming, job.poses.poses);
   const std::string comment = std::string(kRepeats) + printable_line(result.filename().string());
   const std::filesystem::path written = write_confirming_study(folder, stem, confirming, comment);
+  write_files_beside(folder, confirming, job.poses.poses);
   return written.lexically_normal().string();
 }
 
