@@ -180,8 +180,9 @@ constexpr std::array<std::string_view, 3> kBeside{".toml", "_mechanism.toml", "_
 /// What such a study says of itself, before the result's name.
 constexpr std::string_view kRepeats = "repeats the certificate of ";
 
-/// Writes it beside the result: RESULT_certificate.toml. Gives its path. The study comes first: files that none names
-/// are the user's for the next run (check_files_beside), and a kill in between must leave no such files.
+/// Writes the study and the files that it names beside the result. Gives the study's path, RESULT_certificate.toml.
+/// The study is written first: the next run refuses to replace files that no study names (check_files_beside), so a
+/// killed run must not leave such files.
 std::string write_beside(const Job& job, Study confirming) {
   const std::filesystem::path result(job.path);
   const std::string folder = result.has_parent_path() ? result.parent_path().string() : ".";

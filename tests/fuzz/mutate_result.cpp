@@ -135,7 +135,7 @@ hid_t strange_storage(hid_t space, const Shape& shape, Random& random) {
   return storage;
 }
 
-void link(hid_t file, const std::string& to, const std::string& name, Random& random) {
+void add_link(hid_t file, const std::string& to, const std::string& name, Random& random) {
   switch (random() % 3) {
     case 0:
       H5Lcreate_external(random() % 2 == 0 ? kOtherFile : ".", to.c_str(), file, name.c_str(), H5P_DEFAULT,
@@ -166,14 +166,14 @@ void change(hid_t file, Random& random) {
   const std::string& dataset = names.datasets[random() % names.datasets.size()];
   const std::string& group = names.groups[random() % names.groups.size()];
   const std::string& part = random() % 4 == 0 ? group : dataset;
+  if (random() % 4 == 0) return change_attribute(file, part, random);
   const Shape shape = shape_of(file, dataset);
   const hid_t type = H5Dget_type(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT));
-  if (random() % 4 == 0) return change_attribute(file, part, random);
   const std::string to = random() % 2 == 0 ? group : names.datasets[random() % names.datasets.size()];
   H5Ldelete(file, part.c_str(), H5P_DEFAULT);
   switch (random() % 5) {
     case 0:
-      return link(file, to, part, random);
+      return add_link(file, to, part, random);
     case 1:
       H5Gcreate2(file, part.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
       return;
@@ -208,7 +208,7 @@ void limit(int resource, rlim_t most) {
   ::_exit(H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ? 1 : 0);
 }
 
-/// None where HDF5 does not make it, as of a damaged file.
+/// Nothing when HDF5 cannot change the file, for example because it is damaged.
 std::optional<std::vector<char>> with_strange_part(std::span<const std::uint8_t> file, std::uint32_t seed) {
   const MemoryFile changed(file);
   const pid_t child = ::fork();

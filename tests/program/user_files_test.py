@@ -142,7 +142,7 @@ class UserFiles(ProgramTest):
         for _ in range(2):  # its own are replaced
             self.ends(0, "run", "a.toml", "--quiet")
             self.assertTrue(theirs.exists())
-        # Whenever a run is killed, poses that stand there have a study that names them.
+        # The study is written first, so a killed run leaves no poses that no study names.
         self.assertLessEqual((self.folder / "a_certificate.toml").stat().st_mtime_ns, theirs.stat().st_mtime_ns)
         theirs.unlink()
         self.ends(0, "run", "a.toml", "--quiet")
