@@ -166,7 +166,8 @@ void change(hid_t file, Random& random) {
   const std::string& dataset = names.datasets[random() % names.datasets.size()];
   const std::string& group = names.groups[random() % names.groups.size()];
   const std::string& part = random() % 4 == 0 ? group : dataset;
-  if (random() % 4 == 0) return change_attribute(file, part, random);
+  const bool is_root = part == ".";
+  if (is_root || random() % 4 == 0) return change_attribute(file, part, random);
   const Shape shape = shape_of(file, dataset);
   const hid_t type = H5Dget_type(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT));
   const std::string to = random() % 2 == 0 ? group : names.datasets[random() % names.datasets.size()];
