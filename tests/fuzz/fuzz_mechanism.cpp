@@ -17,13 +17,23 @@ namespace {
 
 using namespace poesy;
 
+/// Without the words between tags: a joint may be called nan.
+std::string tags_of(const std::string& svg) {
+  std::string tags;
+  for (std::size_t begin = svg.find('<'); begin != std::string::npos; begin = svg.find('<', begin + 1)) {
+    tags += svg.substr(begin, svg.find('>', begin) - begin);
+  }
+  return tags;
+}
+
 void draw(const std::string& text) {
   const file::MechanismFile file = file::read_mechanism_file(text, "mechanism.toml");
   const file::Mechanism mechanism = file::mechanism(file, file::default_geometry(file));
   fuzz::expect(!file::structure_text(mechanism).empty(), "its joints are described");
   const Sketch sketch = file::sketch_of(mechanism);
   fuzz::expect(!mechanism_picture(sketch, file.title).empty(), "every title is drawn");
-  fuzz::expect(mechanism_picture(sketch, "").find("nan") == std::string::npos, "every place in a picture is a number");
+  fuzz::expect(tags_of(mechanism_picture(sketch, "")).find("nan") == std::string::npos,
+               "every place in a picture is a number");
 }
 
 void build(const std::string& text) {
