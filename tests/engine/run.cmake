@@ -18,7 +18,8 @@ poesy_test(cell_stats_test LABELS determinism SOURCES engine/kinds/sensitivity/c
 poesy_test(linearity_test LABELS determinism SOURCES engine/kinds/sensitivity/linearity_test.cpp LINKS poesy_kinds)
 poesy_test(unit_order_test LABELS determinism SOURCES engine/run/unit_order_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(failures_test LABELS determinism SOURCES engine/run/failures_test.cpp LINKS poesy_kinds)
-poesy_test(continuation_test LABELS robustness SOURCES engine/run/checkpoints_test.cpp engine/run/continuation_test.cpp LINKS poesy_kinds)
+poesy_test(continuation_test LABELS robustness SOURCES engine/run/checkpoints_test.cpp engine/run/continuation_test.cpp
+           engine/run/hostile_states_test.cpp LINKS poesy_kinds)
 poesy_test(adaptive_test LABELS determinism SOURCES engine/run/adaptive_test.cpp LINKS poesy_kinds)
 poesy_test(adaptive_statistical_test LABELS statistical SOURCES engine/run/adaptive_statistical_test.cpp
            LINKS poesy_kinds Boost::headers)

@@ -1,12 +1,21 @@
-// Runs a fuzz target over the files of the folders on the command line.
+// Runs a fuzz target over the files of the folders on the command line. A seed must be accepted, for the fuzzer finds
+// little behind a file that is refused at its beginning: seeds are the files of a folder `corpus` but for found_*,
+// which a fuzzer found, and refused_*.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string>
 #include <vector>
 
 #include "tests/fuzz/target.h"
 
 namespace {
+
+bool is_seed(const std::filesystem::path& path) {
+  const std::string name = path.filename();
+  return path.parent_path().parent_path().filename() == "corpus" && !name.starts_with("found_") &&
+         !name.starts_with("refused_");
+}
 
 void run(const std::filesystem::path& path) {
   std::printf("%s\n", path.c_str());
@@ -15,7 +24,9 @@ void run(const std::filesystem::path& path) {
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const std::vector<std::uint8_t> input(bytes.begin(),
                                         bytes.end());  // of this size exactly: no byte may be read beyond
+  const std::size_t before = poesy::fuzz::accepted_reads;
   LLVMFuzzerTestOneInput(input.data(), input.size());
+  poesy::fuzz::expect(!is_seed(path) || poesy::fuzz::accepted_reads > before, "a seed is accepted");
 }
 
 }  // namespace

@@ -11,14 +11,13 @@
 #include "engine/files/shard_file.h"
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/identification/identification.h"
-#include "engine/kinds/monte_carlo/kind.h"
-#include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/run/evaluation.h"
+#include "engine/kinds/study_run.h"
+#include "engine/run/checkpoints.h"
 #include "engine/run/run_options.h"
 #include "tests/engine/kinds/example_result.h"
-#include "tests/fuzz/small_plans.h"
 #include "tests/support/kinds.h"
+#include "tests/support/small_studies.h"
 #include "tests/support/states.h"
 
 namespace {
@@ -134,39 +133,22 @@ void write_results(const std::string& folder) {
   write_shard_seed(folder + "/shard");
 }
 
-/// The states of a run at every moment at which it may stop.
-template <class Run>
-std::vector<Bytes> states_of(const Run& run) {
-  std::vector<Bytes> states;
+/// The states of a run's stages at every moment at which it may stop.
+std::vector<std::vector<Bytes>> states_of(const test::SmallStudy& small) {
+  std::vector<std::vector<Bytes>> states;
   Checkpoints checkpoints([] { return true; },
-                          [&](std::span<const ByteSource> stages) { states.push_back(bytes_of(stages.back())); });
-  RunOptions options;
-  options.threads = 1;
-  options.checkpoints = &checkpoints;
-  run(options);
+                          [&](std::span<const ByteSource> stages) { states.push_back(test::bytes_of_each(stages)); });
+  run_study(small.study, *small.model, small.poses, {.threads = 1, .checkpoints = &checkpoints});
   checkpoints.save();
   return states;
 }
 
-std::vector<Bytes> evaluation_states() {
-  std::vector<Bytes> states;
-  EvaluationResult result = fuzz::empty_evaluation();
-  EvaluationProgress progress(result, fuzz::kBlockRows, Shard());
-  const ByteSource state = [&](ByteWriter& to) { progress.write_state(to); };
-  for (std::size_t block = 0; block < 6; ++block) {
-    states.push_back(bytes_of(state));
-    progress.add_block();
-  }
-  states.push_back(bytes_of(state));
-  return states;
-}
-
-/// Without the digest, which the fuzzer adds.
-void write_checkpoint(const std::string& path, std::span<const Bytes> stages) {
+/// Without the digest, which the fuzzer adds. seed: which small study it is of.
+void write_checkpoint(const std::string& path, std::uint64_t seed, std::span<const Bytes> stages) {
   const CheckpointIdentity identity{.poesy_version = "0.1.0",
                                     .git_commit = "abc",
                                     .model = "fake",
-                                    .seed = 5,
+                                    .seed = seed,
                                     .samples = 2300,
                                     .study = "[poses]\ncount = 2\n",
                                     .poses = "0123",
@@ -179,24 +161,15 @@ void write_checkpoint(const std::string& path, std::span<const Bytes> stages) {
       .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
 }
 
-/// One in the middle and one at the end of the run.
-void write_checkpoints(const std::string& path, const std::vector<Bytes>& states) {
-  write_checkpoint(path + "_begun", std::span(states).subspan(states.size() / 2, 1));
-  write_checkpoint(path + "_done", std::span(states).last(1));
-}
-
+/// Of each study one in the middle and one at the end of the run.
 void write_checkpoints(const std::string& folder) {
-  const fuzz::SmallPlan one_by_one(&kSensitivityStudy);
-  const fuzz::SmallPlan together(&kMonteCarloStudy);
-  write_checkpoints(folder + "/sensitivity", states_of([&](const RunOptions& options) {
-                      run_sensitivity(one_by_one.plan, *one_by_one.model, 0.95, options);
-                    }));
-  write_checkpoints(folder + "/monte_carlo", states_of([&](const RunOptions& options) {
-                      run_monte_carlo(together.plan, *together.model, together.study.analysis, options);
-                    }));
-  write_checkpoints(folder + "/evaluation", evaluation_states());
-  write_checkpoint(folder + "/all_stages", evaluation_states());
-  write_checkpoint(folder + "/empty", {});
+  const std::span<const test::SmallStudy> studies = test::small_studies();
+  for (std::size_t k = 0; k < studies.size(); ++k) {
+    const std::vector<std::vector<Bytes>> states = states_of(studies[k]);
+    write_checkpoint(folder + "/" + studies[k].name + "_begun", k, states[states.size() / 2]);
+    write_checkpoint(folder + "/" + studies[k].name + "_done", k, states.back());
+  }
+  write_checkpoint(folder + "/empty", 0, {});
 }
 
 }  // namespace

@@ -48,11 +48,15 @@ inline void expect(bool condition, const char* what) {
   std::abort();
 }
 
+/// How many reads gave something, of all inputs so far.
+inline std::size_t accepted_reads = 0;
+
 /// Whether read() gives something rather than an Error.
 template <class Error, class Read>
 bool accepted(const Read& read) {
   try {
     read();
+    ++accepted_reads;
     return true;
   } catch (const Error& error) {
     expect(error.what()[0] != '\0', "an error says what is wrong");

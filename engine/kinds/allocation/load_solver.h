@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/bytes.h"
 #include "engine/model/model.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
@@ -24,6 +25,16 @@ inline SolveCounts as_converged(std::uint64_t solves) {
   SolveCounts counts;
   counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
   return counts;
+}
+
+/// So many loads as ByteWriter::reals() wrote them: none is negative, that of a machine without a solution is infinite.
+/// Throws BytesError.
+inline std::vector<double> read_loads(ByteReader& from, std::size_t count) {
+  std::vector<double> loads = from.reals(count);
+  if (!std::ranges::all_of(loads, [](double load) { return load >= 0.0; })) {
+    throw BytesError("has loads that no machine has");
+  }
+  return loads;
 }
 
 /// Solves machines at all poses of a plan, and finds their loads. Owns the scratch of one thread.

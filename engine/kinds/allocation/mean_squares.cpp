@@ -17,6 +17,7 @@ constexpr std::uint64_t kKind = 71;          ///< no other state begins with thi
 constexpr std::size_t kNodes = 3;            ///< mu - sigma, 0, mu + sigma
 constexpr std::size_t kDrawsOfPiece = 16;    ///< that one piece of work takes
 constexpr double kUnsolvedOverLimit = 10.0;  ///< what a sample without a solution counts as
+constexpr double kLargestSum = 1e100;        ///< of squares: far above all there are, and its slopes are still finite
 
 /// What a piece of work finds at its pose: K limits, P errors.
 struct AddedSquares {
@@ -189,6 +190,7 @@ class MeanSquareWork {
     solved_ = from.number();
     for (auto* list : {&base_, &alone_, &among_, &counted_}) from.reals(std::span(*list));
     from.expect_end();
+    if (!is_possible()) throw BytesError("has sums that no responses give");
   }
   static bool next_round() { return false; }
 
@@ -213,6 +215,15 @@ class MeanSquareWork {
   std::array<std::uint64_t, 5> sizes() const { return {kKind, limits_.size(), pieces_.poses, pieces_.draws, errors()}; }
   SolveCounts solves_of(std::size_t n) const {
     return as_converged(kNodes * errors() * (pieces_.alone(n) ? 1 : pieces_.draws_of(n)));
+  }
+
+  bool is_possible() const {
+    std::uint64_t solves = 0;
+    for (std::size_t n = 0; n < next_; ++n) solves += solves_of(n).total();
+    const auto is_sum = [](double sum) { return std::abs(sum) <= kLargestSum; };
+    return solved_ == solves && std::ranges::all_of(base_, [&](double y) { return is_sum(y) && y >= 0.0; }) &&
+           std::ranges::all_of(alone_, is_sum) && std::ranges::all_of(among_, is_sum) &&
+           std::ranges::all_of(counted_, [&](double n) { return n >= 0.0 && n <= static_cast<double>(pieces_.draws); });
   }
 
   const Plan& plan_;

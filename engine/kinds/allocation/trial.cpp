@@ -130,10 +130,10 @@ class TrialWork {
     TriedPiece found;
     const std::size_t piece = begun_ + n;
     const std::size_t count = machines_.count_of(piece);
-    found.load = from.reals(count);
-    found.pose_load = from.reals(plan_.poses().size());
-    read_poses(from, machines_.number(machines_.first(piece)), end_of(machines_.first(piece) + count), found.solves,
-               found.failed);
+    found.load = read_loads(from, count);
+    found.pose_load = read_loads(from, plan_.poses().size());
+    read_poses(from, count, machines_.number(machines_.first(piece)), end_of(machines_.first(piece) + count),
+               found.solves, found.failed);
     for (std::size_t k = 0; k < limits_.size(); ++k) found.beyond.push_back(from.number_up_to(count));
     found.unsolved = from.number_up_to(count);
     return found;
@@ -156,11 +156,11 @@ class TrialWork {
     }
     next_ = static_cast<std::size_t>(from.number_up_to(machines_.pieces()));
     const std::size_t count = std::min(machines_.count, machines_.first(next_));
-    trial_.load = from.reals(count);
-    trial_.pose_load = from.reals(plan_.poses().size());
+    trial_.load = read_loads(from, count);
+    trial_.pose_load = read_loads(from, plan_.poses().size());
     trial_.solves.clear();
     trial_.failed.clear();
-    read_poses(from, count == 0 ? 0 : machines_.number(0), end_of(count), trial_.solves, trial_.failed);
+    read_poses(from, count, count == 0 ? 0 : machines_.number(0), end_of(count), trial_.solves, trial_.failed);
     for (std::uint64_t& beyond : trial_.beyond) beyond = from.number_up_to(count);
     trial_.unsolved = from.number_up_to(count);
     from.expect_end();
@@ -173,10 +173,12 @@ class TrialWork {
   std::array<std::uint64_t, 4> sizes() const { return {kKind, machines_.count, plan_.poses().size(), limits_.size()}; }
   /// The number after that of the last of so many machines.
   std::uint64_t end_of(std::size_t count) const { return count == 0 ? 0 : machines_.number(count - 1) + 1; }
-  void read_poses(ByteReader& from, std::uint64_t first, std::uint64_t end, std::vector<SolveCounts>& solves,
-                  std::vector<FailedSamples>& failed) const {
+  /// Of `count` machines, with numbers first .. end - 1.
+  void read_poses(ByteReader& from, std::size_t count, std::uint64_t first, std::uint64_t end,
+                  std::vector<SolveCounts>& solves, std::vector<FailedSamples>& failed) const {
     for (std::size_t m = 0; m < plan_.poses().size(); ++m) solves.push_back(SolveCounts::read(from));
     for (const SolveCounts& one : solves) {
+      if (one.total() != count) throw BytesError("has a pose with other machines");
       failed.push_back(FailedSamples::read(from, one.not_converged(), first, end));
     }
   }

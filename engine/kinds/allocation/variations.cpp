@@ -161,7 +161,7 @@ class VariationWork {
   }
   VariedPiece read(std::size_t n, ByteReader& from) const {
     const std::size_t piece = begun_ + n;
-    VariedPiece found{from.reals(varied_.loads_of(piece)), 0};
+    VariedPiece found{read_loads(from, varied_.loads_of(piece)), 0};
     found.solves = from.number_up_to(varied_.solves_of(piece, plan_.poses().size()));
     return found;
   }
@@ -192,7 +192,7 @@ class VariationWork {
       most += varied_.solves_of(piece, plan_.poses().size());
     }
     solves_ = from.number_up_to(most);
-    loads_ = from.reals(count);
+    loads_ = read_loads(from, count);
     from.expect_end();
   }
   static bool next_round() { return false; }

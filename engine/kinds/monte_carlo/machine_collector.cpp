@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-constexpr std::uint64_t kKind = 3;  ///< no other state begins with this number
+constexpr std::uint64_t kKind = 4;  ///< no other state begins with this number
 
 }  // namespace
 

@@ -111,7 +111,11 @@ class ChangeWork {
   static SolveCounts solved() { return {}; }
   static std::uint64_t left() { return 0; }
   void write_state(ByteWriter& to) const { to.reals(changes_); }
-  void restore(std::span<const std::byte> state) { ByteReader(state).reals(std::span(changes_)); }
+  void restore(std::span<const std::byte> state) {
+    ByteReader from(state);
+    from.reals(std::span(changes_));
+    from.expect_end();
+  }
   static bool next_round() { return false; }
 
   std::vector<double> result() && { return std::move(changes_); }

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/bytes.h"
+#include "engine/base/error.h"
+#include "engine/kinds/study_run.h"
+#include "engine/run/checkpoints.h"
+#include "engine/run/run_options.h"
+#include "tests/support/small_studies.h"
+#include "tests/support/states.h"
+
+/// States that no run left: a run refuses them or goes on from them, and nothing else happens. Sanitizers and contracts
+/// see the rest.
+namespace poesy {
+namespace {
+
+using States = std::vector<Bytes>;
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+/// The states of the stages at each moment at which the run could have been stopped.
+std::vector<States> states_of(const test::SmallStudy& small) {
+  std::vector<States> all;
+  Checkpoints checkpoints([] { return true; },
+                          [&](std::span<const ByteSource> stages) { all.push_back(test::bytes_of_each(stages)); });
+  run_study(small.study, *small.model, small.poses, {.threads = 1, .checkpoints = &checkpoints});
+  checkpoints.save();
+  return all;
+}
+
+/// Whether the run goes on from these states.
+bool accepted(const test::SmallStudy& small, const States& states) {
+  Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {}, states);
+  try {
+    run_study(small.study, *small.model, small.poses, {.threads = 1, .checkpoints = &checkpoints});
+    return true;
+  } catch (const BytesError&) {
+    return false;
+  } catch (const InputError&) {
+    return true;  // it went on, and no tolerances keep the limits at these numbers
+  }
+}
+
+/// The state with the real at this place, or what lies there, changed.
+Bytes with_real(Bytes state, std::size_t at, double value) {
+  std::memcpy(&state.at(at), &value, std::min(sizeof value, state.size() - at));
+  return state;
+}
+
+class HostileStates : public testing::TestWithParam<std::size_t> {
+ protected:
+  const test::SmallStudy& small() const { return test::small_studies()[GetParam()]; }
+};
+
+TEST_P(HostileStates, AreTakenOrRefused) {
+  constexpr std::size_t kPlaces = 40;
+  const std::vector<States> all = states_of(small());
+  for (const States& moment : {all[all.size() / 2], all.back()}) {
+    ASSERT_TRUE(accepted(small(), moment));
+    for (std::size_t stage = 0; stage < moment.size(); ++stage) {
+      States changed = moment;
+      const Bytes& sound = moment[stage];
+      for (std::size_t at = 0; at < sound.size(); at += 1 + sound.size() / kPlaces) {
+        for (const double value : {kNoNumber, -1.0, 1e300}) {
+          changed[stage] = with_real(sound, at, value);
+          static_cast<void>(accepted(small(), changed));
+        }
+        changed[stage] = sound;
+        changed[stage][at] ^= std::byte{1};
+        static_cast<void>(accepted(small(), changed));
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SmallStudies, HostileStates, testing::Range(std::size_t{0}, test::small_studies().size()),
+                         [](const auto& one) {
+                           std::string name = test::small_studies()[one.param].name;
+                           std::erase(name, '_');
+                           return name;
+                         });
+
+/// Where the reals of a state begin that has so many numbers before them.
+std::size_t first_real(const Bytes& state, std::size_t numbers) {
+  ByteReader from(state);
+  for (std::size_t k = 0; k < numbers; ++k) from.number();
+  return state.size() - from.left();
+}
+
+TEST(HostileStatesOfToleranceSearches, HaveNoImpossibleNumbers) {
+  const auto small = std::ranges::find(test::small_studies(), "allocation", &test::SmallStudy::name);
+  const States sound = states_of(*small).back();
+  ASSERT_TRUE(accepted(*small, sound));
+  // By what a state begins with: the numbers before its reals (mean_squares.cpp, trial.cpp, variations.cpp).
+  const auto numbers = [](std::uint64_t kind) { return kind == 71 ? 7U : kind == 72 ? 5U : 6U; };
+  std::set<std::uint64_t> tried;
+  for (std::size_t stage = 0; stage < sound.size(); ++stage) {
+    const std::uint64_t kind = ByteReader(sound[stage]).number();
+    const std::size_t at = first_real(sound[stage], numbers(kind));
+    if (at == sound[stage].size()) continue;
+    tried.insert(kind);
+    for (const double value : {kNoNumber, -1.0}) {
+      States changed = sound;
+      changed[stage] = with_real(sound[stage], at, value);
+      EXPECT_FALSE(accepted(*small, changed)) << "stage " << stage << ", " << value;
+    }
+  }
+  EXPECT_EQ(tried, (std::set<std::uint64_t>{71, 72, 73}));
+}
+
+}  // namespace
+}  // namespace poesy
