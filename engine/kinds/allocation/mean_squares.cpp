@@ -221,9 +221,12 @@ class MeanSquareWork {
     std::uint64_t solves = 0;
     for (std::size_t n = 0; n < next_; ++n) solves += solves_of(n).total();
     const auto is_sum = [](double sum) { return std::abs(sum) <= kLargestSum; };
+    const auto is_count = [&](double n) {
+      return n >= 0.0 && n <= static_cast<double>(pieces_.draws) && n == std::floor(n);
+    };
     return solved_ == solves && std::ranges::all_of(base_, [&](double y) { return is_sum(y) && y >= 0.0; }) &&
            std::ranges::all_of(alone_, is_sum) && std::ranges::all_of(among_, is_sum) &&
-           std::ranges::all_of(counted_, [&](double n) { return n >= 0.0 && n <= static_cast<double>(pieces_.draws); });
+           std::ranges::all_of(counted_, is_count);
   }
 
   const Plan& plan_;
