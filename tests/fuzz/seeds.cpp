@@ -12,9 +12,6 @@
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/identification/identification.h"
 #include "engine/kinds/sensitivity/result.h"
-#include "engine/kinds/study_run.h"
-#include "engine/run/checkpoints.h"
-#include "engine/run/run_options.h"
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/kinds.h"
 #include "tests/support/small_studies.h"
@@ -133,16 +130,6 @@ void write_results(const std::string& folder) {
   write_shard_seed(folder + "/shard");
 }
 
-/// The states of a run's stages at every moment at which it may stop.
-std::vector<std::vector<Bytes>> states_of(const test::SmallStudy& small) {
-  std::vector<std::vector<Bytes>> states;
-  Checkpoints checkpoints([] { return true; },
-                          [&](std::span<const ByteSource> stages) { states.push_back(test::bytes_of_each(stages)); });
-  run_study(small.study, *small.model, small.poses, {.threads = 1, .checkpoints = &checkpoints});
-  checkpoints.save();
-  return states;
-}
-
 /// Without the digest, which the fuzzer adds. seed: which small study it is of.
 void write_checkpoint(const std::string& path, std::uint64_t seed, std::span<const Bytes> stages) {
   const CheckpointIdentity identity{.poesy_version = "0.1.0",
@@ -165,7 +152,7 @@ void write_checkpoint(const std::string& path, std::uint64_t seed, std::span<con
 void write_checkpoints(const std::string& folder) {
   const std::span<const test::SmallStudy> studies = test::small_studies();
   for (std::size_t k = 0; k < studies.size(); ++k) {
-    const std::vector<std::vector<Bytes>> states = states_of(studies[k]);
+    const std::vector<std::vector<Bytes>> states = test::states_of(studies[k]);
     write_checkpoint(folder + "/" + studies[k].name + "_begun", k, states[states.size() / 2]);
     write_checkpoint(folder + "/" + studies[k].name + "_done", k, states.back());
   }

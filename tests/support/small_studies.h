@@ -7,11 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/bytes.h"
 #include "engine/kinds/study_file.h"
+#include "engine/kinds/study_run.h"
 #include "engine/model/model.h"
+#include "engine/run/checkpoints.h"
+#include "engine/run/run_options.h"
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 #include "tests/support/fake_model.h"
+#include "tests/support/states.h"
 
 namespace poesy::test {
 
@@ -115,6 +120,16 @@ inline std::span<const SmallStudy> small_studies() {
     return list;
   }();
   return all;
+}
+
+/// The states of the study's stages at each moment at which its run could be stopped.
+inline std::vector<std::vector<Bytes>> states_of(const SmallStudy& small) {
+  std::vector<std::vector<Bytes>> states;
+  Checkpoints checkpoints([] { return true; },
+                          [&](std::span<const ByteSource> stages) { states.push_back(bytes_of_each(stages)); });
+  run_study(small.study, *small.model, small.poses, {.threads = 1, .checkpoints = &checkpoints});
+  checkpoints.save();
+  return states;
 }
 
 }  // namespace poesy::test

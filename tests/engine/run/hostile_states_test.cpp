@@ -14,7 +14,6 @@
 #include "engine/run/checkpoints.h"
 #include "engine/run/run_options.h"
 #include "tests/support/small_studies.h"
-#include "tests/support/states.h"
 
 /// States that no run left: a run refuses them or goes on from them, and nothing else happens. Sanitizers and contracts
 /// see the rest.
@@ -24,16 +23,6 @@ namespace {
 using States = std::vector<Bytes>;
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
-
-/// The states of the stages at each moment at which the run could have been stopped.
-std::vector<States> states_of(const test::SmallStudy& small) {
-  std::vector<States> all;
-  Checkpoints checkpoints([] { return true; },
-                          [&](std::span<const ByteSource> stages) { all.push_back(test::bytes_of_each(stages)); });
-  run_study(small.study, *small.model, small.poses, {.threads = 1, .checkpoints = &checkpoints});
-  checkpoints.save();
-  return all;
-}
 
 /// Whether the run goes on from these states.
 bool accepted(const test::SmallStudy& small, const States& states) {
@@ -61,7 +50,7 @@ class HostileStates : public testing::TestWithParam<std::size_t> {
 
 TEST_P(HostileStates, AreTakenOrRefused) {
   constexpr std::size_t kPlaces = 40;
-  const std::vector<States> all = states_of(small());
+  const std::vector<States> all = test::states_of(small());
   for (const States& moment : {all[all.size() / 2], all.back()}) {
     ASSERT_TRUE(accepted(small(), moment));
     for (std::size_t stage = 0; stage < moment.size(); ++stage) {
@@ -96,7 +85,7 @@ std::size_t first_real(const Bytes& state, std::size_t numbers) {
 
 TEST(HostileStatesOfToleranceSearches, HaveNoImpossibleNumbers) {
   const auto small = std::ranges::find(test::small_studies(), "allocation", &test::SmallStudy::name);
-  const States sound = states_of(*small).back();
+  const States sound = test::states_of(*small).back();
   ASSERT_TRUE(accepted(*small, sound));
   // By what a state begins with: the numbers before its reals (mean_squares.cpp, trial.cpp, variations.cpp).
   const auto numbers = [](std::uint64_t kind) { return kind == 71 ? 7U : kind == 72 ? 5U : 6U; };
