@@ -205,15 +205,15 @@ bool PricePath::is_centred(double mu) const {
 bool PricePath::centre(double mu) {
   respond(mu);
   for (int step = 0; step < kNewtonSteps && !is_centred(mu); ++step) {
-    find_direction(mu);
+    if (!find_direction(mu)) return false;
     move(mu);
   }
   return is_centred(mu);
 }
 
 /// Newton's direction in units of the prices: (P A G A' P + mu I) d = mu - P slack, with P = diag(prices), G =
-/// diag(give).
-void PricePath::find_direction(double mu) {
+/// diag(give). False where the system has numbers too large for it.
+bool PricePath::find_direction(double mu) {
   const std::size_t count = rows_.size();
   const std::size_t parts = problem_.parts();
   std::vector<double> scaled(count * parts);
@@ -232,6 +232,7 @@ void PricePath::find_direction(double mu) {
   }
   factorise(matrix, count);
   solve(matrix, direction_);
+  return std::ranges::all_of(direction_, [](double one) { return std::isfinite(one); });
 }
 
 /// Goes along the direction. The function is concave, so its slope falls on the way. A step that makes it as negative

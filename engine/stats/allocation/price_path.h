@@ -87,7 +87,7 @@ class PricePath {
   void respond(double mu);
   bool is_centred(double mu) const;
   bool centre(double mu);
-  void find_direction(double mu);
+  bool find_direction(double mu);
   void move(double mu);
   bool join_broken(double mu);
   PathPoint here() const;
