@@ -48,7 +48,7 @@ class HostileStates : public testing::TestWithParam<std::size_t> {
   const test::SmallStudy& small() const { return test::small_studies()[GetParam()]; }
 };
 
-TEST_P(HostileStates, AreTakenOrRefused) {
+TEST_P(HostileStates, AreTaken) {
   constexpr std::size_t kPlaces = 40;
   const std::vector<States> all = test::states_of(small());
   for (const States& moment : {all[all.size() / 2], all.back()}) {
@@ -69,7 +69,7 @@ TEST_P(HostileStates, AreTakenOrRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(SmallStudies, HostileStates, testing::Range(std::size_t{0}, test::small_studies().size()),
+INSTANTIATE_TEST_SUITE_P(Small, HostileStates, testing::Range(std::size_t{0}, test::small_studies().size()),
                          [](const auto& one) {
                            std::string name = test::small_studies()[one.param].name;
                            std::erase(name, '_');
