@@ -1,6 +1,5 @@
 // A checkpoint without the digest at its end, which is put there: else nothing but the digest would be tried. A small
-// study takes its states up, as its seed says which one, gives them back and goes on from them.
-#include <algorithm>
+// study, which the seed in the checkpoint chooses, takes its states up, gives them back and continues from them.
 #include <atomic>
 #include <utility>
 #include <vector>
@@ -20,7 +19,8 @@ namespace {
 using namespace poesy;
 using State = std::span<const std::byte>;
 
-/// Continues the study from these states until it ends, or, if it is to stop, no further than it must. The states then.
+/// Continues the study from these states, to its end or, with `stop`, until it first looks whether to stop. Gives its
+/// states then.
 std::vector<Bytes> continued(const test::SmallStudy& small, std::vector<Bytes> states, bool stop) {
   Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {}, std::move(states));
   const std::atomic<bool> stopped{stop};

@@ -1,6 +1,6 @@
-// Runs a fuzz target over the files of the folders on the command line. A seed must be accepted, for the fuzzer finds
-// little behind a file that is refused at its beginning: seeds are the files of a folder `corpus` but for found_*,
-// which a fuzzer found, and refused_*.
+// Runs a fuzz target over the files of the folders on the command line. A seed must be accepted, because a fuzzer
+// hardly gets past the check that refuses its seeds. Every file in a folder `corpus` is a seed, except found_*, which a
+// fuzzer found, and refused_*, which are meant to be refused.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -130,7 +130,7 @@ void write_results(const std::string& folder) {
   write_shard_seed(folder + "/shard");
 }
 
-/// Without the digest, which the fuzzer adds. seed: which small study it is of.
+/// Without the digest, which the fuzzer adds. seed: the position of its study among the small ones.
 void write_checkpoint(const std::string& path, std::uint64_t seed, std::span<const Bytes> stages) {
   const CheckpointIdentity identity{.poesy_version = "0.1.0",
                                     .git_commit = "abc",

@@ -48,7 +48,7 @@ inline void expect(bool condition, const char* what) {
   std::abort();
 }
 
-/// How many reads gave something, of all inputs so far.
+/// Number of accepted reads, over all inputs so far.
 inline std::size_t accepted_reads = 0;
 
 /// Whether read() gives something rather than an Error.

@@ -111,8 +111,8 @@ inline SmallStudy small_study(const SmallAnalysis& analysis) {
 
 }  // namespace detail
 
-/// One for each way in which studies keep states: of each kind, with adaptive samples, and so on. Samples end with a
-/// unit that is smaller than the others.
+/// One study for each way in which studies keep states: each kind, adaptive samples, two fidelities and so on. Where
+/// samples are drawn, the last unit is smaller than the others.
 inline std::span<const SmallStudy> small_studies() {
   static const std::vector<SmallStudy> all = [] {
     std::vector<SmallStudy> list;

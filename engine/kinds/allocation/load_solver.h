@@ -27,8 +27,8 @@ inline SolveCounts as_converged(std::uint64_t solves) {
   return counts;
 }
 
-/// So many loads as ByteWriter::reals() wrote them: none is negative, that of a machine without a solution is infinite.
-/// Throws BytesError.
+/// Reads `count` loads that ByteWriter::reals() wrote. No load is negative; that of a machine without a solution is
+/// infinite. Throws BytesError.
 inline std::vector<double> read_loads(ByteReader& from, std::size_t count) {
   std::vector<double> loads = from.reals(count);
   if (!std::ranges::all_of(loads, [](double load) { return load >= 0.0; })) {

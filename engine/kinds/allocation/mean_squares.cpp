@@ -17,7 +17,7 @@ constexpr std::uint64_t kKind = 71;          ///< no other state begins with thi
 constexpr std::size_t kNodes = 3;            ///< mu - sigma, 0, mu + sigma
 constexpr std::size_t kDrawsOfPiece = 16;    ///< that one piece of work takes
 constexpr double kUnsolvedOverLimit = 10.0;  ///< what a sample without a solution counts as
-constexpr double kLargestSum = 1e100;        ///< of squares: far above all there are, and its slopes are still finite
+constexpr double kLargestSum = 1e100;        ///< of squares: responses stay far below it, and slopes from it are finite
 
 /// What a piece of work finds at its pose: K limits, P errors.
 struct AddedSquares {
@@ -217,14 +217,14 @@ class MeanSquareWork {
     return as_converged(kNodes * errors() * (pieces_.alone(n) ? 1 : pieces_.draws_of(n)));
   }
 
+  /// Whether responses can give the state that was read.
   bool is_possible() const {
-    std::uint64_t solves = 0;
-    for (std::size_t n = 0; n < next_; ++n) solves += solves_of(n).total();
     const auto is_sum = [](double sum) { return std::abs(sum) <= kLargestSum; };
     const auto is_count = [&](double n) {
       return n >= 0.0 && n <= static_cast<double>(pieces_.draws) && n == std::floor(n);
     };
-    return solved_ == solves && std::ranges::all_of(base_, [&](double y) { return is_sum(y) && y >= 0.0; }) &&
+    return solved_ + left() == mean_square_solves(plan_, pieces_.draws) &&
+           std::ranges::all_of(base_, [&](double y) { return is_sum(y) && y >= 0.0; }) &&
            std::ranges::all_of(alone_, is_sum) && std::ranges::all_of(among_, is_sum) &&
            std::ranges::all_of(counted_, is_count);
   }

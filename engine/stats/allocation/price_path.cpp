@@ -212,7 +212,7 @@ bool PricePath::centre(double mu) {
 }
 
 /// Newton's direction in units of the prices: (P A G A' P + mu I) d = mu - P slack, with P = diag(prices), G =
-/// diag(give). False where the system has numbers too large for it.
+/// diag(give). False when the direction is not finite because numbers overflow.
 bool PricePath::find_direction(double mu) {
   const std::size_t count = rows_.size();
   const std::size_t parts = problem_.parts();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <set>
 #include <span>
 #include <string>
@@ -10,21 +9,20 @@
 
 #include "engine/base/bytes.h"
 #include "engine/base/error.h"
+#include "engine/base/nan.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/checkpoints.h"
 #include "engine/run/run_options.h"
 #include "tests/support/small_studies.h"
 
-/// States that no run left: a run refuses them or goes on from them, and nothing else happens. Sanitizers and contracts
-/// see the rest.
+/// States that were changed after a run wrote them. A run must refuse them or continue from them; sanitizers and
+/// contracts see what else goes wrong.
 namespace poesy {
 namespace {
 
 using States = std::vector<Bytes>;
 
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
-
-/// Whether the run goes on from these states.
+/// Whether the run continues from these states.
 bool accepted(const test::SmallStudy& small, const States& states) {
   Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {}, states);
   try {
@@ -33,11 +31,11 @@ bool accepted(const test::SmallStudy& small, const States& states) {
   } catch (const BytesError&) {
     return false;
   } catch (const InputError&) {
-    return true;  // it went on, and no tolerances keep the limits at these numbers
+    return true;  // it continued, and found no tolerances that keep the limits
   }
 }
 
-/// The state with the real at this place, or what lies there, changed.
+/// The state with the bytes of this real from position `at` on.
 Bytes with_real(Bytes state, std::size_t at, double value) {
   std::memcpy(&state.at(at), &value, std::min(sizeof value, state.size() - at));
   return state;
@@ -48,7 +46,7 @@ class HostileStates : public testing::TestWithParam<std::size_t> {
   const test::SmallStudy& small() const { return test::small_studies()[GetParam()]; }
 };
 
-TEST_P(HostileStates, AreTaken) {
+TEST_P(HostileStates, TakenOrRefused) {
   constexpr std::size_t kPlaces = 40;
   const std::vector<States> all = test::states_of(small());
   for (const States& moment : {all[all.size() / 2], all.back()}) {
@@ -57,7 +55,7 @@ TEST_P(HostileStates, AreTaken) {
       States changed = moment;
       const Bytes& sound = moment[stage];
       for (std::size_t at = 0; at < sound.size(); at += 1 + sound.size() / kPlaces) {
-        for (const double value : {kNoNumber, -1.0, 1e300}) {
+        for (const double value : {kNaN, -1.0, 1e300}) {
           changed[stage] = with_real(sound, at, value);
           static_cast<void>(accepted(small(), changed));
         }
@@ -76,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Small, HostileStates, testing::Range(std::size_t{0}, te
                            return name;
                          });
 
-/// Where the reals of a state begin that has so many numbers before them.
+/// The position of the first real in a state with so many numbers before it.
 std::size_t first_real(const Bytes& state, std::size_t numbers) {
   ByteReader from(state);
   for (std::size_t k = 0; k < numbers; ++k) from.number();
@@ -87,7 +85,8 @@ TEST(HostileStatesOfToleranceSearches, HaveNoImpossibleNumbers) {
   const auto small = std::ranges::find(test::small_studies(), "allocation", &test::SmallStudy::name);
   const States sound = test::states_of(*small).back();
   ASSERT_TRUE(accepted(*small, sound));
-  // By what a state begins with: the numbers before its reals (mean_squares.cpp, trial.cpp, variations.cpp).
+  // How many numbers stand before the reals, by the number with which the state begins: mean_squares.cpp, trial.cpp and
+  // variations.cpp.
   const auto numbers = [](std::uint64_t kind) { return kind == 71 ? 7U : kind == 72 ? 5U : 6U; };
   std::set<std::uint64_t> tried;
   for (std::size_t stage = 0; stage < sound.size(); ++stage) {
@@ -95,7 +94,7 @@ TEST(HostileStatesOfToleranceSearches, HaveNoImpossibleNumbers) {
     const std::size_t at = first_real(sound[stage], numbers(kind));
     if (at == sound[stage].size()) continue;
     tried.insert(kind);
-    for (const double value : {kNoNumber, -1.0}) {
+    for (const double value : {kNaN, -1.0}) {
       States changed = sound;
       changed[stage] = with_real(sound[stage], at, value);
       EXPECT_FALSE(accepted(*small, changed)) << "stage " << stage << ", " << value;
