@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <new>
 #include <system_error>
 #include <utility>
@@ -18,6 +17,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
+#include "engine/base/plain_file.h"
 #include "engine/base/text.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/file_writer.h"
@@ -85,17 +85,23 @@ Bytes take_blocks(ByteReader& from) {
   }
 }
 
-/// The next block of a file, empty at the end of a state. Throws BytesError.
-void read_block(std::istream& file, Bytes& block) {
+/// Reads all of `to` from position `at` on. Throws BytesError.
+void read_all(const PlainFile& file, std::uintmax_t at, std::span<std::byte> to) {
+  if (!file.is_open() || file.read(at, to) != to.size()) throw BytesError("ends too early");
+}
+
+/// The next block of a file, empty at the end of a state. `at` goes from where it begins to its end. Throws BytesError.
+void read_block(const PlainFile& file, std::uintmax_t& at, Bytes& block) {
   constexpr std::size_t kMostDigits = 10;
   constexpr std::byte kMore{0x80};
   block.clear();
   do {
-    block.push_back(static_cast<std::byte>(file.get()));
-  } while (file && block.size() < kMostDigits && (block.back() & kMore) != std::byte{0});
+    block.resize(block.size() + 1);
+    read_all(file, at++, std::span(block).last(1));
+  } while (block.size() < kMostDigits && (block.back() & kMore) != std::byte{0});
   block.resize(ByteReader(block).number_up_to(ByteWriter::kPiece));
-  if (file.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(block.size()))) return;
-  throw BytesError("ends too early");
+  read_all(file, at, block);
+  at += block.size();
 }
 
 double seconds(ByteReader& from) {
@@ -110,17 +116,21 @@ std::string program(const CheckpointIdentity& identity) {
 
 /// A checkpoint, or why there is none to be had.
 std::variant<Checkpoint, std::string> read_checkpoint(const std::string& path) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return stands(path) ? "is not a plain file" : "does not exist";
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (file && !has_mark(path, kCheckpointMagic)) return kNoCheckpoint;
-  const std::uintmax_t size = file ? fs::file_size(path, ignored) : 0;
+  const auto unreadable = [](int reason) { return "cannot be read (" + std::generic_category().message(reason) + ")"; };
+  const PlainFile file(path);
+  const bool nothing = file.other().empty() && file.error() == ENOENT;
+  if (nothing || !file.other().empty()) return stands(path) ? "is not a plain file" : "does not exist";
+  if (!file.is_open()) return unreadable(file.error());
+  std::array<char, kCheckpointMagic.size()> magic{};
+  if (file.read(0, std::as_writable_bytes(std::span(magic))) && !std::ranges::equal(magic, kCheckpointMagic)) {
+    return kNoCheckpoint;
+  }
+  const std::uintmax_t size = file.size();
   try {
     Bytes bytes(static_cast<std::size_t>(size));
-    if (!file || !file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-      return "cannot be read (" + std::generic_category().message(errno) + ")";
-    }
+    const auto read = file.read(0, bytes);
+    if (!read) return unreadable(errno);
+    bytes.resize(*read);
     return decode_checkpoint(bytes);
   } catch (const BytesError& error) {
     return error.what();
@@ -258,7 +268,7 @@ std::optional<FoundCheckpoint> CheckpointFiles::find() {
 }
 
 void CheckpointFiles::hold(const std::string& path, std::vector<StoredState> states) {
-  held_ = std::ifstream(path, std::ios::binary);
+  held_ = PlainFile(path);
   states_ = std::move(states);
 }
 
@@ -281,12 +291,11 @@ void CheckpointFiles::write(const CheckpointIdentity& identity, const RunTime& t
 
 void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
   POESY_EXPECTS(stage < states_.size());
-  held_.clear();
-  held_.seekg(static_cast<std::streamoff>(states_[stage].offset));
+  std::uintmax_t at = states_[stage].offset;
   Sha256 sha;
   try {
     Bytes block;
-    for (read_block(held_, block); !block.empty(); read_block(held_, block)) {
+    for (read_block(held_, at, block); !block.empty(); read_block(held_, at, block)) {
       sha.bytes(block);
       to.raw(block);
     }
@@ -297,7 +306,8 @@ void CheckpointFiles::write_state(std::size_t stage, ByteWriter& to) {
 }
 
 void CheckpointFiles::remove() {
-  hold({}, {});  // an open file would take room still
+  held_ = PlainFile();  // an open file would take room still
+  states_.clear();
   // The newest last, so that what is left of a removal that was cut short is the newest.
   for (const std::string* path : {&older_, &newer_}) {
     std::error_code error;

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/bytes.h"
+#include "engine/base/plain_file.h"
 #include "engine/run/shard.h"
 #include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
@@ -119,7 +119,7 @@ class CheckpointFiles {
   std::string newer_;
   std::string older_;
   bool newer_is_sound_ = false;  ///< only then it may replace the older one
-  std::ifstream held_;           ///< what was found or written last, if it could be opened
+  PlainFile held_;               ///< what was found or written last, if it could be opened
   std::vector<StoredState> states_;
 };
 

@@ -12,13 +12,13 @@
 #include <cerrno>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/plain_file.h"
 
 namespace poesy {
 namespace {
@@ -102,16 +102,13 @@ std::optional<struct stat> model_of(const std::string& path, const std::string& 
   return std::nullopt;
 }
 
-/// The beginning of a plain file; none where there is no such file, or it cannot be read. To open a FIFO is to wait.
+/// The beginning of a plain file; none where there is no such file, or it cannot be read.
 std::optional<std::string> head_of(const std::string& path) {
   constexpr std::size_t kHead = 1 << 16;
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
+  const PlainFile file(path);
+  if (!file.is_open()) return std::nullopt;
   std::string head(kHead, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
+  head.resize(file.read(0, std::as_writable_bytes(std::span(head))).value_or(0));
   return head;
 }
 
@@ -331,16 +328,18 @@ void put_at_second_name(const std::string& path, const std::string& second, Link
     if (error) fail(error);
     return;
   }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(std::error_code(errno, std::generic_category()));
+  const PlainFile file(path);
+  if (!file.is_open()) fail(std::error_code(file.error(), std::generic_category()));
   constexpr std::size_t kPart = 1 << 16;
-  std::array<char, kPart> part{};
+  std::vector<std::byte> part(kPart);
   FileWriter copy(second, path);
-  while (file) {
-    file.read(part.data(), part.size());
-    copy.write(std::string_view(part.data(), static_cast<std::size_t>(file.gcount())));
+  for (std::uintmax_t at = 0;;) {
+    const auto bytes = file.read(at, part);
+    if (!bytes) fail(std::error_code(errno, std::generic_category()));
+    if (*bytes == 0) break;
+    copy.write(std::span(part).first(*bytes));
+    at += *bytes;
   }
-  if (!file.eof()) fail(std::make_error_code(std::errc::io_error));
   copy.commit();
 }
 

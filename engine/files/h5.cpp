@@ -9,11 +9,13 @@
 #include <map>
 #include <new>
 #include <numeric>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
 #include "engine/base/address_space.h"
 #include "engine/base/contract.h"
+#include "engine/base/plain_file.h"
 #include "engine/files/h5_disk.h"
 
 namespace poesy::h5 {
@@ -417,13 +419,23 @@ File File::on_disk(FileWriter& disk) {
 
 File File::open(const std::string& path) {
   silence();
+  PlainFile plain(path);
+  if (!plain.is_open()) {
+    const std::string reason = std::generic_category().message(plain.error());
+    throw Error("cannot open " + path + " (" + (plain.other().empty() ? reason : "is " + std::string(plain.other())) +
+                ")");
+  }
+  // It takes no lock: result files are replaced, never changed in place, and some file systems have none.
+  auto driver = std::make_unique<Input>(std::move(plain));
   const Handle access = property_list(H5P_FILE_ACCESS);
-  // Result files are replaced, never changed in place: nothing to lock, and some file systems cannot.
-  checked(H5Pset_file_locking(access.get(), 0, 1), "switch off locking of", path);
-  return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "open", path));
+  checked(driver->choose_for(access.get()), "prepare", path);
+  File file(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "open", path));
+  file.input_ = std::move(driver);
+  return file;
 }
 
-File::File(File&& other) noexcept : disk_(std::move(other.disk_)), id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+File::File(File&& other) noexcept
+    : disk_(std::move(other.disk_)), input_(std::move(other.input_)), id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
 
 File::~File() {
   if (id_ != H5I_INVALID_HID) H5Fclose(id_);
@@ -432,6 +444,7 @@ File::~File() {
 void File::close() {
   checked(H5Fclose(std::exchange(id_, H5I_INVALID_HID)), "close", "the file");
   disk_.reset();
+  input_.reset();
 }
 
 void File::make_group(const std::string& path) {

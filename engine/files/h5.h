@@ -19,6 +19,7 @@ class FileWriter;
 namespace poesy::h5 {
 
 class Disk;
+class Input;
 
 /// A call into HDF5 failed. what() is a clause: what was tried on which object, and HDF5's own reason.
 class Error : public std::runtime_error {
@@ -66,7 +67,8 @@ class File {
   /// An empty file in what `disk` writes, which must live as long and be committed after close(). An error of the disk
   /// is kept there (FileWriter::check) and is none of HDF5's, unless it is to read back what was not written.
   static File on_disk(FileWriter& disk);
-  static File open(const std::string& path);  ///< An existing file, read-only.
+  /// An existing plain file, read-only. Throws Error at once for a FIFO or a device.
+  static File open(const std::string& path);
 
   File(File&& other) noexcept;  ///< Leaves a file that may only be destroyed.
   File& operator=(File&&) = delete;
@@ -125,7 +127,8 @@ class File {
  private:
   explicit File(std::int64_t id);
 
-  std::unique_ptr<Disk> disk_;  // of a file on one
+  std::unique_ptr<Disk> disk_;    // of a new file on one
+  std::unique_ptr<Input> input_;  // of an existing file
   std::int64_t id_;
 };
 

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "engine/base/plain_file.h"
+
 namespace poesy {
 
 class FileWriter;
@@ -25,6 +27,23 @@ class Disk {
 
  private:
   std::shared_ptr<FileWriter*> writer_;  // shared with the files that HDF5 has open
+  std::int64_t driver_;
+};
+
+/// A file driver for HDF5 that reads an existing file from what is open already: by its name HDF5 would open whatever
+/// has that name by then, and wait there if it is a FIFO.
+class Input {
+ public:
+  explicit Input(PlainFile file);  ///< Throws Error when HDF5 does not take the driver. Precondition: it is open.
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+  ~Input();
+
+  /// Lets files that are opened with this access property list be this one. Negative when HDF5 refuses.
+  int choose_for(std::int64_t access) const;
+
+ private:
+  std::shared_ptr<const PlainFile> file_;  // shared with the files that HDF5 has open
   std::int64_t driver_;
 };
 

@@ -2,17 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/plain_file.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/file_writer.h"
 #include "engine/study/text_file.h"
@@ -32,15 +34,17 @@ constexpr const char* kRemedy = "name another folder with -d, or move it away";
 /// SHA-256 of a file; none when it cannot be read.
 std::optional<std::string> hash_of(const std::string& path) {
   constexpr std::size_t kPart = 1 << 16;
-  std::ifstream file(path, std::ios::binary);
+  const PlainFile file(path);
+  if (!file.is_open()) return std::nullopt;
   Sha256 hash;
-  std::array<char, kPart> part{};
-  while (file) {
-    file.read(part.data(), part.size());
-    hash.bytes(std::as_bytes(std::span(part).first(static_cast<std::size_t>(file.gcount()))));
+  std::vector<std::byte> part(kPart);
+  std::uintmax_t at = 0;
+  while (const auto bytes = file.read(at, part)) {
+    if (*bytes == 0) return hex(hash.digest());
+    hash.bytes(std::span(part).first(*bytes));
+    at += *bytes;
   }
-  if (!file.eof()) return std::nullopt;
-  return hex(hash.digest());
+  return std::nullopt;
 }
 
 }  // namespace

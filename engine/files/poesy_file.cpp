@@ -12,16 +12,15 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <new>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
 #include "engine/base/address_space.h"
+#include "engine/base/plain_file.h"
 #include "engine/files/checkpoint.h"
-#include "engine/study/text_file.h"
 
 namespace poesy {
 namespace {
@@ -36,8 +35,9 @@ constexpr std::uintmax_t kBytesAWaitedSecond = std::uintmax_t{4} << 20U;
 
 bool is_checkpoint(const std::string& path) {
   std::array<char, kCheckpointMagic.size()> begin{};
-  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
-  return std::ranges::equal(begin, kCheckpointMagic);
+  const PlainFile file(path);
+  return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) &&
+         std::ranges::equal(begin, kCheckpointMagic);
 }
 
 h5::File open_hdf5(const std::string& path) {
@@ -90,20 +90,9 @@ class Descriptor {
   int number_;
 };
 
-/// Bytes of a file that are on its disk: without the holes of a sparse one, which make it look as large as one likes.
-std::uintmax_t stored_bytes(const std::string& path) {
-  constexpr int kMostPieces = 10'000;
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  std::uintmax_t bytes = 0;
-  off_t end = 0;
-  for (int piece = 0; piece < kMostPieces; ++piece) {
-    const off_t begin = ::lseek(file.number(), end, SEEK_DATA);
-    if (begin < 0) break;  // there is none behind the end
-    end = ::lseek(file.number(), begin, SEEK_HOLE);
-    if (end < 0) break;
-    bytes += static_cast<std::uintmax_t>(end - begin);
-  }
-  return bytes;
+rlim_t stored_bytes(const std::string& path) {
+  const PlainFile file(path);
+  return file.is_open() ? file.stored_bytes() : 0;
 }
 
 /// What such a child says; any other says what the FileError said.
@@ -248,12 +237,10 @@ bool is_out_of_memory(const std::exception& error) {
 }
 
 void check_readable(const std::string& path) {
-  if (const std::string_view other = other_than_file(path); !other.empty()) {
-    throw FileError(path, "is " + std::string(other), kOther);
-  }
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (file.number() < 0) {
-    throw FileError(path, "cannot be read (" + std::generic_category().message(errno) + ")", kOther);
+  const PlainFile file(path);
+  if (!file.other().empty()) throw FileError(path, "is " + std::string(file.other()), kOther);
+  if (!file.is_open()) {
+    throw FileError(path, "cannot be read (" + std::generic_category().message(file.error()) + ")", kOther);
   }
 }
 

@@ -62,7 +62,7 @@ void expect_filetype(const std::string& path, const h5::File& file, std::string_
 /// Whether HDF5 failed for want of memory.
 bool is_out_of_memory(const std::exception& error);
 
-/// Throws FileError when there is no such file to read. A FIFO or a device is none, and said at once.
+/// Throws FileError when there is no such plain file to read.
 void check_readable(const std::string& path);
 
 /// Opens a file that poesy wrote and gives what `use(file)` gives. Because HDF5 fails over a damaged file in other ways

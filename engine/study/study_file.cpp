@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
+#include <span>
 
 #include "engine/base/contract.h"
+#include "engine/base/plain_file.h"
 #include "engine/base/text.h"
 #include "engine/schema/toml_text.h"
 #include "engine/study/study_kind.h"
@@ -17,14 +17,12 @@ namespace {
 
 constexpr std::size_t kMostStudyBytes = 1 << 20;
 
-/// Whether a file, not a pipe, has the signature of HDF5.
+/// Whether a plain file has the signature of HDF5.
 bool begins_like_hdf5(const std::string& path) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  const PlainFile file(path);
   std::string begin(kSignature.size(), '\0');
-  std::ifstream file(path, std::ios::binary);
-  return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == kSignature;
+  return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) && begin == kSignature;
 }
 
 /// Keeps the numbers of cells and solves within what memory and 64-bit counts hold.

@@ -1,16 +1,12 @@
 #include "engine/study/text_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
-#include <memory>
+#include <span>
 #include <system_error>
 
+#include "engine/base/plain_file.h"
 #include "engine/base/text.h"
 
 namespace poesy {
@@ -21,74 +17,28 @@ namespace {
                   "check the path and its permissions");
 }
 
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, Close>;
-
 constexpr std::size_t kMostCsvBytes = std::size_t{1} << 31;
-
-/// What a mode says; empty for a plain file.
-std::string_view other_of(mode_t mode) {
-  switch (mode & S_IFMT) {
-    case S_IFDIR:
-      return "a folder";
-    case S_IFIFO:
-      return "a FIFO";
-    case S_IFCHR:
-    case S_IFBLK:
-      return "a device";
-    case S_IFSOCK:
-      return "a socket";
-    default:
-      return {};
-  }
-}
-
-void expect_plain(const std::string& path, std::string_view what, std::string_view other) {
-  if (other.empty()) return;
-  throw InputError({path}, "is " + std::string(other) + ", not a " + std::string(what), "name a file");
-}
-
-/// Opens without waiting, and looks at what was opened: the path may have become another file's. Reading does not wait
-/// either, as for the next message of /proc/kmsg, which looks like a plain file.
-File open_plain(const std::string& path, std::string_view what) {
-  expect_plain(path, what, other_than_file(path));
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (descriptor < 0) unreadable(path, errno);
-  File file(::fdopen(descriptor, "rb"));
-  if (!file) {
-    const int reason = errno;
-    ::close(descriptor);
-    unreadable(path, reason);
-  }
-  struct stat opened {};
-  if (::fstat(descriptor, &opened) != 0) unreadable(path, errno);
-  expect_plain(path, what, other_of(opened.st_mode));
-  return file;
-}
 
 }  // namespace
 
-std::string_view other_than_file(const std::string& path) {
-  struct stat there {};
-  return ::stat(path.c_str(), &there) == 0 ? other_of(there.st_mode) : std::string_view();
-}
-
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes) {
-  const File file = open_plain(path, what);
+  const PlainFile file(path);
+  if (!file.other().empty()) {
+    throw InputError({path}, "is " + std::string(file.other()) + ", not a " + std::string(what), "name a file");
+  }
+  if (!file.is_open()) unreadable(path, file.error());
   std::string text;
   std::array<char, 65536> part{};
-  while (const std::size_t bytes = std::fread(part.data(), 1, part.size(), file.get())) {
-    text.append(part.data(), bytes);
+  while (const auto bytes = file.read(text.size(), std::as_writable_bytes(std::span(part)))) {
+    if (*bytes == 0) return text;
+    text.append(part.data(), *bytes);
     if (text.size() > most_bytes) {
       throw InputError(
           {path}, "has more than the " + std::to_string(most_bytes) + " bytes a " + std::string(what) + " may have",
           "name another file");
     }
   }
-  if (std::ferror(file.get()) != 0) unreadable(path, errno);
-  return text;
+  unreadable(path, errno);
 }
 
 CsvLines::CsvLines(const std::string& path, std::string_view what)

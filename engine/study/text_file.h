@@ -9,10 +9,6 @@
 
 namespace poesy {
 
-/// What there is at a path in place of a plain file: "a folder", "a FIFO", "a device", "a socket". Empty for a plain
-/// file, and where nothing can be looked at. Opens nothing: to open a FIFO is to wait for whoever writes to it.
-std::string_view other_than_file(const std::string& path);
-
 /// Reads a whole file. `what` names what it should be, for messages ("study").
 /// Throws InputError for what is no plain file or has more than most_bytes, FileError when it cannot be read.
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes);

@@ -1,3 +1,3 @@
-poesy_test(base_test LABELS unit SOURCES engine/base/bytes_test.cpp engine/base/name_pattern_test.cpp
+poesy_test(base_test LABELS unit SOURCES engine/base/bytes_test.cpp engine/base/name_pattern_test.cpp engine/base/plain_file_test.cpp
            engine/base/text_test.cpp engine/base/units_test.cpp
            LINKS poesy_base)

@@ -1,0 +1,96 @@
+// Whoever reads a file by its name a moment after it has looked at it may meet a FIFO there, and wait for ever.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/files/checkpoint.h"
+#include "engine/files/file_writer.h"
+#include "engine/files/h5.h"
+#include "engine/files/output_folder.h"
+#include "engine/files/poesy_file.h"
+#include "tests/support/swapped_file.h"
+#include "tests/support/temp_folder.h"
+
+namespace poesy::test {
+namespace {
+
+/// Calls read(), which tells whether it read the plain file, until it met both; gives up after many calls.
+void expect_both(const TempFolder& others, const std::string& path, const std::function<bool()>& read) {
+  const SwappedFile swapped(others, path);
+  std::size_t read_file = 0;
+  std::size_t refused = 0;
+  for (std::size_t n = 0; n < 20'000 || ((read_file == 0 || refused == 0) && n < 1'000'000); ++n) {
+    ++(read() ? read_file : refused);
+  }
+  EXPECT_GT(read_file, 0U);
+  EXPECT_GT(refused, 0U);
+}
+
+class SwappedFiles : public testing::Test {
+ protected:
+  TempFolder folder_;
+  TempFolder others_;
+};
+
+TEST_F(SwappedFiles, OfHdf5) {
+  const std::string path = folder_ / "f.h5";
+  FileWriter writer(path);
+  h5::File file = h5::File::on_disk(writer);
+  file.set_attribute("/", "number", std::int64_t{7});
+  file.close();
+  writer.commit();
+  expect_both(others_, path, [&] {
+    try {
+      EXPECT_EQ(h5::File::open(path).attribute<std::int64_t>("/", "number").at(0), 7);
+      return true;
+    } catch (const h5::Error& error) {
+      EXPECT_NE(std::string(error.what()).find("(is a FIFO)"), std::string::npos) << error.what();
+      return false;
+    }
+  });
+}
+
+TEST_F(SwappedFiles, OfCheckpoints) {
+  const std::string result = folder_ / "r.h5";
+  CheckpointFiles files(result);
+  files.write({}, {}, {});
+  expect_both(others_, files.newer(), [&] {
+    try {
+      return CheckpointFiles(result).find().has_value();
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("is not a plain file"), std::string::npos) << error.what();
+      return false;
+    }
+  });
+}
+
+TEST_F(SwappedFiles, ThatMayBeReplaced) {
+  const std::string path = folder_.write("f", "with a mark");
+  expect_both(others_, path, [&] { return has_mark(path, "mark"); });
+}
+
+TEST_F(SwappedFiles, OfTables) {
+  const auto write = [&] {
+    OutputFolder output(folder_.path());
+    output.claim("a.csv");
+    output.open();
+    folder_.write("a.csv", "z\n0.1\n");
+    output.close();
+  };
+  write();
+  expect_both(others_, folder_ / "a.csv", [&] {
+    OutputFolder output(folder_.path());
+    try {
+      output.claim("a.csv");
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace poesy::test
