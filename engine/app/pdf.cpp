@@ -10,16 +10,19 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/plain_file.h"
 #include "engine/base/text.h"
 #include "engine/files/file_writer.h"
 
@@ -169,8 +172,16 @@ std::string printing_browser(const std::string& path) {
 }
 
 bool is_pdf_report(const std::string& path) {
-  const std::string pdf = contents(path);
-  return pdf.empty() || (pdf.starts_with("%PDF-") && pdf.ends_with(kPdfMark));
+  constexpr std::string_view kBegin = "%PDF-";
+  const PlainFile file(path);
+  const auto has = [&](std::string_view text, std::uintmax_t at) {
+    std::string there(text.size(), '\0');
+    return file.read(at, std::as_writable_bytes(std::span(there))) && there == text;
+  };
+  if (!file.is_open()) return false;
+  const std::uintmax_t size = file.size();
+  return size == 0 ||
+         (size >= kBegin.size() + kPdfMark.size() && has(kBegin, 0) && has(kPdfMark, size - kPdfMark.size()));
 }
 
 Printed write_pdf(const std::string& path, std::string_view page, const std::string& browser) {

@@ -37,13 +37,12 @@ std::string_view other_than_file(const std::string& path) {
 PlainFile::PlainFile(const std::string& path) : other_(other_than_file(path)) {
   if (other_.empty()) {
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-    error_ = is_open() ? 0 : errno;
     struct stat opened {};
-    if (is_open() && ::fstat(descriptor_, &opened) == 0) other_ = other_of(opened.st_mode);
+    error_ = is_open() && ::fstat(descriptor_, &opened) == 0 ? 0 : errno;
+    if (error_ == 0) other_ = other_of(opened.st_mode);
   }
-  if (other_.empty()) return;
-  if (is_open()) ::close(std::exchange(descriptor_, -1));
-  error_ = EINVAL;
+  if (!other_.empty()) error_ = EINVAL;
+  if (error_ != 0 && is_open()) ::close(std::exchange(descriptor_, -1));
 }
 
 PlainFile::PlainFile(PlainFile&& other) noexcept { *this = std::move(other); }

@@ -31,8 +31,8 @@ class PlainFile {
   /// @}
 
   /// Reads from position `at` on until `to` is full or the file ends: the number of bytes. None where the disk fails,
-  /// with the reason in errno. Reading does not wait either, as for the next message of /proc/kmsg, which looks like
-  /// a plain file. Precondition: is_open(), as for those below.
+  /// with the reason in errno. Reading does not wait either, not even for the next message of /proc/kmsg, which looks
+  /// like a plain file. Precondition: is_open(), as for those below.
   std::optional<std::size_t> read(std::uintmax_t at, std::span<std::byte> to) const;
   std::uintmax_t size() const;  ///< Bytes; 0 where the system does not tell.
   /// Bytes that are on the disk: without the holes of a sparse file, which make it look as large as one likes.

@@ -108,7 +108,9 @@ std::optional<std::string> head_of(const std::string& path) {
   const PlainFile file(path);
   if (!file.is_open()) return std::nullopt;
   std::string head(kHead, '\0');
-  head.resize(file.read(0, std::as_writable_bytes(std::span(head))).value_or(0));
+  const auto bytes = file.read(0, std::as_writable_bytes(std::span(head)));
+  if (!bytes) return std::nullopt;
+  head.resize(*bytes);
   return head;
 }
 

@@ -425,7 +425,7 @@ File File::open(const std::string& path) {
     throw Error("cannot open " + path + " (" + (plain.other().empty() ? reason : "is " + std::string(plain.other())) +
                 ")");
   }
-  // It takes no lock: result files are replaced, never changed in place, and some file systems have none.
+  // The driver has no lock: result files are replaced, never changed in place, and some file systems have none.
   auto driver = std::make_unique<Input>(std::move(plain));
   const Handle access = property_list(H5P_FILE_ACCESS);
   checked(driver->choose_for(access.get()), "prepare", path);

@@ -67,7 +67,7 @@ class File {
   /// An empty file in what `disk` writes, which must live as long and be committed after close(). An error of the disk
   /// is kept there (FileWriter::check) and is none of HDF5's, unless it is to read back what was not written.
   static File on_disk(FileWriter& disk);
-  /// An existing plain file, read-only. Throws Error at once for a FIFO or a device.
+  /// An existing plain file, read-only. Throws Error at once for a folder, a FIFO, a device or a socket.
   static File open(const std::string& path);
 
   File(File&& other) noexcept;  ///< Leaves a file that may only be destroyed.

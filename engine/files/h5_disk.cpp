@@ -96,7 +96,7 @@ herr_t read_back(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t bytes,
 }
 
 /// Behind the end are zeros, as with HDF5's own driver.
-herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t bytes, void* to) {
+herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t bytes, void* to) noexcept {
   const std::span all(static_cast<std::byte*>(to), bytes);
   const auto there = mine<Reader>(file).of->read(at, all);
   if (!there) {
@@ -135,7 +135,7 @@ H5FD_class_t driver_class([[maybe_unused]] int number, const char* name) {
 #endif
   driver.name = name;
   driver.maxaddr = (haddr_t{1} << 63U) - 1;  // of off_t
-  driver.fc_degree = H5F_CLOSE_STRONG;       // what the bytes are in goes, whoever has an object of the file open
+  driver.fc_degree = H5F_CLOSE_STRONG;       // with the file its objects are closed, so that nothing stays open
   driver.fapl_size = sizeof(Properties<Of>);
   driver.open = open_file<Of>;
   driver.close = close_file<Of>;

@@ -37,8 +37,6 @@ class SwappedFile {
   void put(const std::string& file) const {
     std::filesystem::create_hard_link(file, next_);
     std::filesystem::rename(next_, path_);
-    // Between two names of one file a rename does nothing.
-    std::filesystem::remove(next_);
   }
 
   std::string path_;

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "tests/support/temp_folder.h"

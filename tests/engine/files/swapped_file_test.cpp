@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -53,6 +54,28 @@ TEST_F(SwappedFiles, OfHdf5) {
   });
 }
 
+TEST(H5File, LeavesNothingOpen) {
+  const TempFolder folder;
+  const std::string path = folder / "f.h5";
+  FileWriter writer(path);
+  h5::File::on_disk(writer).close();
+  writer.commit();
+  const std::size_t open = files_in("/proc/self/fd");
+  { const h5::File file = h5::File::open(path); }
+  EXPECT_THROW(h5::File::open(folder.write("text", "no HDF5")), h5::Error);
+  EXPECT_THROW(h5::File::open(folder.path()), h5::Error);
+  EXPECT_EQ(files_in("/proc/self/fd"), open);
+}
+
+TEST(H5File, SaysWhenTheDiskFails) {
+  try {
+    h5::File::open("/proc/self/mem");  // a plain file of which nothing can be read at 0
+    ADD_FAILURE() << "was opened";
+  } catch (const h5::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("Input/output error"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(SwappedFiles, OfCheckpoints) {
   const std::string result = folder_ / "r.h5";
   CheckpointFiles files(result);
@@ -73,14 +96,13 @@ TEST_F(SwappedFiles, ThatMayBeReplaced) {
 }
 
 TEST_F(SwappedFiles, OfTables) {
-  const auto write = [&] {
+  {
     OutputFolder output(folder_.path());
     output.claim("a.csv");
     output.open();
     folder_.write("a.csv", "z\n0.1\n");
     output.close();
-  };
-  write();
+  }
   expect_both(others_, folder_ / "a.csv", [&] {
     OutputFolder output(folder_.path());
     try {
