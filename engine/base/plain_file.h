@@ -17,13 +17,13 @@ std::string_view other_than_file(const std::string& path);
 /// another file may have taken the place of the first: neither a FIFO nor a device ever is a PlainFile.
 class PlainFile {
  public:
-  PlainFile() = default;  ///< None.
-  explicit PlainFile(const std::string& path);
-  PlainFile(PlainFile&& other) noexcept;
-  PlainFile& operator=(PlainFile&& other) noexcept;
+  PlainFile() = default;                             ///< None.
+  explicit PlainFile(const std::string& path);       ///< Opens what is there, if it is a plain file.
+  PlainFile(PlainFile&& other) noexcept;             ///< Leaves none.
+  PlainFile& operator=(PlainFile&& other) noexcept;  ///< Exchanges the two.
   ~PlainFile();
 
-  bool is_open() const { return descriptor_ >= 0; }
+  bool is_open() const { return descriptor_ >= 0; }  ///< Whether there is one.
   /// Why it is not open.
   /// @{
   std::string_view other() const { return other_; }  ///< as other_than_file says
