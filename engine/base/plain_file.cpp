@@ -81,7 +81,7 @@ std::uintmax_t PlainFile::stored_bytes() const {
   off_t end = 0;
   for (int piece = 0; piece < kMostPieces; ++piece) {
     const off_t begin = ::lseek(descriptor_, end, SEEK_DATA);
-    if (begin < 0) break;  // there is none behind the end
+    if (begin < 0) break;  // no data follow
     end = ::lseek(descriptor_, begin, SEEK_HOLE);
     if (end < 0) break;
     bytes += static_cast<std::uintmax_t>(end - begin);

@@ -13,21 +13,21 @@ namespace poesy {
 /// file, and where nothing can be looked at. Opens nothing: to open a FIFO is to wait for whoever writes to it.
 std::string_view other_than_file(const std::string& path);
 
-/// A plain file that is open for reading. Opening does not wait, and what was opened is looked at once more, because
-/// another file may have taken the place of the first: neither a FIFO nor a device ever is a PlainFile.
+/// A plain file that is open for reading. Opening never waits. The opened file is checked once more, because another
+/// one may have taken the name since the first check: a PlainFile is never a FIFO or a device.
 class PlainFile {
  public:
-  PlainFile() = default;                             ///< None.
-  explicit PlainFile(const std::string& path);       ///< Opens what is there, if it is a plain file.
-  PlainFile(PlainFile&& other) noexcept;             ///< Leaves none.
-  PlainFile& operator=(PlainFile&& other) noexcept;  ///< Exchanges the two.
+  PlainFile() = default;                             ///< Has no file open.
+  explicit PlainFile(const std::string& path);       ///< Opens the file there if it is a plain one; see is_open().
+  PlainFile(PlainFile&& other) noexcept;             ///< `other` has no file open afterwards.
+  PlainFile& operator=(PlainFile&& other) noexcept;  ///< `other` gets the file that this one had.
   ~PlainFile();
 
-  bool is_open() const { return descriptor_ >= 0; }  ///< Whether there is one.
+  bool is_open() const { return descriptor_ >= 0; }  ///< Whether it has a file open.
   /// Why it is not open.
   /// @{
-  std::string_view other() const { return other_; }  ///< as other_than_file says
-  int error() const { return error_; }               ///< of errno; EINVAL where there is something other
+  std::string_view other() const { return other_; }  ///< what other_than_file() says
+  int error() const { return error_; }               ///< the errno of opening; EINVAL where other() says something
   /// @}
 
   /// Reads from position `at` on until `to` is full or the file ends: the number of bytes. None where the disk fails,

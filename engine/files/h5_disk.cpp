@@ -115,7 +115,7 @@ herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t bytes, con
   return 0;
 }
 
-/// HDF5 asks for it with every driver.
+/// HDF5 requires this callback of every driver.
 herr_t write_nothing(H5FD_t*, H5FD_mem_t, hid_t, haddr_t, std::size_t, const void*) { return -1; }
 
 herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
@@ -135,7 +135,7 @@ H5FD_class_t driver_class([[maybe_unused]] int number, const char* name) {
 #endif
   driver.name = name;
   driver.maxaddr = (haddr_t{1} << 63U) - 1;  // of off_t
-  driver.fc_degree = H5F_CLOSE_STRONG;       // with the file its objects are closed, so that nothing stays open
+  driver.fc_degree = H5F_CLOSE_STRONG;       // closing the file closes its objects too
   driver.fapl_size = sizeof(Properties<Of>);
   driver.open = open_file<Of>;
   driver.close = close_file<Of>;

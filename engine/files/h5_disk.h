@@ -30,8 +30,8 @@ class Disk {
   std::int64_t driver_;
 };
 
-/// A file driver for HDF5 that reads an existing file from what is open already: by its name HDF5 would open whatever
-/// has that name by then, and wait there if it is a FIFO.
+/// A file driver that lets HDF5 read a file that is already open. By name, HDF5 would open whatever has that name by
+/// then, and wait if that is a FIFO.
 class Input {
  public:
   explicit Input(PlainFile file);  ///< Throws Error when HDF5 does not take the driver. Precondition: it is open.
@@ -39,7 +39,7 @@ class Input {
   Input& operator=(const Input&) = delete;
   ~Input();
 
-  /// Lets files that are opened with this access property list be this one. Negative when HDF5 refuses.
+  /// Makes HDF5 read this file when it opens one with this access property list. Negative when HDF5 refuses.
   int choose_for(std::int64_t access) const;
 
  private:

@@ -32,7 +32,7 @@ set_tests_properties(architecture.include_table architecture.include_table_finds
                      PROPERTIES LABELS architecture)
 
 # Every public header compiles alone, with nothing but what the exported targets offer: one source a header.
-# There a sanitizer has nothing to find.
+# A sanitizer checks nothing here: these sources are only compiled.
 if(POESY_SANITIZE)
   return()
 endif()

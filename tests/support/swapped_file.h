@@ -13,11 +13,11 @@
 
 namespace poesy::test {
 
-/// Puts a FIFO and a plain file in each other's place, until it goes. Whoever looks at a path and then opens it by the
-/// same name waits here for a writer, after some hundred tries.
+/// A thread that puts a FIFO and a plain file at one path in turn, until this object is destroyed. Code that checks the
+/// path and then opens it by name waits here for a writer of the FIFO, after some hundred tries.
 class SwappedFile {
  public:
-  /// path: of an existing plain file. `folder` is for what is put there.
+  /// path: of an existing plain file. `folder` takes the FIFO and the links that are put at the path.
   SwappedFile(const TempFolder& folder, const std::string& path)
       : path_(path), plain_(folder / "plain"), fifo_(folder / "fifo"), next_(folder / "next") {
     std::filesystem::create_hard_link(path_, plain_);

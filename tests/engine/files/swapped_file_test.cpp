@@ -1,4 +1,4 @@
-// Whoever reads a file by its name a moment after it has looked at it may meet a FIFO there, and wait for ever.
+// Code that checks a path and then opens it by name may find a FIFO there by then, and wait for ever.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,8 @@
 namespace poesy::test {
 namespace {
 
-/// Calls read(), which tells whether it read the plain file, until it met both; gives up after many calls.
+/// Calls read() 20 000 times or more, until it has met both the plain file and the FIFO. read() returns whether it read
+/// the plain file.
 void expect_both(const TempFolder& others, const std::string& path, const std::function<bool()>& read) {
   const SwappedFile swapped(others, path);
   std::size_t read_file = 0;
