@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <utility>
 
@@ -68,6 +69,18 @@ std::optional<std::size_t> PlainFile::read(std::uintmax_t at, std::span<std::byt
     done += static_cast<std::size_t>(bytes);
   }
   return done;
+}
+
+bool PlainFile::read_parts(const std::function<void(std::span<const std::byte>)>& take) const {
+  constexpr std::size_t kPart = 1 << 16;
+  std::array<std::byte, kPart> part{};
+  std::uintmax_t at = 0;
+  while (const auto bytes = read(at, part)) {
+    if (*bytes == 0) return true;
+    take(std::span(part).first(*bytes));
+    at += *bytes;
+  }
+  return false;
 }
 
 std::uintmax_t PlainFile::size() const {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <variant>
@@ -30,9 +31,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kMagic = "poesy-checkpoint";
 constexpr std::uint64_t kVersion = 3;
 constexpr const char* kNoCheckpoint = "is not a checkpoint of poesy";
 constexpr std::size_t kDigestBytes = std::tuple_size_v<Sha256::Digest>;
+
+bool begins_with_magic(std::span<const std::byte> bytes) {
+  const auto magic = std::as_bytes(std::span(kMagic));
+  return bytes.size() >= magic.size() && std::ranges::equal(bytes.first(magic.size()), magic);
+}
 
 std::string hash_of(const PoseSet& poses) {
   ByteWriter bytes;
@@ -121,10 +128,9 @@ std::variant<Checkpoint, std::string> read_checkpoint(const std::string& path) {
   const bool nothing = file.other().empty() && file.error() == ENOENT;
   if (nothing || !file.other().empty()) return stands(path) ? "is not a plain file" : "does not exist";
   if (!file.is_open()) return unreadable(file.error());
-  std::array<char, kCheckpointMagic.size()> magic{};
-  if (file.read(0, std::as_writable_bytes(std::span(magic))) && !std::ranges::equal(magic, kCheckpointMagic)) {
-    return kNoCheckpoint;
-  }
+  const auto is_one = begins_as_checkpoint(file);
+  if (!is_one) return unreadable(errno);
+  if (!*is_one) return kNoCheckpoint;
   const std::uintmax_t size = file.size();
   try {
     Bytes bytes(static_cast<std::size_t>(size));
@@ -202,7 +208,7 @@ std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, co
     sink(piece);
     size += piece.size();
   });
-  to.raw(std::as_bytes(std::span(kCheckpointMagic)));
+  to.raw(std::as_bytes(std::span(kMagic)));
   to.number(kVersion);
   for_each_member(identity, [&](const auto& value) { put(to, value); });
   to.real(time.wall);
@@ -219,16 +225,20 @@ std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, co
   return stored;
 }
 
+std::optional<bool> begins_as_checkpoint(const PlainFile& file) {
+  std::array<std::byte, kMagic.size()> begin{};
+  const auto bytes = file.read(0, begin);
+  if (!bytes) return std::nullopt;
+  return begins_with_magic(std::span(begin).first(*bytes));
+}
+
 Checkpoint decode_checkpoint(std::span<const std::byte> file) {
-  const auto magic = std::as_bytes(std::span(kCheckpointMagic));
-  if (file.size() < magic.size() + kDigestBytes || !std::ranges::equal(file.first(magic.size()), magic)) {
-    throw BytesError(kNoCheckpoint);
-  }
+  if (file.size() < kMagic.size() + kDigestBytes || !begins_with_magic(file)) throw BytesError(kNoCheckpoint);
   const auto content = file.first(file.size() - kDigestBytes);
   if (!std::ranges::equal(sha256(content), file.last(kDigestBytes))) {
     throw BytesError("is cut off or changed: its digest does not match");
   }
-  ByteReader from(content.subspan(magic.size()));
+  ByteReader from(content.subspan(kMagic.size()));
   if (const std::uint64_t version = from.number(); version != kVersion) {
     throw BytesError(fmt::format("is of format version {}, and this program knows {}", version, kVersion));
   }

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/base/bytes.h"
@@ -16,9 +15,6 @@
 #include "engine/study/study.h"
 
 namespace poesy {
-
-/// What the bytes of a checkpoint begin with.
-inline constexpr std::string_view kCheckpointMagic = "poesy-checkpoint";
 
 /// What a run must have in common with the checkpoint that it takes up.
 struct CheckpointIdentity {
@@ -79,6 +75,10 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
 /// What a state consists of is for the program that wrote it alone: its version is part of the identity.
 std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, const RunTime& time,
                                           std::span<const ByteSource> stages, const ByteWriter::Sink& sink);
+
+/// Whether the file begins as a checkpoint does. None where the disk fails, with the reason in errno. Precondition:
+/// file.is_open().
+std::optional<bool> begins_as_checkpoint(const PlainFile& file);
 
 /// Reads a whole checkpoint file back. Throws BytesError for anything that write_checkpoint does not give.
 Checkpoint decode_checkpoint(std::span<const std::byte> file);

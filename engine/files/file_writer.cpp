@@ -332,15 +332,9 @@ void put_at_second_name(const std::string& path, const std::string& second, Link
   }
   const PlainFile file(path);
   if (!file.is_open()) fail(std::error_code(file.error(), std::generic_category()));
-  constexpr std::size_t kPart = 1 << 16;
-  std::vector<std::byte> part(kPart);
   FileWriter copy(second, path);
-  for (std::uintmax_t at = 0;;) {
-    const auto bytes = file.read(at, part);
-    if (!bytes) fail(std::error_code(errno, std::generic_category()));
-    if (*bytes == 0) break;
-    copy.write(std::span(part).first(*bytes));
-    at += *bytes;
+  if (!file.read_parts([&](std::span<const std::byte> part) { copy.write(part); })) {
+    fail(std::error_code(errno, std::generic_category()));
   }
   copy.commit();
 }

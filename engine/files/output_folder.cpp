@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -11,7 +10,6 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/plain_file.h"
@@ -33,18 +31,12 @@ constexpr const char* kRemedy = "name another folder with -d, or move it away";
 
 /// SHA-256 of a file; none when it cannot be read.
 std::optional<std::string> hash_of(const std::string& path) {
-  constexpr std::size_t kPart = 1 << 16;
   const PlainFile file(path);
-  if (!file.is_open()) return std::nullopt;
   Sha256 hash;
-  std::vector<std::byte> part(kPart);
-  std::uintmax_t at = 0;
-  while (const auto bytes = file.read(at, part)) {
-    if (*bytes == 0) return hex(hash.digest());
-    hash.bytes(std::span(part).first(*bytes));
-    at += *bytes;
+  if (!file.is_open() || !file.read_parts([&](std::span<const std::byte> part) { hash.bytes(part); })) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  return hex(hash.digest());
 }
 
 }  // namespace

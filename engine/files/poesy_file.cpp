@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <new>
 #include <optional>
-#include <span>
 #include <system_error>
 #include <utility>
 
@@ -34,10 +33,8 @@ constexpr std::uintmax_t kBytesAWaitedSecond = std::uintmax_t{4} << 20U;
 /// @}
 
 bool is_checkpoint(const std::string& path) {
-  std::array<char, kCheckpointMagic.size()> begin{};
   const PlainFile file(path);
-  return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) &&
-         std::ranges::equal(begin, kCheckpointMagic);
+  return file.is_open() && begins_as_checkpoint(file).value_or(false);
 }
 
 h5::File open_hdf5(const std::string& path) {

@@ -1,8 +1,8 @@
 #include "engine/study/text_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <span>
 #include <system_error>
 
@@ -28,17 +28,16 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
   }
   if (!file.is_open()) unreadable(path, file.error());
   std::string text;
-  std::array<char, 65536> part{};
-  while (const auto bytes = file.read(text.size(), std::as_writable_bytes(std::span(part)))) {
-    if (*bytes == 0) return text;
-    text.append(part.data(), *bytes);
+  const bool whole = file.read_parts([&](std::span<const std::byte> part) {
+    text.append(reinterpret_cast<const char*>(part.data()), part.size());
     if (text.size() > most_bytes) {
       throw InputError(
           {path}, "has more than the " + std::to_string(most_bytes) + " bytes a " + std::string(what) + " may have",
           "name another file");
     }
-  }
-  unreadable(path, errno);
+  });
+  if (!whole) unreadable(path, errno);
+  return text;
 }
 
 CsvLines::CsvLines(const std::string& path, std::string_view what)

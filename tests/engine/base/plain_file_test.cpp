@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -33,6 +35,21 @@ TEST(PlainFile, ReadsFromAnyPositionToTheEnd) {
   EXPECT_EQ(text(file, 7, 100), "789");
   EXPECT_EQ(text(file, 10, 1), "");
   EXPECT_EQ(text(file, 1000, 1), "");
+}
+
+TEST(PlainFile, HandsOutTheWholeFileInOrder) {
+  const TempFolder folder;
+  for (const std::size_t size : {0U, 1U, 65535U, 65536U, 65537U, 200'000U}) {
+    std::string content;
+    for (std::size_t k = 0; k < size; ++k) content += static_cast<char>('a' + k % 23);
+    std::string read;
+    const auto take = [&](std::span<const std::byte> part) {
+      EXPECT_FALSE(part.empty());
+      for (const std::byte byte : part) read += static_cast<char>(byte);
+    };
+    EXPECT_TRUE(PlainFile(folder.write("f", content)).read_parts(take));
+    EXPECT_EQ(read, content) << size;
+  }
 }
 
 TEST(PlainFile, IsTheFileThatWasOpenedWhateverHasItsNameLater) {
@@ -71,6 +88,9 @@ TEST(PlainFile, SaysWhenTheDiskFails) {
   std::array<std::byte, 8> bytes{};
   errno = 0;
   EXPECT_FALSE(memory.read(0, bytes));
+  EXPECT_EQ(errno, EIO);
+  errno = 0;
+  EXPECT_FALSE(memory.read_parts([](std::span<const std::byte>) { ADD_FAILURE() << "nothing can be read"; }));
   EXPECT_EQ(errno, EIO);
 }
 
