@@ -76,12 +76,12 @@ constexpr std::string_view kTemporary = ".tmp.";
 constexpr std::size_t kRandomBytes = 6;
 constexpr std::string_view kDigits = "0123456789abcdef";
 
-/// Empty where the system has no random numbers; then errno says why.
-std::string temporary_name(const std::string& path) {
-  std::array<unsigned char, kRandomBytes> bytes{};
-  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return {};
+/// Empty where there are no random numbers; then errno says why.
+std::string temporary_name(const std::string& path, FillRandomly fill) {
+  std::array<std::byte, kRandomBytes> bytes{};
+  if (!fill(bytes)) return {};
   std::string name = path + std::string(kTemporary);
-  for (const unsigned char byte : bytes) name += fmt::format("{:02x}", byte);
+  for (const std::byte byte : bytes) name += fmt::format("{:02x}", std::to_integer<unsigned>(byte));
   return name;
 }
 
@@ -93,13 +93,36 @@ bool is_temporary_name(std::string_view name, std::string_view of_file) {
   return name.size() == 2 * kRandomBytes && name.find_first_not_of(kDigits) == std::string_view::npos;
 }
 
-/// What a new file at `path` is to be like: the plain file there, or else `like`.
+constexpr mode_t kAllRights = 0777;
+
+/// These rights without the group's, which may do no more than everybody.
+mode_t without_group(mode_t mode) {
+  constexpr mode_t kGroup = 070;
+  constexpr mode_t kOthers = 07;
+  return (mode & kAllRights & ~kGroup) | (mode & kOthers) << 3U;
+}
+
+bool is_own(const struct stat& file) { return file.st_uid == ::geteuid(); }
+
+/// What a new file at `path` is to be like: the user's own plain file there, or else `like`, or else another user's.
 std::optional<struct stat> model_of(const std::string& path, const std::string& like) {
+  std::optional<struct stat> model;
   for (const std::string& file : {path, like}) {
     struct stat found {};
-    if (::lstat(file.c_str(), &found) == 0 && S_ISREG(found.st_mode)) return found;
+    if (::lstat(file.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) continue;
+    if (is_own(found)) return found;
+    if (!model) model = found;
   }
-  return std::nullopt;
+  return model;
+}
+
+/// The rights of a new file until it gets those that it is to have; the system takes those of the umask off. Another
+/// user's file gives none that a file of one's own would not have: it may have been put there for that.
+mode_t first_rights(const std::optional<struct stat>& model) {
+  constexpr mode_t kReadableByAll = 0666;
+  constexpr mode_t kPrivate = 0600;
+  if (!model) return kReadableByAll;
+  return is_own(*model) ? kPrivate : without_group(model->st_mode) & kReadableByAll;
 }
 
 /// The beginning of a plain file; none where there is no such file, or it cannot be read.
@@ -154,6 +177,10 @@ std::string check_output_path(const std::string& named, const OutputKind& kind, 
   return path;
 }
 
+bool fill_randomly(std::span<std::byte> bytes) {
+  return ::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
+}
+
 bool stands(const std::string& path) {
   std::error_code ignored;
   return fs::exists(fs::symlink_status(path, ignored));
@@ -169,34 +196,26 @@ void remove_left_over(const std::string& path) {
   for (const fs::path& one : found) ::unlink(one.c_str());
 }
 
-FileWriter::FileWriter(std::string path, const std::string& like)
-    : path_(std::move(path)), temporary_(temporary_name(path_)) {
+FileWriter::FileWriter(std::string path, const std::string& like, FillRandomly fill)
+    : path_(std::move(path)), temporary_(temporary_name(path_, fill)) {
   if (temporary_.empty()) fail("cannot be created", errno);
   struct stat there {};
   if (::stat(path_.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
     throw FileError(path_, "is not a plain file and will not be replaced", "choose another name");
   }
   const std::optional<struct stat> model = model_of(path_, like);
-  constexpr mode_t kReadableByAll = 0666;  // before the umask
-  constexpr mode_t kPrivate = 0600;        // until it has the permissions that it is to have
-  descriptor_ =
-      ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, model ? kPrivate : kReadableByAll);
+  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, first_rights(model));
   if (descriptor_ == kClosed) fail("cannot be created", errno);
-  if (model) give_permissions(*model);
+  if (model && is_own(*model)) give_permissions(*model);
 }
 
-/// Owner and group as far as this user may give them. Where the group cannot be had, the one that the file has instead
-/// may do no more than everybody.
-void FileWriter::give_permissions(const struct stat& like) {
-  constexpr mode_t kAll = 0777;
-  constexpr mode_t kOthers = 07;
-  mode_t mode = like.st_mode & kAll;
-  constexpr auto kSame = static_cast<uid_t>(-1);
-  if (::fchown(descriptor_, like.st_uid, like.st_gid) != 0 && ::fchown(descriptor_, kSame, like.st_gid) != 0) {
-    const mode_t others = mode & kOthers;
-    mode = (mode & ~mode_t{070}) | (others << 3U);
-  }
-  ::fchmod(descriptor_, mode);  // a file system without permissions has none to keep
+/// Those of the user's own file. Where its group cannot be had, the one that the file has instead may do no more than
+/// everybody.
+void FileWriter::give_permissions(const struct stat& own) {
+  constexpr auto kSameUser = static_cast<uid_t>(-1);
+  const bool has_group = ::fchown(descriptor_, kSameUser, own.st_gid) == 0;
+  // A file system without permissions has none to keep.
+  ::fchmod(descriptor_, has_group ? own.st_mode & kAllRights : without_group(own.st_mode));
 }
 
 FileWriter::~FileWriter() {
@@ -322,7 +341,7 @@ void put_at_second_name(const std::string& path, const std::string& second, Link
   const auto fail = [&](const std::error_code& error) {
     throw FileError(second, "cannot be put in place (" + error.message() + ")", "check the folder");
   };
-  const std::string temporary = temporary_name(second);
+  const std::string temporary = temporary_name(second, fill_randomly);
   std::error_code error;
   if (!temporary.empty() && link_file(path.c_str(), temporary.c_str()) == 0) {
     fs::rename(temporary, second, error);

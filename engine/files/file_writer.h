@@ -35,16 +35,22 @@ bool stands(const std::string& path);  ///< Whether anything has this name, a li
 /// names them. What cannot be removed stays. Precondition: nobody is writing this file.
 void remove_left_over(const std::string& path);
 
+/// Fills all of it with random bytes: the system's, or what stands for them in a test. Whether it could; if not, errno
+/// says why.
+using FillRandomly = bool (*)(std::span<std::byte> bytes);
+bool fill_randomly(std::span<std::byte> bytes);  ///< The system's.
+
 /// Writes a file that appears whole or not at all under its name: beside it under a temporary name that nobody can
 /// guess, and at the end synced and renamed. Destroyed before commit, it removes the temporary file; what stood under
 /// the name stays. A symbolic link of that name is replaced, not followed: check_output_path() gives where it leads.
 /// Every member throws FileError with the system's reason.
 class FileWriter {
  public:
-  /// Refuses a path where something other than a plain file stands (a folder, a device). The file gets the permissions
-  /// of the one that it replaces; if there is none, those of the file `like`, and without that either those of the
-  /// umask.
-  explicit FileWriter(std::string path, const std::string& like = {});
+  /// Refuses a path where something other than a plain file stands (a folder, a device). The file gets group and
+  /// permissions of the user's own file that it replaces; if there is none, those of the user's file `like`, and
+  /// without that either those of the umask. Of another user's file it gets no right beyond the umask. fill: for the
+  /// temporary name; what stands there is not touched, and refused.
+  explicit FileWriter(std::string path, const std::string& like = {}, FillRandomly fill = fill_randomly);
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
   ~FileWriter();
@@ -76,7 +82,7 @@ class FileWriter {
   void commit();  ///< Syncs, unless that was done, and puts the file in its place.
 
  private:
-  void give_permissions(const struct stat& like);
+  void give_permissions(const struct stat& own);
   std::uint64_t expected_size() const;  ///< 0 where it is not known.
   [[noreturn]] void fail(std::string_view action, int error) const;
   std::string remedy(int error) const;

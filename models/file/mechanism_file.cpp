@@ -109,9 +109,11 @@ void check_name(const Reference& reference) {
     throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is too long",
                      "write at most " + std::to_string(kLongestName) + " letters");
   }
-  if (!reference.name.empty() && std::ranges::all_of(reference.name, allowed)) return;
+  if (!reference.name.empty() && !reference.name.starts_with('-') && std::ranges::all_of(reference.name, allowed)) {
+    return;
+  }
   throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is no name",
-                   "write letters, digits, _ and -");
+                   "write letters, digits, _ and -, and no - first");
 }
 
 /// Throws where the name is taken already.
@@ -554,7 +556,8 @@ const Keys<MechanismFile, Nothing>& file_keys() {
       .meaning = "A mechanism: everything stands in one base frame, at the home pose, as on a drawing.",
       .rows = {needed("format", read_by("text", read_format), "\"poesy-mechanism\"", "\"poesy-mechanism\"."),
                needed("version", read_by("integer", read_version), "1", "1."),
-               needed("name", kept("text", read_name, &F::name), "\"rps3\"", "Its name: letters, digits, _ and -."),
+               needed("name", kept("text", read_name, &F::name), "\"rps3\"",
+                      "Its name: letters, digits, _ and -, no - first."),
                optional("title", text_at(&F::title), "the name", "For people."),
                optional("geometry", read_by("table", read_geometry), "none",
                         "Lengths and angles that expressions name; a study may change each."),

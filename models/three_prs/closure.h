@@ -90,7 +90,7 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 ///   iteration_cap  when j is the allowed number of iterations;
 ///   singular       when a pivot of the Jacobian falls to rounding, or when the solve has come to rest where the
 ///                  determinant of the Jacobian has the other sign: no way leads there from the nominal pose, as errors
-///                  grow from zero, but through a singular one (THEORY.md, "Solves of the 3-PRS");
+///                  grow from zero, but through a singular one (THEORY.md, "Which root");
 ///   non_finite     when an equation's value is not finite.
 /// `motion` is the start on entry, the last iterate on return. orientation: ClosureStart::orientation(); 0 where any
 /// root will do. observe: may be empty.

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/base/address_space.h"
+#include "tests/fuzz/other_file.h"
 #include "tests/fuzz/target.h"
 
 namespace poesy::fuzz {
@@ -26,8 +27,6 @@ namespace {
 
 using Random = std::mt19937;
 using Shape = std::vector<hsize_t>;
-
-constexpr const char* kOtherFile = "/etc/passwd";
 
 template <class Value, std::size_t N>
 Value one_of(const Value (&values)[N], Random& random) {

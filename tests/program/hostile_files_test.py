@@ -125,6 +125,35 @@ class HostileFiles(ResumptionTest):
                 self.assertIn(RULE, done.stderr.decode())
                 self.assertFalse((folder / "merged.h5").exists())
 
+    def test_links_whose_names_are_paths(self):
+        """No library writes such a name, so that its bytes are put into the file."""
+        self.succeeds("run", "study.toml", "-o", "sound.h5", "--quiet")
+        for name in (b"a/b\0", b"/ab\0", b"ab/\0", b".\0b\0"):
+            def change(file, _):
+                file.create_group("run/new")["a_b"] = 1.0
+            folder = self.make(Structure("name", "tree", change))
+            bytes_ = (folder / "r.h5").read_bytes()
+            self.assertEqual(bytes_.count(b"a_b\0"), 1)
+            (folder / "r.h5").write_bytes(bytes_.replace(b"a_b\0", name))
+            for command in COMMANDS:
+                with self.subTest(name=name, command=command[0]):
+                    done, _ = self.deadline.run(folder, command)
+                    self.assertEqual(done.returncode, 3, done.stdout)
+                    self.assertIn(RULE, done.stderr.decode())
+                    self.assertIn("has no name of its own", done.stderr.decode())
+
+    def study_with(self, what, path):
+        """Name of a study that reads this file."""
+        poses = 'poses = { count = 3 }'
+        changed = {
+            "poses": STUDY.replace(poses, f'poses = {{ select = "file", file = "{path}" }}'),
+            "trajectory": STUDY.replace(poses, f'poses = {{ select = "trajectory", trajectory = {{ file = "{path}" }} }}'),
+            "measured": STUDY + "[errors.override]\n"
+                                f'a_x_1 = {{ distribution = "measured", file = "{path}", column = "x" }}\n',
+            "mechanism": STUDY.replace('model = "3-prs", fidelity = "first-order"', f'file = "{path}"')}
+        self.write(f"{what}.toml", changed[what])
+        return f"{what}.toml"
+
     def test_what_is_no_file(self):
         """Said at once, by every command, whatever it was that was to be opened."""
         os.mkfifo(self.folder / "fifo")
@@ -137,7 +166,9 @@ class HostileFiles(ResumptionTest):
                     self.assertIn(what, done.stderr.decode())
                     self.assertLess(seconds, 5.0)
             for command in (("run", path), ("check", path), ("evaluate", path, "--poses", "p.csv", "--errors", "e.csv"),
-                            ("evaluate", "study.toml", "--poses", path, "--errors", path)):
+                            ("evaluate", "study.toml", "--poses", path, "--errors", path), ("models", self.folder / path),
+                            ("check", self.study_with("poses", path)), ("check", self.study_with("trajectory", path)),
+                            ("check", self.study_with("measured", path)), ("check", self.study_with("mechanism", path))):
                 with self.subTest(path=path, command=command[0]):
                     done, seconds = self.deadline.run(self.folder, command)
                     self.assertIn(done.returncode, (2, 3), done.stderr)

@@ -87,11 +87,19 @@ ANY_TEXT = {
 
 def study_texts():
     poses = [(f"poses from {name}", section_instead("poses", f'[poses]\nfile = "{name}"\n\n')) for name in OUTSIDE]
+    curve = '[poses]\nselect = "trajectory"\ntrajectory = {{ file = "{}" }}\n\n'
+    trajectories = [(f"trajectory from {name}", section_instead("poses", curve.format(name))) for name in OUTSIDE]
+    measured = [(f"{words}errors measured in {name}", instead("\n[analysis]\n", f"""{line}
+[errors.override]
+delta_1_0_x = {{ distribution = "measured", file = "{name}", column = "x" }}
+
+[analysis]
+""")) for words, line in (("", ""), ("correlated ", 'correlated = "as measured"\n')) for name in OUTSIDE]
     own = f'file = "{GALLERY / "3-rrr/3-rrr.toml"}"'
     mechanisms = [(f"mechanism from {name}", instead(own, f'file = "{name}"')) for name in OUTSIDE]
     most = (1 << 63) - 1
     return [
-        *ANY_TEXT.items(), *poses, *mechanisms,
+        *ANY_TEXT.items(), *poses, *trajectories, *measured, *mechanisms,
         ("another mechanism", instead(own, 'model = "2upr-rpu"')),
         ("mechanism from many folders", instead(own, 'file = "' + "../" * 100000 + '"')),
         ("the most poses", instead("count = 3", f"count = {most}")),

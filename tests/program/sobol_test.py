@@ -173,6 +173,7 @@ class Sobol(ResumptionTest):
         refused(self.small() + 'groups = { a = ["delta_1_*"], b = ["delta_1_1_y"] }\n', "which group 'a' has as well")
         refused(self.small() + "groups = { a = [] }\n", "is empty")
         refused(self.small() + 'groups = { others = ["delta_1_*"] }\n', "is not a name for a group")
+        refused(self.small() + 'groups = { "=1+1" = ["delta_1_*"] }\n', "is not a name for a group: it begins with '='")
         refused(self.small() + 'groups = { all = ["*"] }\n', "all errors are one group")
         refused(self.small() + 'second_order = "yes"\n', "analysis.second_order is the text 'yes'", "true or false")
         refused(self.small() + "replicates = 20\n", 'analysis.design is "random"')

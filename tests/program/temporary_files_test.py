@@ -1,6 +1,7 @@
 """What a run writes beside its result: names that nobody can guess, links that somebody planted, links of the user's
 own, permissions, and what a kill left."""
 
+import fcntl
 import os
 import re
 import signal
@@ -130,6 +131,19 @@ class TemporaryFiles(ResumptionTest):
         self.succeeds("report", "r.h5", "-o", "r.html")
         self.assertEqual(self.mode("r.html"), 0o600)
 
+    def test_a_file_of_another_user_opens_no_result(self):
+        """An empty file that everybody may write to, put there before the run."""
+        if os.geteuid() != 0:
+            self.skipTest("only root makes files of others")
+        old_mask = os.umask(0o022)
+        self.addCleanup(os.umask, old_mask)
+        self.write("r.h5", "").chmod(0o666)
+        os.chown(self.folder / "r.h5", 12345, 12345)
+        self.assertEqual(self.run_quick("--keep-checkpoint").returncode, 0)
+        for name in ("r.h5", "r.h5.part"):
+            self.assertEqual(self.mode(name), 0o644, name)
+            self.assertEqual((self.folder / name).stat().st_uid, 0, name)
+
     def test_what_a_kill_left_is_removed(self):
         left = [f"r.h5{part}.tmp.0123456789ab" for part in ("", ".part", ".part.1")]
         others = ["r.h5.tmp", "r.h5.tmp.1", "r.h5.tmp.0123456789abc", "r.h5.tmp.0123456789aB", "other.h5.tmp.0123456789ab",
@@ -140,6 +154,34 @@ class TemporaryFiles(ResumptionTest):
         self.assertEqual(self.run_quick().returncode, 0)
         self.assertEqual(self.names(), {"quick.toml", "victim", "r.h5", *others})
         self.assertEqual(self.victim.read_text(), PRECIOUS)
+
+    def commands_with_a_result(self):
+        """merge and evaluate, each of which writes out.h5."""
+        for shard in (1, 2):
+            self.succeeds("run", "quick.toml", "--shard", f"{shard}/2", "-o", f"{shard}.h5", "--quiet")
+        self.write("p.csv", "alpha,beta,z\n0,0,0.7\n")
+        self.write("e.csv", "a_x_1\n0.0001\n")
+        return [("merge", "1.h5", "2.h5", "-o", "out.h5"),
+                ("evaluate", "quick.toml", "--poses", "p.csv", "--errors", "e.csv", "-o", "out.h5")]
+
+    def test_merge_and_evaluate_remove_what_a_kill_left(self):
+        for command in self.commands_with_a_result():
+            with self.subTest(command[0]):
+                self.write("out.h5.tmp.0123456789ab", "left")
+                before = self.names()
+                self.succeeds(*command)
+                self.assertEqual(self.names(), before - {"out.h5.tmp.0123456789ab"} | {"out.h5"})
+
+    def test_merge_and_evaluate_take_the_lock(self):
+        for command in self.commands_with_a_result():
+            with self.subTest(command[0]), (self.folder / "out.h5.lock").open("w") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                self.write("out.h5.tmp.0123456789ab", "being written")
+                before = self.names()
+                done = self.poesy(*command)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn("another run is computing this result", done.stderr.decode())
+                self.assertEqual(self.names(), before)
 
     def test_killed_while_it_writes(self):
         """A large result: killed when its temporary file is seen; its checkpoint is there, and who goes on from that leaves

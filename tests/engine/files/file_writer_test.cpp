@@ -2,9 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <filesystem>
 #include <regex>
 #include <set>
+#include <span>
+#include <string>
 
 #include "engine/base/error.h"
 #include "tests/support/temp_folder.h"
@@ -63,6 +70,47 @@ TEST(FileWriter, HasATemporaryNameThatNobodyCanGuess) {
   EXPECT_EQ(names.size(), 20U);
 }
 
+/// Makes the temporary name known beforehand.
+bool fill_with_ones(std::span<std::byte> bytes) {
+  std::ranges::fill(bytes, std::byte{0x11});
+  return true;
+}
+
+bool fill_not(std::span<std::byte> /*bytes*/) {
+  errno = ENOSYS;
+  return false;
+}
+
+TEST(FileWriter, TouchesNothingThatHasItsTemporaryName) {
+  const TempFolder folder;
+  const std::string victim = folder.write("victim", "precious");
+  const std::string planted = folder / "f.tmp.111111111111";
+  const auto plant = [&](const std::string& what) {
+    std::filesystem::remove(planted);
+    if (what == "file") write_bytes(planted, "planted");
+    if (what == "link") std::filesystem::create_symlink(victim, planted);
+    if (what == "link to nothing") std::filesystem::create_symlink(folder / "absent", planted);
+    if (what == "second name") std::filesystem::create_hard_link(victim, planted);
+    if (what == "FIFO") ASSERT_EQ(::mkfifo(planted.c_str(), S_IRUSR | S_IWUSR), 0);
+  };
+  for (const std::string what : {"file", "link", "link to nothing", "second name", "FIFO"}) {
+    plant(what);
+    EXPECT_THROW(FileWriter(folder / "f", {}, fill_with_ones), FileError) << what;
+    EXPECT_TRUE(stands(planted)) << what;
+    EXPECT_EQ(read_bytes(victim), "precious") << what;
+    EXPECT_EQ(files_in(folder.path()), 2U) << what;
+  }
+  std::filesystem::remove(planted);
+  FileWriter writer(folder / "f", {}, fill_with_ones);
+  EXPECT_TRUE(stands(planted));
+}
+
+TEST(FileWriter, WritesNothingWithoutRandomNumbers) {
+  const TempFolder folder;
+  EXPECT_THROW(FileWriter(folder / "f", {}, fill_not), FileError);
+  EXPECT_EQ(files_in(folder.path()), 0U);
+}
+
 TEST(FileWriter, ReplacesALinkAndLeavesWhatItLeadsTo) {
   const TempFolder folder;
   const std::string victim = folder.write("victim", "precious");
@@ -94,6 +142,33 @@ TEST(FileWriter, KeepsThePermissionsOfWhatItReplaces) {
   FileWriter writer(folder / "f", folder / "like");
   writer.commit();
   EXPECT_EQ(mode_of(folder / "f"), 0604U);
+}
+
+TEST(FileWriter, GetsNoRightsFromAFileOfAnotherUser) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root makes files of others";
+  constexpr uid_t kOther = 12345;
+  const TempFolder folder;
+  const mode_t old_mask = ::umask(022);
+  const auto rights = [&](mode_t theirs, const std::string& like = {}) {
+    write_bytes(folder / "f", "");
+    EXPECT_EQ(::chown((folder / "f").c_str(), kOther, kOther), 0);
+    ::chmod((folder / "f").c_str(), theirs);
+    FileWriter writer(folder / "f", like);
+    writer.commit();
+    struct stat facts {};
+    EXPECT_EQ(::stat((folder / "f").c_str(), &facts), 0);
+    EXPECT_EQ(facts.st_uid, ::geteuid());
+    EXPECT_NE(facts.st_gid, kOther);
+    return facts.st_mode & 0777U;
+  };
+  EXPECT_EQ(rights(0666), 0644U);
+  EXPECT_EQ(rights(0600), 0600U);
+  EXPECT_EQ(rights(0660), 0600U);
+  EXPECT_EQ(rights(0604), 0644U);
+  const std::string like = folder.write("like", "");
+  ::chmod(like.c_str(), 0600);
+  EXPECT_EQ(rights(0666, like), 0600U) << "who may not read the result may not read its checkpoints";
+  ::umask(old_mask);
 }
 
 TEST(LeftOver, IsRemovedAndNothingElse) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "engine/random/low_discrepancy.h"
@@ -263,6 +264,27 @@ TEST_P(EmptyWorkspace, SaysThatEveryPoseIsSingular) {
   selection.max_condition = 1.125;
   test::expect_input_error([&] { select_poses(selection, kModel); }, selection.place,
                            {"the workspace is empty (singular: condition number above 1.125: ", "raise max_condition"});
+}
+
+/// A mechanism that cannot tell how near to singular its poses are.
+class UndefinedCondition : public test::FakeModel {
+ public:
+  double condition(std::span<const double> /*pose*/) const override { return std::numeric_limits<double>::quiet_NaN(); }
+};
+
+TEST_P(EmptyWorkspace, AConditionThatIsNoNumberIsSingular) {
+  const PoseSelection selection = test::fake_box(GetParam(), 20);
+  test::expect_input_error([&] { select_poses(selection, UndefinedCondition()); }, selection.place,
+                           {"the workspace is empty (singular: condition number above "});
+}
+
+TEST(FilePoses, OfAConditionThatIsNoNumberAreSingular) {
+  PoseSelection selection;
+  selection.select = Select::file;
+  selection.from_file = {std::nullopt, PoseSet(3, {-0.2, 0.2, 0.1})};
+  selection.place = {"poses.csv", 2, 1};
+  test::expect_input_error([&] { select_poses(selection, UndefinedCondition()); }, selection.place,
+                           {"is singular or nearly so"});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EmptyWorkspace, testing::Values(Select::interior, Select::boundary, Select::grid),

@@ -86,6 +86,8 @@ TEST(Expression, Mistakes) {
            {"(a", "m.toml:3:13: platform.origin[2] '(a' ends too early; "},
            {"a)", "m.toml:3:12: platform.origin[2] 'a)' cannot be read at ')'; "},
            {"a ^ 2", "m.toml:3:13: platform.origin[2] 'a ^ 2' cannot be read at '^ 2'; "},
+           {"1e-999 mm", "m.toml:3:11: platform.origin[2] '1e-999 mm' has a number that is out of range; "},
+           {"1e999 mm", "m.toml:3:11: platform.origin[2] '1e999 mm' has a number that is out of range; "},
            {"a / 0", "m.toml:3:11: platform.origin[2] 'a / 0' is not finite; look for a division by zero"},
            {"sqrt(a*a - h*h)", "m.toml:3:11: platform.origin[2] 'sqrt(a*a - h*h)' is not finite; "}}) {
     EXPECT_EQ(problem_of(text).substr(0, std::string(begin).size()), begin);
