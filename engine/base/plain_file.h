@@ -36,7 +36,7 @@ class PlainFile {
   /// like a plain file. Precondition: is_open(), as for those below.
   std::optional<std::size_t> read(std::uintmax_t at, std::span<std::byte> to) const;
   /// Hands the whole file to `take`, part by part from the beginning. False where the disk fails, with the reason in
-  /// errno.
+  /// errno. What `take` throws goes through.
   bool read_parts(const std::function<void(std::span<const std::byte> part)>& take) const;
   std::uintmax_t size() const;  ///< Bytes; 0 where the system does not tell.
   /// Bytes that are on the disk: without the holes of a sparse file, which make it look as large as one likes.

@@ -2,9 +2,9 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <sys/xattr.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -48,9 +48,11 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
 }
 
 /// Neither this user's nor the administrator's.
-bool is_of_another_user(const fs::path& link) {
+bool is_of_another_user(const struct stat& file) { return file.st_uid != 0 && file.st_uid != ::geteuid(); }
+
+bool is_link_of_another_user(const fs::path& link) {
   struct stat found {};
-  return ::lstat(link.c_str(), &found) == 0 && found.st_uid != 0 && found.st_uid != ::geteuid();
+  return ::lstat(link.c_str(), &found) == 0 && is_of_another_user(found);
 }
 
 /// Where a symbolic link leads, through further ones, all of them the user's own or the administrator's.
@@ -59,7 +61,7 @@ std::string end_of_links(const std::string& path) {
   fs::path at(path);
   std::error_code ignored;
   for (int links = 0; fs::is_symlink(fs::symlink_status(at, ignored)); ++links) {
-    if (is_of_another_user(at)) {
+    if (is_link_of_another_user(at)) {
       throw InputError({.file = at.string()}, "is a symbolic link that another user made",
                        "name the file that it leads to, if that is the one you mean");
     }
@@ -102,27 +104,57 @@ mode_t without_group(mode_t mode) {
   return (mode & kAllRights & ~kGroup) | (mode & kOthers) << 3U;
 }
 
-bool is_own(const struct stat& file) { return file.st_uid == ::geteuid(); }
+/// A plain file that a new one is to be like.
+struct PermissionModel {
+  std::string path;
+  struct stat facts;
+};
 
-/// What a new file at `path` is to be like: the user's own plain file there, or else `like`, or else another user's.
-std::optional<struct stat> model_of(const std::string& path, const std::string& like) {
-  std::optional<struct stat> model;
-  for (const std::string& file : {path, like}) {
+/// For a new file at `path`: `like`, or else what is there, but another user's only where both are.
+std::optional<PermissionModel> model_of(const std::string& path, const std::string& like) {
+  std::optional<PermissionModel> model;
+  for (const std::string& file : {like, path}) {
     struct stat found {};
     if (::lstat(file.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) continue;
-    if (is_own(found)) return found;
-    if (!model) model = found;
+    if (!is_of_another_user(found)) return PermissionModel{file, found};
+    if (!model) model = PermissionModel{file, found};
   }
   return model;
 }
 
 /// The rights of a new file until it gets those that it is to have; the system takes those of the umask off. Another
 /// user's file gives none that a file of one's own would not have: it may have been put there for that.
-mode_t first_rights(const std::optional<struct stat>& model) {
+mode_t first_rights(const std::optional<PermissionModel>& model) {
   constexpr mode_t kReadableByAll = 0666;
   constexpr mode_t kPrivate = 0600;
   if (!model) return kReadableByAll;
-  return is_own(*model) ? kPrivate : without_group(model->st_mode) & kReadableByAll;
+  return is_of_another_user(model->facts) ? (model->facts.st_mode | kPrivate) & kReadableByAll : kPrivate;
+}
+
+/// Gives the file the access list of another, or none where that has none. Whether it could.
+bool copy_access_list(const std::string& from, int to) {
+  constexpr const char* kList = "system.posix_acl_access";
+  std::array<std::byte, 4096> list{};
+  const ssize_t bytes = ::lgetxattr(from.c_str(), kList, list.data(), list.size());
+  if (bytes > 0) return ::fsetxattr(to, kList, list.data(), static_cast<std::size_t>(bytes), 0) == 0;
+  if (bytes < 0 && errno != ENODATA && errno != ENOTSUP) return false;
+  return ::fremovexattr(to, kList) == 0 || errno == ENODATA || errno == ENOTSUP;
+}
+
+/// Group, access list and rights of its model. Where these cannot be had, the group that the file has instead may do no
+/// more than everybody.
+void give_permissions(int file, const PermissionModel& model) {
+  struct stat made {};
+  if (is_of_another_user(model.facts)) {
+    const bool same_group = ::fstat(file, &made) == 0 && made.st_gid == model.facts.st_gid;
+    if (!same_group) ::fchmod(file, without_group(made.st_mode));
+    return;
+  }
+  constexpr auto kSameUser = static_cast<uid_t>(-1);
+  const bool has_group = ::fchown(file, kSameUser, model.facts.st_gid) == 0;
+  const bool has_list = copy_access_list(model.path, file);
+  const mode_t rights = model.facts.st_mode;
+  ::fchmod(file, has_group && has_list ? rights & kAllRights : without_group(rights));
 }
 
 /// The beginning of a plain file; none where there is no such file, or it cannot be read.
@@ -177,9 +209,7 @@ std::string check_output_path(const std::string& named, const OutputKind& kind, 
   return path;
 }
 
-bool fill_randomly(std::span<std::byte> bytes) {
-  return ::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
-}
+bool fill_randomly(std::span<std::byte> bytes) { return ::getentropy(bytes.data(), bytes.size()) == 0; }
 
 bool stands(const std::string& path) {
   std::error_code ignored;
@@ -203,19 +233,10 @@ FileWriter::FileWriter(std::string path, const std::string& like, FillRandomly f
   if (::stat(path_.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
     throw FileError(path_, "is not a plain file and will not be replaced", "choose another name");
   }
-  const std::optional<struct stat> model = model_of(path_, like);
+  const std::optional<PermissionModel> model = model_of(path_, like);
   descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, first_rights(model));
   if (descriptor_ == kClosed) fail("cannot be created", errno);
-  if (model && is_own(*model)) give_permissions(*model);
-}
-
-/// Those of the user's own file. Where its group cannot be had, the one that the file has instead may do no more than
-/// everybody.
-void FileWriter::give_permissions(const struct stat& own) {
-  constexpr auto kSameUser = static_cast<uid_t>(-1);
-  const bool has_group = ::fchown(descriptor_, kSameUser, own.st_gid) == 0;
-  // A file system without permissions has none to keep.
-  ::fchmod(descriptor_, has_group ? own.st_mode & kAllRights : without_group(own.st_mode));
+  if (model) give_permissions(descriptor_, *model);
 }
 
 FileWriter::~FileWriter() {

@@ -47,9 +47,9 @@ bool fill_randomly(std::span<std::byte> bytes);  ///< The system's.
 class FileWriter {
  public:
   /// Refuses a path where something other than a plain file stands (a folder, a device). The file gets group and
-  /// permissions of the user's own file that it replaces; if there is none, those of the user's file `like`, and
-  /// without that either those of the umask. Of another user's file it gets no right beyond the umask. fill: for the
-  /// temporary name; what stands there is not touched, and refused.
+  /// permissions of the file `like`; if there is none, of the file that it replaces, and without that either those of
+  /// the umask. Another user's counts only where there is no other, gives no right beyond the umask, and none to
+  /// another group. fill: for the temporary name; what stands there is not touched, and refused.
   explicit FileWriter(std::string path, const std::string& like = {}, FillRandomly fill = fill_randomly);
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
@@ -82,7 +82,6 @@ class FileWriter {
   void commit();  ///< Syncs, unless that was done, and puts the file in its place.
 
  private:
-  void give_permissions(const struct stat& own);
   std::uint64_t expected_size() const;  ///< 0 where it is not known.
   [[noreturn]] void fail(std::string_view action, int error) const;
   std::string remedy(int error) const;

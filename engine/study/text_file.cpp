@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <system_error>
 
@@ -28,15 +29,15 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
   }
   if (!file.is_open()) unreadable(path, file.error());
   std::string text;
-  const bool whole = file.read_parts([&](std::span<const std::byte> part) {
+  const auto take = [&](std::span<const std::byte> part) {
     text.append(reinterpret_cast<const char*>(part.data()), part.size());
     if (text.size() > most_bytes) {
       throw InputError(
           {path}, "has more than the " + std::to_string(most_bytes) + " bytes a " + std::string(what) + " may have",
           "name another file");
     }
-  });
-  if (!whole) unreadable(path, errno);
+  };
+  if (!file.read_parts(std::ref(take))) unreadable(path, errno);
   return text;
 }
 

@@ -1,13 +1,10 @@
 // A result file, or a shard of one. What reads is printed, reported and exported, and nothing but itself is read. A
 // crash or a hang of HDF5 in the child that reads first (engine/files/poesy_file.h) is no finding; one in this process
 // is.
-#include <sys/inotify.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -45,28 +42,6 @@ const std::string& folder() {
   return only.path();
 }
 
-/// Sees whether anybody reads the other file, children too. Other fuzzers may write it meanwhile.
-class OtherFile {
- public:
-  OtherFile() : events_(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
-    std::ofstream(fuzz::kOtherFile) << "what no input may make poesy read";
-    fuzz::expect(::inotify_add_watch(events_, fuzz::kOtherFile, IN_ACCESS) >= 0, "the other file can be watched");
-  }
-  OtherFile(const OtherFile&) = delete;
-  OtherFile& operator=(const OtherFile&) = delete;
-  ~OtherFile() { ::close(events_); }
-  /// Whether it was read since this was asked last.
-  bool was_read() const {
-    std::array<char, 4096> events{};
-    bool any = false;
-    while (::read(events_, events.data(), events.size()) > 0) any = true;
-    return any;
-  }
-
- private:
-  int events_;
-};
-
 /// No child may take longer than the fuzzer lets an input take.
 void limit_children() {
   pthread_atfork(nullptr, nullptr, [] {
@@ -101,8 +76,7 @@ void use(const std::string& path) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const bool once = (fuzz::share_coverage(), limit_children(), true);
   static_cast<void>(once);
-  static const OtherFile other;
-  static_cast<void>(other.was_read());  // by whoever made the input
+  const fuzz::OtherFile& other = fuzz::other_file();
   std::vector<std::uint8_t> bytes(data, data + size);
   fuzz::repair_checksums(bytes);
   const fuzz::MemoryFile file(bytes);

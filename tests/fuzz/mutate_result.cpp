@@ -118,10 +118,10 @@ hid_t strange_storage(hid_t space, const Shape& shape, Random& random) {
   const Shape piece(shape.size(), 1 + random() % 3);
   switch (random() % 4) {
     case 0:
-      H5Pset_external(storage, kOtherFile, 0, H5F_UNLIMITED);
+      H5Pset_external(storage, other_file().path().c_str(), 0, H5F_UNLIMITED);
       break;
     case 1:
-      H5Pset_virtual(storage, space, random() % 2 == 0 ? kOtherFile : ".", "/run", space);
+      H5Pset_virtual(storage, space, random() % 2 == 0 ? other_file().path().c_str() : ".", "/run", space);
       break;
     case 2:
       if (!shape.empty()) H5Pset_chunk(storage, static_cast<int>(piece.size()), piece.data());
@@ -137,8 +137,8 @@ hid_t strange_storage(hid_t space, const Shape& shape, Random& random) {
 void add_link(hid_t file, const std::string& to, const std::string& name, Random& random) {
   switch (random() % 3) {
     case 0:
-      H5Lcreate_external(random() % 2 == 0 ? kOtherFile : ".", to.c_str(), file, name.c_str(), H5P_DEFAULT,
-                         H5P_DEFAULT);
+      H5Lcreate_external(random() % 2 == 0 ? other_file().path().c_str() : ".", to.c_str(), file, name.c_str(),
+                         H5P_DEFAULT, H5P_DEFAULT);
       break;
     case 1:
       H5Lcreate_soft(to.c_str(), file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);

@@ -4,7 +4,7 @@ import h5py
 import numpy
 
 from poesy_program import main
-from resumption import MACHINES, MONTE_CARLO, SENSITIVITY, ResumptionTest
+from resumption import MACHINES, MONTE_CARLO, POSES, SENSITIVITY, ResumptionTest
 
 TABLE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
 MILESTONES = [1000, 2000, 3000, 5000, 8000, 12000, 18000, 27000, 40000]
@@ -36,7 +36,7 @@ class Adaptive(ResumptionTest):
                     self.assertEqual(group.attrs["max"], 40000)
                     self.assertEqual(group["half_width"].dims[group["half_width"].ndim - 1].keys(), ["milestone"])
                     if kind == "sensitivity":
-                        self.assertEqual(result["run/solves"][()], 16 * samples.sum())
+                        self.assertEqual(result["run/solves"][()], POSES * samples.sum())
                         numpy.testing.assert_array_equal(result["sensitivity/count"][0, :, 0], samples)
                 self.assertIn(" within +-", self.succeeds("show", "out.h5"))
                 self.succeeds("export", "out.h5", "-d", "tables")
@@ -90,7 +90,8 @@ class Adaptive(ResumptionTest):
     def test_check_says_what_it_means(self):
         self.write("study.toml", STUDIES["sensitivity"])
         text = self.succeeds("check", "study.toml")
-        self.assertIn("3 errors x 16 poses x 1000 to 40000 samples = at least 48000 and at most 1920000 solves", text)
+        self.assertIn(f"3 errors x {POSES} poses x 1000 to 40000 samples = at least {3000 * POSES} and at most "
+                      f"{120000 * POSES} solves", text)
         self.assertIn("at most about", text)
         self.assertIn("samples.relative_error = 0.01", text)
 

@@ -10,11 +10,10 @@ from pathlib import Path
 import h5py
 import numpy
 
-from poesy_program import PROGRAM, main
+from poesy_program import GALLERY, PROGRAM, main
 from resumption import ALLOCATION, ResumptionTest
 
 CHOICES = Path(__file__).resolve().parents[1] / "fuzz/corpus/study/allocation"
-GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
 PARTS = """\
 [[analysis.parts]]
 factors = "linear"

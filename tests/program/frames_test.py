@@ -6,13 +6,11 @@ import io
 import json
 import re
 from html.parser import HTMLParser
-from pathlib import Path
 
 import numpy as np
 
-from poesy_program import STUDY, ProgramTest, main
+from poesy_program import GALLERY, STUDY, ProgramTest, main
 
-GALLERY = Path(__file__).resolve().parents[2] / "results" / "gallery"
 HEAD = 'format = "poesy-study"\nversion = 1\n'
 SHORT = '[errors]\nlinear = { distribution = "normal", sigma = "0.1 mm" }\nangular = { distribution = "normal", sigma = "0.05 deg" }\n'
 POSES = ((-0.2, 0.0, 0.0), (-0.19, 0.25, -0.3), (-0.23, -0.2, 0.35))

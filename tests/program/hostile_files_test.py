@@ -169,7 +169,7 @@ class HostileFiles(ResumptionTest):
                             ("evaluate", "study.toml", "--poses", path, "--errors", path), ("models", self.folder / path),
                             ("check", self.study_with("poses", path)), ("check", self.study_with("trajectory", path)),
                             ("check", self.study_with("measured", path)), ("check", self.study_with("mechanism", path))):
-                with self.subTest(path=path, command=command[0]):
+                with self.subTest(path=path, command=command[:2]):
                     done, seconds = self.deadline.run(self.folder, command)
                     self.assertIn(done.returncode, (2, 3), done.stderr)
                     self.assertIn(what, done.stderr.decode())

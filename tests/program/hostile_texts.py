@@ -4,11 +4,9 @@ than any machine has, or for more levels than a reader should go down.
 text_structures() lists them; FROM_FILE is the study of the result that they are made of.
 """
 
-from pathlib import Path
-
 from hostile_structures import Structure
+from poesy_program import GALLERY
 
-GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
 FROM_FILE = f"""\
 format = "poesy-study"
 version = 1
@@ -92,6 +90,7 @@ def study_texts():
     measured = [(f"{words}errors measured in {name}", instead("\n[analysis]\n", f"""{line}
 [errors.override]
 delta_1_0_x = {{ distribution = "measured", file = "{name}", column = "x" }}
+delta_1_0_y = {{ distribution = "measured", file = "{name}", column = "y" }}
 
 [analysis]
 """)) for words, line in (("", ""), ("correlated ", 'correlated = "as measured"\n')) for name in OUTSIDE]

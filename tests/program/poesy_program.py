@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 PROGRAM = os.environ["POESY_PROGRAM"]
+GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
 AN_OLDER_RESULT = "poesy-result: an older one"  # what may be replaced
 
 STUDY = """\

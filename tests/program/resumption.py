@@ -8,9 +8,10 @@ from pathlib import Path
 
 import h5py
 
-from poesy_program import PROGRAM, ProgramTest
+from poesy_program import GALLERY, PROGRAM, ProgramTest
 
-GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
+# A sanitizer takes some twenty times as long. With fewer poses the program does the same otherwise.
+POSES = 4 if os.environ.get("POESY_SANITIZE") else 16
 HEAD = """\
 format = "poesy-study"
 version = 1
@@ -24,17 +25,17 @@ method = "gauss-newton"
 [run]
 seed = 5
 """
-SENSITIVITY = HEAD + """\
+SENSITIVITY = HEAD + f"""\
 [poses]
-count = 16
+count = {POSES}
 [analysis]
 kind = "sensitivity"
 factors = ["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]
 samples = 12300
 """
-MONTE_CARLO = HEAD + """\
+MONTE_CARLO = HEAD + f"""\
 [poses]
-count = 12
+count = {POSES * 3 // 4}
 [analysis]
 kind = "monte-carlo"
 factors = "deforming"
@@ -94,13 +95,13 @@ linear = ["0.1 mm", "0.3 mm", "0.5 mm"]
 sources = [{ name = "FS", factors = "platform-hinges" }, { name = "R", factors = "revolute-gap" },
            { name = "L", factors = "rod-length" }]
 """
-FIDELITIES = """\
+FIDELITIES = f"""\
 format = "poesy-study"
 version = 1
-mechanism = { model = "3-prs", fidelity = "both" }
-poses = { count = 20 }
-errors = { linear = { distribution = "normal", sigma = "0.1 mm" } }
-analysis = { kind = "sensitivity", samples = 12300 }
+mechanism = {{ model = "3-prs", fidelity = "both" }}
+poses = {{ count = {POSES * 5 // 4} }}
+errors = {{ linear = {{ distribution = "normal", sigma = "0.1 mm" }} }}
+analysis = {{ kind = "sensitivity", samples = 12300 }}
 """
 # Of a mechanism that its file describes: the file's text is in checkpoints and in the result.
 FROM_FILE = HEAD.replace('model = "2upr-rpu"', f'file = "{GALLERY / "3-rrr/3-rrr.toml"}"') + """\

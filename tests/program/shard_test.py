@@ -7,7 +7,7 @@ import signal
 import h5py
 
 from poesy_program import main
-from resumption import ALLOCATION, COUPLING, IDENTIFICATION, MONTE_CARLO, SENSITIVITY, STUDIES, ResumptionTest
+from resumption import ALLOCATION, COUPLING, IDENTIFICATION, MONTE_CARLO, POSES, SENSITIVITY, STUDIES, ResumptionTest
 
 
 class Shards(ResumptionTest):
@@ -58,7 +58,7 @@ class Shards(ResumptionTest):
 
     def test_poses_of_a_file_travel_with_the_shards(self):
         self.write("poses.csv", "z,beta,gamma\n-0.2,0.1,0.2\n-0.22,0,0.1\n-0.25,-0.1,0\n")
-        study = SENSITIVITY.replace("count = 16", 'select = "file"\nfile = "poses.csv"').replace("12300", "300")
+        study = SENSITIVITY.replace(f"count = {POSES}", 'select = "file"\nfile = "poses.csv"').replace("12300", "300")
         expected = self.undisturbed(study)
         names = self.run_shards(2)
         (self.folder / "poses.csv").unlink()
@@ -124,9 +124,9 @@ class Shards(ResumptionTest):
             done = self.poesy("run", "study.toml", "--shard", text)
             self.assertEqual(done.returncode, 2, text)
             self.assertIn(b"K/N", done.stderr)
-        done = self.poesy("run", "study.toml", "--shard", "1/49")
+        done = self.poesy("run", "study.toml", "--shard", f"1/{3 * POSES + 1}")
         self.assertEqual(done.returncode, 2)
-        self.assertIn(b"divides into 48 at most", done.stderr)
+        self.assertIn(f"divides into {3 * POSES} at most", done.stderr.decode())
         for kind, study in (("identification", IDENTIFICATION), ("allocation", ALLOCATION)):
             self.write("study.toml", study)
             done = self.poesy("run", "study.toml", "--shard", "1/2")

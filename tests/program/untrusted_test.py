@@ -10,7 +10,7 @@ import shutil
 import subprocess
 
 import h5py
-from poesy_program import PROGRAM, STUDY, ProgramTest, main
+from poesy_program import GALLERY, PROGRAM, STUDY, ProgramTest, main
 
 MINI = """\
 format = "poesy-study"
@@ -234,6 +234,19 @@ class Overflow(Untrusted):
                     self.write("p.csv", header + "\n" + values.format(size) + "\n")
                     self.write("study.toml", mini('select = "file"\nfile = "p.csv"'))
                     self.said(2, "run", "study.toml")
+
+    def test_places_beyond_all_reach_of_other_mechanisms(self):
+        own = 'model = "3-prs"\nfidelity = "first-order"'
+        for mechanism, header, values in (('model = "xy-3-prs"', "alpha,beta,tip_x,tip_y,tip_z", "0,0,{},0,0.85"),
+                                          ("3-rps", "rx,ry,tip_z", "0,0,{}"), ("3-rrr", "q_1_1,q_2_1,q_3_1", "{},0,0"),
+                                          ("6-ups", "q_1_3,q_2_3,q_3_3,q_4_3,q_5_3,q_6_3", "1,1,1,1,1,{}"),
+                                          ("tripteron", "x,y,z", "0,{},0")):
+            given = mechanism if "model" in mechanism else f'file = "{GALLERY / mechanism / mechanism}.toml"'
+            self.write("study.toml", mini('select = "file"\nfile = "p.csv"').replace(own, given))
+            for size in ("1e7", "1.4e154", "1e300", "-1.7e308"):
+                with self.subTest(mechanism, size=size):
+                    self.write("p.csv", header + "\n" + values.format(size) + "\n")
+                    self.assertIn("out of reach", self.said(2, "run", "study.toml"))
 
     def test_a_curve_that_begins_beyond_all_reach_is_refused(self):
         self.write("study.toml", mini('select = "trajectory"\ntrajectory = { curve = "helix", origin = ["1e300 m", "0 m", "1 m"] }'))
