@@ -6,10 +6,11 @@ import numpy
 from poesy_program import main
 from resumption import MACHINES, MONTE_CARLO, POSES, SENSITIVITY, ResumptionTest
 
-TABLE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
+ERROR = 0.01 * (16 / POSES) ** 0.5  # which takes as many samples, however many poses there are
+TABLE = f"samples = {{ min = 1000, max = 40000, relative_error = {ERROR:g} }}"
 MILESTONES = [1000, 2000, 3000, 5000, 8000, 12000, 18000, 27000, 40000]
 STUDIES = {"sensitivity": SENSITIVITY.replace("samples = 12300", TABLE),
-           "monte-carlo": MONTE_CARLO.replace("samples = 12300", TABLE.replace("0.01", "0.003")),
+           "monte-carlo": MONTE_CARLO.replace("samples = 12300", TABLE.replace(f"{ERROR:g}", f"{0.3 * ERROR:g}")),
            "machines": MACHINES.replace("samples = 12300", TABLE)}
 
 
@@ -69,7 +70,7 @@ class Adaptive(ResumptionTest):
         study = STUDIES["sensitivity"]
         self.write("study.toml", study.replace("40000", "3000"))
         self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")
-        for old, new, word in (("0.01 }", "0.02 }", "samples.relative_error = 0.01"),
+        for old, new, word in ((f"{ERROR:g} }}", "0.05 }", f"samples.relative_error = {ERROR:g}"),
                                ("min = 1000", "min = 500", "samples.min = 1000"),
                                (TABLE, "samples = 40000", "takes as many samples as it needs"), ("40000", "2000", "3000 samples")):
             self.write("study.toml", study.replace(old, new))
@@ -93,7 +94,7 @@ class Adaptive(ResumptionTest):
         self.assertIn(f"3 errors x {POSES} poses x 1000 to 40000 samples = at least {3000 * POSES} and at most "
                       f"{120000 * POSES} solves", text)
         self.assertIn("at most about", text)
-        self.assertIn("samples.relative_error = 0.01", text)
+        self.assertIn(f"samples.relative_error = {ERROR:g}", text)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import h5py
 from poesy_program import GALLERY, PROGRAM, ProgramTest
 
 # A sanitizer takes some twenty times as long. With fewer poses the program does the same otherwise.
-POSES = 4 if os.environ.get("POESY_SANITIZE") else 16
+POSES = 8 if os.environ.get("POESY_SANITIZE") else 16
 HEAD = """\
 format = "poesy-study"
 version = 1
