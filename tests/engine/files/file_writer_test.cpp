@@ -197,7 +197,7 @@ TEST(FileWriter, KeepsTheAccessListOfWhatItReplaces) {
   EXPECT_EQ(access_list_of(path), access_list());
 }
 
-TEST(FileWriter, DoesNotGetAnAccessListThatWhatItReplacesHasNot) {
+TEST(FileWriter, GetsNoAccessListThatTheOldFileHasNot) {
   const TempFolder folder;
   const std::string path = folder.write("f", "old");
   ::chmod(path.c_str(), 0640);

@@ -272,7 +272,7 @@ class UndefinedCondition : public test::FakeModel {
   double condition(std::span<const double> /*pose*/) const override { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-TEST_P(EmptyWorkspace, AConditionThatIsNoNumberIsSingular) {
+TEST_P(EmptyWorkspace, CountsNoNumberAsSingular) {
   const PoseSelection selection = test::fake_box(GetParam(), 20);
   test::expect_input_error([&] { select_poses(selection, UndefinedCondition()); }, selection.place,
                            {"the workspace is empty (singular: condition number above "});
