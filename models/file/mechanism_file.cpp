@@ -113,7 +113,7 @@ void check_name(const Reference& reference) {
     return;
   }
   throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is no name",
-                   "write letters, digits, _ and -, but begin with no -");
+                   "write letters, digits, _ and -, and do not begin with -");
 }
 
 /// Throws where the name is taken already.
@@ -557,7 +557,7 @@ const Keys<MechanismFile, Nothing>& file_keys() {
       .rows = {needed("format", read_by("text", read_format), "\"poesy-mechanism\"", "\"poesy-mechanism\"."),
                needed("version", read_by("integer", read_version), "1", "1."),
                needed("name", kept("text", read_name, &F::name), "\"rps3\"",
-                      "Its name: letters, digits, _ and -; it begins with no -."),
+                      "Its name: letters, digits, _ and -; it does not begin with -."),
                optional("title", text_at(&F::title), "the name", "For people."),
                optional("geometry", read_by("table", read_geometry), "none",
                         "Lengths and angles that expressions name; a study may change each."),

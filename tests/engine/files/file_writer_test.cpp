@@ -80,7 +80,7 @@ bool fill_with_ones(std::span<std::byte> bytes) {
   return true;
 }
 
-bool fill_not(std::span<std::byte> /*bytes*/) {
+bool cannot_fill(std::span<std::byte> /*bytes*/) {
   errno = ENOSYS;
   return false;
 }
@@ -111,7 +111,7 @@ TEST(FileWriter, TouchesNothingThatHasItsTemporaryName) {
 
 TEST(FileWriter, WritesNothingWithoutRandomNumbers) {
   const TempFolder folder;
-  EXPECT_THROW(FileWriter(folder / "f", {}, fill_not), FileError);
+  EXPECT_THROW(FileWriter(folder / "f", {}, cannot_fill), FileError);
   EXPECT_EQ(files_in(folder.path()), 0U);
 }
 
@@ -152,8 +152,7 @@ TEST(FileWriter, HasThePermissionsOfTheFileThatItIsToBeLike) {
   const TempFolder folder;
   ::chmod(folder.write("like", "").c_str(), 0604);
   for (int k = 0; k < 2; ++k) {
-    FileWriter writer(folder / "f", folder / "like");
-    writer.commit();
+    write_like(folder / "f", folder / "like");
     EXPECT_EQ(mode_of(folder / "f"), 0604U);
     ::chmod((folder / "f").c_str(), 0666);
   }
