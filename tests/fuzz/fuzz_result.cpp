@@ -19,27 +19,16 @@
 #include "tests/fuzz/other_file.h"
 #include "tests/fuzz/shared_coverage.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/temp_folder.h"
 
 namespace {
 
 using namespace poesy;
 
-/// Where tables are written: one folder in memory for all inputs.
-class TableFolder {
- public:
-  TableFolder() { fuzz::expect(mkdtemp(path_.data()) != nullptr, "there is a folder in memory"); }
-  TableFolder(const TableFolder&) = delete;
-  TableFolder& operator=(const TableFolder&) = delete;
-  ~TableFolder() { ::rmdir(path_.c_str()); }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_ = "/dev/shm/poesy-fuzz-XXXXXX";
-};
-
-const std::string& folder() {
-  static const TableFolder only;
-  return only.path();
+/// Where tables are written: one folder for all inputs.
+const test::TempFolder& folder() {
+  static const test::TempFolder only;
+  return only;
 }
 
 /// No child may take longer than the fuzzer lets an input take.
@@ -64,11 +53,11 @@ void use(const std::string& path) {
   static_cast<void>(json_of(result, tally.total(), tables));
   const ReportedResult reported{result, path};
   static_cast<void>(html_report(kind, {&reported, 1}));
-  for (const std::string& table : export_tables(path, folder())) {
-    fuzz::expect(std::filesystem::path(table).parent_path() == folder(), "a table lies in the folder that was named");
+  for (const std::string& table : export_tables(path, folder().path())) {
+    fuzz::expect(std::filesystem::path(table).parent_path() == folder().path(), "tables lie in the folder named");
     ::unlink(table.c_str());
   }
-  ::unlink((folder() + "/" + kListOfFiles).c_str());
+  ::unlink((folder() / kListOfFiles).c_str());
 }
 
 }  // namespace

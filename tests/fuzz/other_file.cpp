@@ -1,6 +1,5 @@
 #include "tests/fuzz/other_file.h"
 
-#include <stdlib.h>
 #include <sys/inotify.h>
 #include <unistd.h>
 
@@ -8,16 +7,10 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-
-#include "tests/fuzz/target.h"
 
 namespace poesy::fuzz {
 
-OtherFile::OtherFile() {
-  expect(::mkdtemp(folder_.data()) != nullptr, "there is a folder in memory");
-  path_ = folder_ + "/other";
-  std::ofstream(path_) << "what no input may make poesy read";
+OtherFile::OtherFile() : path_(folder_.write("other", "what no input may make poesy read")) {
   events_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
   if (::inotify_add_watch(events_, path_.c_str(), IN_ACCESS) < 0) {
     std::fputs("files cannot be watched here: reading another file will not be noticed\n", stderr);
@@ -26,8 +19,6 @@ OtherFile::OtherFile() {
 
 OtherFile::~OtherFile() {
   if (events_ >= 0) ::close(events_);
-  ::unlink(path_.c_str());
-  ::rmdir(folder_.c_str());
 }
 
 bool OtherFile::was_read() const {

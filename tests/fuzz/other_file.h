@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "tests/support/temp_folder.h"
+
 namespace poesy::fuzz {
 
 /// A file of this process in a folder of its own, which changed results name in every way that HDF5 knows
@@ -18,7 +20,7 @@ class OtherFile {
   bool was_read() const;
 
  private:
-  std::string folder_ = "/dev/shm/poesy-fuzz-XXXXXX";
+  test::TempFolder folder_;
   std::string path_;
   int events_ = -1;
 };
