@@ -54,7 +54,7 @@ void use(const std::string& path) {
   const ReportedResult reported{result, path};
   static_cast<void>(html_report(kind, {&reported, 1}));
   for (const std::string& table : export_tables(path, folder().path())) {
-    fuzz::expect(std::filesystem::path(table).parent_path() == folder().path(), "tables lie in the folder named");
+    fuzz::expect(std::filesystem::path(table).parent_path() == folder().path(), "tables lie in the named folder");
     ::unlink(table.c_str());
   }
   ::unlink((folder() / kListOfFiles).c_str());
