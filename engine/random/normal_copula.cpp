@@ -1,16 +1,14 @@
 #include "engine/random/normal_copula.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/base/contract.h"
 #include "engine/base/instruction_sets.h"
+#include "engine/linalg/decompositions.h"
 
 namespace poesy {
 namespace {
-
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 std::size_t side(std::span<const double> matrix) {
   const auto size = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(matrix.size()))));
@@ -30,8 +28,8 @@ POESY_EACH_INSTRUCTION_SET void add_scaled(double factor, const double* other, d
 
 double smallest_eigenvalue(std::span<const double> matrix) {
   const auto size = static_cast<Eigen::Index>(side(matrix));
-  const Eigen::Map<const RowMatrix> map(matrix.data(), size, size);
-  return Eigen::SelfAdjointEigenSolver<RowMatrix>(map, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  // By rows or by columns: it is symmetric.
+  return linalg::eigenvalues(Eigen::Map<const linalg::Matrix>(matrix.data(), size, size))[0];
 }
 
 std::vector<double> lower_triangle(std::span<const double> matrix) {

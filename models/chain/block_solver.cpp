@@ -7,10 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Cholesky>
-
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/linalg/decompositions.h"
 #include "models/chain/deformation_solver.h"
 
 namespace poesy::chain {
@@ -148,7 +147,7 @@ void BlockSolver::find_segments(std::span<const double> displacements, std::span
 void BlockSolver::find_spread(const lie::Matrix6<double>& W) {
   const lie::Vector3<double> middle(W(2, 4), W(0, 5), W(1, 3));
   const lie::Matrix3<double> cross = lie::hat<double>(middle);
-  const lie::Matrix3<double> U = Eigen::LLT<lie::Matrix3<double>>(W.topLeftCorner<3, 3>() + cross * cross).matrixU();
+  const lie::Matrix3<double> U = linalg::cholesky_root(W.topLeftCorner<3, 3>() + cross * cross);
   std::copy_n(middle.data(), 3, middle_.begin());
   spread_ = {U(0, 0), U(0, 1), U(0, 2), U(1, 1), U(1, 2), U(2, 2)};
 }

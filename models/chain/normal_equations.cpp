@@ -1,8 +1,9 @@
 #include "models/chain/normal_equations.h"
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
+
+#include "engine/linalg/decompositions.h"
 
 namespace poesy::chain {
 
@@ -84,9 +85,9 @@ void NormalEquations::hold_idle(std::span<const lie::Screw<double>> columns, con
   weigh(columns, W);
   double diagonal = 0.0;
   for (std::size_t a = 0; a < size_; ++a) diagonal += weighted_[a].dot(columns[a]) / static_cast<double>(size_);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(loops, Eigen::ComputeFullV);
+  const Eigen::MatrixXd V = linalg::right_singular_vectors(loops).V;
   for (Eigen::Index n = size - static_cast<Eigen::Index>(idle_freedoms_); n < size; ++n) {
-    for (Eigen::Index a = 0; a < size; ++a) idle_.push_back(std::sqrt(diagonal) * svd.matrixV()(a, n));
+    for (Eigen::Index a = 0; a < size; ++a) idle_.push_back(std::sqrt(diagonal) * V(a, n));
   }
 }
 

@@ -1,10 +1,9 @@
 #include "models/chain/passive_condition.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <limits>
 
 #include "engine/base/contract.h"
+#include "engine/linalg/decompositions.h"
 
 namespace poesy::chain {
 namespace {
@@ -54,7 +53,7 @@ Eigen::MatrixXd jacobian_in_reaches(const ParallelChain& chain, std::span<const 
 
 /// W^(1/2) J with columns of length 1.
 Eigen::MatrixXd jacobian_by(const Metric& metric, const ParallelChain& chain, std::span<const double> displacements) {
-  const lie::Matrix6<double> root = metric.W.llt().matrixU();
+  const lie::Matrix6<double> root = linalg::cholesky_root(metric.W);
   Eigen::MatrixXd jacobian = passive_jacobian(
       chain, displacements, [&](const lie::Screw<double>& spatial) -> lie::Screw<double> { return root * spatial; });
   jacobian.colwise().normalize();
@@ -65,9 +64,8 @@ Eigen::MatrixXd jacobian_by(const Metric& metric, const ParallelChain& chain, st
 
 double passive_condition(const ParallelChain& chain, std::span<const double> displacements, const Metric* metric) {
   POESY_EXPECTS(displacements.size() == chain.joints());
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(metric == nullptr ? jacobian_in_reaches(chain, displacements)
-                                                                : jacobian_by(*metric, chain, displacements));
-  const auto& values = svd.singularValues();
+  const Eigen::VectorXd values = linalg::singular_values(
+      metric == nullptr ? jacobian_in_reaches(chain, displacements) : jacobian_by(*metric, chain, displacements));
   const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
   const double largest = values[0];
   const double smallest = values[values.size() - 1 - static_cast<Eigen::Index>(chain.idle)];

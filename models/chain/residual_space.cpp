@@ -1,11 +1,9 @@
 #include "models/chain/residual_space.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 
 #include "engine/base/contract.h"
+#include "engine/linalg/decompositions.h"
 
 namespace poesy::chain {
 namespace {
@@ -23,24 +21,14 @@ Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
 
 /// [L - 1, L] N with N^T N = incidence^T incidence: the motions of the limbs without what all have in common.
 Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(incidence.transpose() * incidence);
+  const auto [values, vectors] = linalg::eigen_decomposition(incidence.transpose() * incidence);
   const Eigen::Index limbs = incidence.cols();
-  POESY_EXPECTS(limbs < 2 || solver.eigenvalues()[1] > 1e-9);
+  POESY_EXPECTS(limbs < 2 || values[1] > 1e-9);
   Eigen::MatrixXd rows(limbs - 1, limbs);
   for (Eigen::Index row = 0; row + 1 < limbs; ++row) {
-    rows.row(row) = std::sqrt(solver.eigenvalues()[row + 1]) * solver.eigenvectors().col(row + 1).transpose();
+    rows.row(row) = std::sqrt(values[row + 1]) * vectors.col(row + 1).transpose();
   }
   return rows;
-}
-
-/// The upper triangle R [D, D] with |R y| = factor |rows y| for every y.
-void triangle(Eigen::HouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& rows, double factor,
-              Eigen::MatrixXd& R) {
-  qr.compute(rows);
-  R.setZero();
-  for (Eigen::Index row = 0; row < std::min(R.rows(), rows.rows()); ++row) {
-    for (Eigen::Index column = row; column < R.cols(); ++column) R(row, column) = factor * qr.matrixQR()(row, column);
-  }
 }
 
 }  // namespace
@@ -48,14 +36,12 @@ void triangle(Eigen::HouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& 
 ResidualSpace::ResidualSpace(const ParallelChain& chain)
     : chain_(&chain),
       independent_(independent_rows(incidence_of(chain))),
-      of_pairs_(incidence_of(chain) * independent_.completeOrthogonalDecomposition().pseudoInverse()),
+      of_pairs_(incidence_of(chain) * linalg::pseudo_inverse(independent_)),
       of_limb_(chain.limbs.size()) {
   const std::size_t rows = 6 * (chain.limbs.size() - 1);
   const std::size_t joints = chain.passive_joints();
   dimensions_ = rows > joints ? rows - joints : 0;
   columns_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(joints));
-  basis_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(dimensions_));
-  workspace_.resize(static_cast<Eigen::Index>(dimensions_));
   for (Eigen::MatrixXd& of_limb : of_limb_) of_limb.resize(static_cast<Eigen::Index>(dimensions_), 6);
   delta_mu_.resize(6 * of_pairs_.rows(), static_cast<Eigen::Index>(dimensions_));
   rows_.resize(3 * of_pairs_.rows(), static_cast<Eigen::Index>(dimensions_));
@@ -66,8 +52,8 @@ ResidualSpace::ResidualSpace(const ParallelChain& chain)
 void ResidualSpace::prepare(const FirstOrder& first_order, const Metric* metric) {
   if (dimensions_ == 0) return;
   root_ = lie::Matrix6<double>::Identity();
-  if (metric != nullptr) root_ = metric->W.llt().matrixU();
-  inverse_ = root_.triangularView<Eigen::Upper>().solve(lie::Matrix6<double>(lie::Matrix6<double>::Identity()));
+  if (metric != nullptr) root_ = linalg::cholesky_root(metric->W);
+  inverse_ = linalg::inverse(root_);
   find_basis(first_order);
   for (std::size_t limb = 0; limb < of_limb_.size(); ++limb) {
     of_limb_[limb].setZero();
@@ -94,10 +80,7 @@ void ResidualSpace::find_basis(const FirstOrder& first_order) {
       columns_.col(a).segment<6>(6 * row) = independent_(row, limb) * column;
     }
   }
-  qr_.compute(columns_);
-  basis_.setZero();
-  basis_.bottomRows(basis_.cols()).setIdentity();
-  qr_.householderQ().applyThisOnTheLeft(basis_, workspace_);
+  basis_ = linalg::orthogonal_complement(columns_);
 }
 
 void ResidualSpace::find_norms(const Metric& metric) {
@@ -105,14 +88,14 @@ void ResidualSpace::find_norms(const Metric& metric) {
   norms_[0].setIdentity();
   norms_[0] *= share;
   for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) rows_.middleRows<3>(3 * n) = delta_mu_.middleRows<3>(6 * n);
-  triangle(norm_qr_, rows_, share, norms_[1]);
+  norms_[1] = share * linalg::upper_triangle(rows_);
   for (Eigen::Index n = 0; n < of_pairs_.rows(); ++n) {
     for (Eigen::Index y = 0; y < rows_.cols(); ++y) {
       const auto screw = delta_mu_.col(y).segment<6>(6 * n);
       rows_.col(y).segment<3>(3 * n) = screw.tail<3>() + screw.head<3>().cross(metric.origin);
     }
   }
-  triangle(norm_qr_, rows_, share, norms_[2]);
+  norms_[2] = share * linalg::upper_triangle(rows_);
 }
 
 void ResidualSpace::add(const FirstOrder& first_order, const FrameEntry& entry, double error,

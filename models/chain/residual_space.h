@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <array>
 #include <span>
 #include <vector>
@@ -37,19 +37,16 @@ class ResidualSpace {
   void find_norms(const Metric& metric);
 
   const ParallelChain* chain_;
-  Eigen::MatrixXd independent_;   ///< [L - 1, L] N with N^T N = incidence^T incidence
-  Eigen::MatrixXd of_pairs_;      ///< [pairs, L - 1] incidence = of_pairs N
-  std::size_t dimensions_ = 0;    ///< D
-  lie::Matrix6<double> root_;     ///< U with U^T U = W
-  lie::Matrix6<double> inverse_;  ///< of U
-  Eigen::MatrixXd columns_;       ///< [6 (L - 1), F] of the passive joints
-  Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
-  Eigen::MatrixXd basis_;  ///< [6 (L - 1), D] at right angles to the columns
-  Eigen::RowVectorXd workspace_;
+  Eigen::MatrixXd independent_;           ///< [L - 1, L] N with N^T N = incidence^T incidence
+  Eigen::MatrixXd of_pairs_;              ///< [pairs, L - 1] incidence = of_pairs N
+  std::size_t dimensions_ = 0;            ///< D
+  lie::Matrix6<double> root_;             ///< U with U^T U = W
+  lie::Matrix6<double> inverse_;          ///< of U
+  Eigen::MatrixXd columns_;               ///< [6 (L - 1), F] of the passive joints
+  Eigen::MatrixXd basis_;                 ///< [6 (L - 1), D] at right angles to the columns
   std::vector<Eigen::MatrixXd> of_limb_;  ///< [D, 6] y of a motion of the limb's platform
   Eigen::MatrixXd delta_mu_;
   Eigen::MatrixXd rows_;  ///< [3 pairs, D]
-  Eigen::HouseholderQR<Eigen::MatrixXd> norm_qr_;
   std::array<Eigen::MatrixXd, 3> norms_;
 };
 

@@ -1,14 +1,12 @@
 #include "models/chain/separation.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/linalg/decompositions.h"
 #include "models/chain/first_order.h"
 #include "models/chain/metric.h"
 
@@ -57,10 +55,7 @@ LimbJoints joints_of(const Limb& limb, std::span<const double> displacements) {
 /// The projection onto what is at right angles to all of these columns.
 Matrix6 beyond(const Columns& columns) {
   if (columns.cols() == 0) return Matrix6::Identity();
-  Eigen::ColPivHouseholderQR<Columns> qr(columns);
-  qr.setThreshold(kDependent);
-  const Matrix6 q = qr.householderQ();
-  const auto rest = q.rightCols(6 - qr.rank());
+  const Eigen::MatrixXd rest = linalg::orthogonal_complement(columns, kDependent);
   return rest * rest.transpose();
 }
 
@@ -99,7 +94,7 @@ class LimbSeparation {
   LimbSeparation(const LimbJoints& joints, const Matrix6& to_displacement, double radius) {
     lengths_ << radius * lie::Matrix3<double>::Identity(), lie::Matrix3<double>::Zero(), -lie::hat<double>(joints.end),
         lie::Matrix3<double>::Identity();
-    from_lengths_ = to_displacement * lengths_.inverse();
+    from_lengths_ = to_displacement * linalg::inverse(lengths_);
     Columns passive = lengths_ * joints.passive;
     passive.colwise().normalize();
     beyond_passive_ = beyond(passive);
@@ -133,7 +128,7 @@ class LimbSeparation {
 
 /// Twists of the platform times this have the root mean square displacement of its points as their norm.
 Matrix6 root_of_metric(const DeformationModel& model, std::span<const double> displacements) {
-  return platform_metric(model.chain, model.platform->points, displacements).W.llt().matrixU();
+  return linalg::cholesky_root(platform_metric(model.chain, model.platform->points, displacements).W);
 }
 
 std::vector<LimbSeparation> limb_separations(const DeformationModel& model, std::span<const double> displacements,
@@ -194,7 +189,7 @@ std::optional<Matrix6> left_by_drives(const DeformationModel& model, std::span<c
   to_lengths.bottomLeftCorner<3, 3>() = lie::hat<double>(model.platform_points(displacements)->platform.p);
   to_lengths = root_of_metric(model, displacements) * to_lengths;
   const Matrix6 left = beyond_all_drives(limb_separations(model, displacements, first_order));
-  return to_lengths.partialPivLu().solve(left * to_lengths);
+  return linalg::solve(to_lengths, left * to_lengths);
 }
 
 std::optional<SeparationDescription> separation_description(const DeformationModel& model) {

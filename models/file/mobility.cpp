@@ -1,11 +1,10 @@
 #include "models/file/mobility.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/base/units.h"
+#include "engine/linalg/decompositions.h"
 #include "models/file/tracking.h"
 
 namespace poesy::file {
@@ -29,11 +28,10 @@ Decomposed decomposed(const Matrix& matrix, double largest = 0.0) {
     const Matrix identity = Matrix::Identity(matrix.cols(), matrix.cols());
     return {{}, 0, identity, identity};
   }
-  const Eigen::JacobiSVD<Matrix> svd(matrix, Eigen::ComputeFullV);
-  const Eigen::VectorXd& values = svd.singularValues();
-  const double threshold = kRankThreshold * (largest > 0.0 ? largest : values[0]);
-  const Index rank = (values.array() > threshold).count();
-  return {values, rank, svd.matrixV().rightCols(matrix.cols() - rank), svd.matrixV()};
+  const linalg::SingularValueDecomposition svd = linalg::right_singular_vectors(matrix);
+  const double threshold = kRankThreshold * (largest > 0.0 ? largest : svd.values[0]);
+  const Index rank = (svd.values.array() > threshold).count();
+  return {svd.values, rank, svd.V.rightCols(matrix.cols() - rank), svd.V};
 }
 
 std::size_t size(Index count) { return static_cast<std::size_t>(count); }
@@ -136,7 +134,7 @@ std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank)
 
 void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Matrix& twists, Mobility& found) {
   if (twists.cols() == 0) return;  // nothing moves; Eigen has no rows of a matrix without columns
-  const Matrix rates = platform_columns(unit, pose).fullPivLu().solve(twists);
+  const Matrix rates = linalg::solve_by_full_pivots(platform_columns(unit, pose), twists);
   Matrix chosen(static_cast<Index>(unit.coordinates.size()), rates.cols());
   for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {
     chosen.row(static_cast<Index>(c)) = rates.row(static_cast<Index>(unit.coordinates[c].component));

@@ -1,14 +1,12 @@
 #include "models/file/tracking.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/units.h"
+#include "engine/linalg/decompositions.h"
 #include "models/file/mobility.h"
 
 namespace poesy::file {
@@ -29,13 +27,6 @@ constexpr int kMostSteps = 12;
 constexpr int kMostSettlings = 60;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
-
-std::size_t rank_of(const Matrix& matrix) {
-  if (matrix.cols() == 0) return 0;
-  Eigen::JacobiSVD<Matrix> svd(matrix);
-  svd.setThreshold(kRankThreshold);
-  return static_cast<std::size_t>(svd.rank());
-}
 
 std::span<const double> part(const Vector& q, std::size_t begin, std::size_t count) {
   return {q.data() + begin, count};
@@ -83,7 +74,7 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
     }
     Columns columns(6, index(k));
     limb_transform(limb, std::vector<double>(k, 0.0), &columns);
-    limb_ranks_.push_back(rank_of(columns(Eigen::all, free)));
+    limb_ranks_.push_back(linalg::rank(columns(Eigen::all, free), kRankThreshold));
     limb_joints_.push_back(std::move(free));
     begin += k;
   }
@@ -126,9 +117,7 @@ Tracker::Ending Tracker::close(State& state) const {
   double most = kLargestMove;
   for (int n = 0; n < kMostSteps; ++n) {
     const System equations = system(state);
-    Eigen::CompleteOrthogonalDecomposition<Matrix> least_norm;
-    least_norm.setThreshold(kRankThreshold);
-    const Vector change = least_norm.compute(equations.matrix).solve(equations.residual);
+    const Vector change = linalg::least_squares(equations.matrix, equations.residual, kRankThreshold);
     const double size = change.lpNorm<Eigen::Infinity>();
     if (!(size <= most)) return Ending::slow;
     state(free_) += change;
@@ -154,10 +143,10 @@ bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index r
     const Transform g = limb_transform(limb, {q.data(), limb.moving()}, &all);
     const Columns J = all(Eigen::all, free);
     const Vector now = q(free);
-    const Eigen::JacobiSVD<Matrix> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Matrix inverse = svd.matrixV().leftCols(rank) * svd.singularValues().head(rank).cwiseInverse().asDiagonal() *
-                           svd.matrixU().leftCols(rank).transpose();
-    const Matrix idle = svd.matrixV().rightCols(joints - rank);
+    const auto [U, values, V] = linalg::singular_value_decomposition(J);
+    const Matrix inverse =
+        V.leftCols(rank) * values.head(rank).cwiseInverse().asDiagonal() * U.leftCols(rank).transpose();
+    const Matrix idle = V.rightCols(joints - rank);
     const Vector closing = inverse * lie::log(platform * g.inverse());
     const lie::Screw<double> multiplier = -inverse.transpose() * now;
     Matrix hessian = Matrix::Identity(joints, joints);
@@ -167,8 +156,8 @@ bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index r
       }
     }
     const Vector slope = idle.transpose() * (now + hessian * closing);
-    const Eigen::LLT<Matrix> curvature(idle.transpose() * hessian * idle);
-    Vector along = curvature.info() == Eigen::Success ? Vector(-curvature.solve(slope)) : Vector(-slope);
+    const auto newton = linalg::solve_positive_definite(idle.transpose() * hessian * idle, slope);
+    Vector along = newton ? Vector(-*newton) : Vector(-slope);
     if (along.norm() > kLargestMove) along *= kLargestMove / along.norm();
     const Vector change = closing + idle * along;
     q(free) += change;
@@ -204,12 +193,12 @@ std::string Tracker::why(const State& state, Ending ending, double share) const 
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";
   const Matrix matrix = system(state).matrix;
-  const Eigen::JacobiSVD<Matrix> svd(matrix, Eigen::ComputeFullV);
+  const linalg::SingularValueDecomposition svd = linalg::right_singular_vectors(matrix);
   const Index last = matrix.cols() - 1 - index(idle);
-  if (ending == Ending::open && svd.singularValues()[last] > kRankThreshold * svd.singularValues()[0]) {
+  if (ending == Ending::open && svd.values[last] > kRankThreshold * svd.values[0]) {
     return where + "beyond, the loops stay open by more than rounding, because the limbs do not fit each other there";
   }
-  const Vector weakest = svd.matrixV().col(last);
+  const Vector weakest = svd.V.col(last);
   Index column = 0;
   weakest.head(index(joints)).cwiseAbs().maxCoeff(&column);
   std::size_t place = free_[static_cast<std::size_t>(column)];

@@ -1,15 +1,15 @@
 #include "models/three_prs/error_mapping.h"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
+
+#include "engine/linalg/decompositions.h"
 
 namespace poesy::three_prs {
 namespace {
 
 using RowVector3 = Eigen::RowVector3d;
-using Matrix6 = lie::Matrix6<double>;
+using Matrix = linalg::Matrix;
 
 /// The columns of one limb's sources in one row of a mapping.
 class LimbRow {
@@ -62,13 +62,10 @@ void set_swing_row(LimbRow row, const LimbConfiguration& limb, double l, const R
   row.set(Source::c, d_in_platform_limb / l);
 }
 
-/// Displacements of the three spherical joints over sqrt(3): the norm of a column is the measure of its twist.
-template <int Columns>
-using Displacements = Eigen::Matrix<double, 3 * static_cast<int>(kLimbs), Columns>;
-
-/// From [theta; dr] to the displacements of the spherical joints, over sqrt(3).
-Displacements<6> joint_displacements(const Configuration& nominal) {
-  Displacements<6> map;
+/// From [theta; dr] to the displacements of the three spherical joints over sqrt(3), whose norm is the measure of a
+/// twist; [9 x 6].
+Matrix joint_displacements(const Configuration& nominal) {
+  Matrix map(3 * kLimbs, 6);
   for (std::size_t i = 0; i < kLimbs; ++i) {
     map.middleRows<3>(3 * static_cast<Eigen::Index>(i)) << -lie::hat<double>(nominal.limbs[i].c),
         lie::Matrix3<double>::Identity();
@@ -97,7 +94,7 @@ ErrorMapping error_mapping(const Geometry& geometry, const Configuration& nomina
 
 Effects first_order_effects(const Geometry& geometry, const Configuration& nominal) {
   Effects effects = Effects::Zero();
-  const ErrorMapping motion = velocity_jacobian(nominal).partialPivLu().solve(error_mapping(geometry, nominal));
+  const ErrorMapping motion = linalg::solve(velocity_jacobian(nominal), error_mapping(geometry, nominal));
   effects.topRows<6>() = motion;
   const lie::Matrix3<double> tool_hat = lie::hat<double>(tool(geometry, nominal.platform.R));
   effects.middleRows<3>(kTip) = motion.bottomRows<3>() - tool_hat * motion.topRows<3>();
@@ -113,17 +110,16 @@ Effects first_order_effects(const Geometry& geometry, const Configuration& nomin
 }
 
 Separation separation(const Geometry& geometry, const Configuration& nominal) {
-  constexpr int kAll = static_cast<int>(kFactors);
   const ErrorMapping G = error_mapping(geometry, nominal);
-  const Displacements<6> by_rows = joint_displacements(nominal) * velocity_jacobian(nominal).inverse();
-  const Displacements<3> by_drive = by_rows.leftCols<3>();
-  const Displacements<kAll> drive = by_drive * G.topRows<3>();
-  const Displacements<kAll> constraint = by_rows.rightCols<3>() * G.bottomRows<3>();
-  const Displacements<kAll> effect = drive + constraint;
-  // Least squares: with by_drive = Q R, corrections reach the first three rows of Q^T effect and no other. The drive
-  // part is in the span of by_drive, so the other rows are those of the constraint part.
-  const Displacements<kAll> turned = by_drive.householderQr().householderQ().adjoint() * constraint;
-  return {column_norms(drive), column_norms(constraint), column_norms(effect), column_norms(turned.bottomRows<6>())};
+  const Matrix by_rows = joint_displacements(nominal) * linalg::inverse(velocity_jacobian(nominal));
+  const Matrix by_drive = by_rows.leftCols<3>();
+  const Matrix drive = by_drive * G.topRows<3>();
+  const Matrix constraint = by_rows.rightCols<3>() * G.bottomRows<3>();
+  const Matrix effect = drive + constraint;
+  // Least squares: corrections reach the span of by_drive, which holds the drive part, and nothing at right angles to
+  // it.
+  const Matrix residual = linalg::orthogonal_complement(by_drive).transpose() * constraint;
+  return {column_norms(drive), column_norms(constraint), column_norms(effect), column_norms(residual)};
 }
 
 Corrections corrections(const Geometry& geometry, const Configuration& nominal) {
@@ -133,9 +129,8 @@ Corrections corrections(const Geometry& geometry, const Configuration& nominal) 
   for (std::size_t i = 0; i < kLimbs; ++i) {
     found.motions.col(static_cast<Eigen::Index>(i)) = effects.col(static_cast<Eigen::Index>(factor_of(i, Source::q)));
   }
-  const Displacements<6> displacements = joint_displacements(nominal);
-  const Displacements<3> by_carriages = displacements * found.motions.topRows<6>();
-  found.best = by_carriages.householderQr().solve(displacements);
+  const Matrix displacements = joint_displacements(nominal);
+  found.best = linalg::pseudo_inverse(displacements * found.motions.topRows<6>()) * displacements;
   return found;
 }
 

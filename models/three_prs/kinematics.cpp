@@ -1,10 +1,10 @@
 #include "models/three_prs/kinematics.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "engine/linalg/decompositions.h"
 
 namespace poesy::three_prs {
 namespace {
@@ -38,7 +38,7 @@ Matrix6 tip_jacobian(const Geometry& geometry, const Configuration& at) {
 Vector3 angle_rates(const Pose& pose, const Matrix3& R, const Vector3& omega) {
   Matrix3 axes;
   axes << Vector3::UnitX(), Vector3(0.0, std::cos(pose.alpha), std::sin(pose.alpha)), R.col(2);
-  return axes.partialPivLu().solve(omega);
+  return linalg::solve(axes, omega);
 }
 
 /// The pose after the platform has moved by a small twist that its constraints allow.
@@ -107,9 +107,9 @@ Matrix6 velocity_jacobian(const Configuration& nominal) {
 double condition(const Geometry& geometry, const Configuration& nominal) {
   Matrix6 J = velocity_jacobian(nominal);
   J.leftCols<3>() /= geometry.c;
-  const Eigen::JacobiSVD<Matrix6> svd(J);
-  const double largest = svd.singularValues()[0];
-  const double smallest = svd.singularValues()[5];
+  const Eigen::VectorXd values = linalg::singular_values(J);
+  const double largest = values[0];
+  const double smallest = values[5];
   const double rounding = 6.0 * std::numeric_limits<double>::epsilon();
   return smallest > rounding * largest ? largest / smallest : std::numeric_limits<double>::infinity();
 }
@@ -127,7 +127,7 @@ std::optional<Pose> pose_of_tip(const Geometry& geometry, const Vector3& tip) {
     if (missing.norm() <= rounding) return pose;
     lie::Screw<double> wanted = lie::Screw<double>::Zero();
     wanted.tail<3>() = missing;
-    const lie::Screw<double> twist = tip_jacobian(geometry, at).partialPivLu().solve(wanted);
+    const lie::Screw<double> twist = linalg::solve(tip_jacobian(geometry, at), wanted);
     pose = moved(pose, at.platform.R, twist);
     if (!is_tilt(pose.alpha) || !is_tilt(pose.beta)) return std::nullopt;
   }
@@ -146,7 +146,7 @@ std::optional<Pose> pose_of_carriages(const Geometry& geometry, const Vector3& q
     if (missing.norm() <= rounding) return pose;
     lie::Screw<double> wanted = lie::Screw<double>::Zero();
     wanted.head<3>() = missing;
-    const lie::Screw<double> twist = velocity_jacobian(at).partialPivLu().solve(wanted);
+    const lie::Screw<double> twist = linalg::solve(velocity_jacobian(at), wanted);
     // A full step may lead to where a rod is too short, or away; then a shorter one is taken.
     bool nearer = false;
     for (double share = 1.0; share >= kShortest && !nearer; share *= 0.5) {

@@ -22,6 +22,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<(?P<angle>[^>]+)>|"(?P<quote>[^"]+)
 
 # What a header in angle brackets belongs to, by a pattern on its name. The first match counts.
 LIBRARIES = {
+    "decompositions": ("Eigen/Cholesky", "Eigen/LU", "Eigen/QR", "Eigen/SVD", "Eigen/Eigenvalues", "Eigen/Dense"),
     "Eigen": ("Eigen/*", "unsupported/Eigen/*"),
     "Boost.Math": ("boost/math/*",),
     "Boost.Random": ("boost/random.hpp", "boost/random/*"),

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+
+/// Decompositions of small dense matrices as plain functions. Their templates take the compiler seconds each, so this
+/// room alone instantiates them. Matrices of fixed size are taken without a copy where they are stored by columns.
+namespace poesy::linalg {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using ConstMatrix = Eigen::Ref<const Matrix>;
+using ConstVector = Eigen::Ref<const Vector>;
+
+/// A = U diag(values) V^T with U [rows x rows] and V [columns x columns] orthogonal. The last columns of V belong to
+/// singular values of zero where A has more columns than rows.
+struct SingularValueDecomposition {
+  Matrix U;       ///< empty unless it was asked for
+  Vector values;  ///< [min(rows, columns)] the largest first
+  Matrix V;       ///< empty unless it was asked for
+};
+
+/// Of a matrix with at least one row and one column, by one-sided Jacobi rotations.
+/// @{
+Vector singular_values(const ConstMatrix& A);
+SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< Without U.
+SingularValueDecomposition singular_value_decomposition(const ConstMatrix& A);
+/// @}
+
+/// The number of singular values above threshold times the largest; 0 for a matrix without columns.
+std::size_t rank(const ConstMatrix& A, double threshold);
+
+/// The x of the least norm among those with the least |A x - b|. Pivots below threshold times the largest count as 0.
+Vector least_squares(const ConstMatrix& A, const ConstVector& b, double threshold);
+
+/// Moore and Penrose's inverse [columns x rows].
+Matrix pseudo_inverse(const ConstMatrix& A);
+
+/// An orthonormal base [rows x (rows - rank)] of what is at right angles to all columns of A. Pivots below threshold
+/// times the largest count as 0.
+Matrix orthogonal_complement(const ConstMatrix& A, double threshold);
+
+/// The same where the columns are known to be independent: [rows x (rows - columns)], without pivoting.
+Matrix orthogonal_complement(const ConstMatrix& A);
+
+/// The upper triangle R [columns x columns] with |R y| = |A y| for every y. Rows beyond those of A are 0.
+Matrix upper_triangle(const ConstMatrix& A);
+
+/// U, upper triangular, with U^T U = W. Precondition: W is symmetric and positive definite.
+Matrix cholesky_root(const ConstMatrix& W);
+
+/// The solution of A x = b, or nothing where the symmetric A is not positive definite.
+std::optional<Vector> solve_positive_definite(const ConstMatrix& A, const ConstVector& b);
+
+/// Of a symmetric matrix, the smallest first.
+struct EigenDecomposition {
+  Vector values;
+  Matrix vectors;  ///< orthonormal columns; empty unless they were asked for
+};
+EigenDecomposition eigen_decomposition(const ConstMatrix& A);
+Vector eigenvalues(const ConstMatrix& A);
+
+/// P A = L U of a square matrix, with row pivots.
+class LuFactors {
+ public:
+  explicit LuFactors(const ConstMatrix& A);
+
+  Matrix solve(const ConstMatrix& B) const;  ///< X of A X = B. Precondition: A is not singular.
+  Matrix inverse() const;                    ///< Precondition: A is not singular.
+  double determinant() const;
+  const Vector& pivots() const { return pivots_; }               ///< diagonal of U
+  const Eigen::VectorXi& row_places() const { return places_; }  ///< where P moves each row of A
+
+ private:
+  Matrix factors_;  ///< L below the diagonal, whose own diagonal is 1, and U
+  Vector pivots_;
+  Eigen::VectorXi places_;
+  int sign_;  ///< determinant of P
+};
+
+/// X of A X = B, the square A with row pivots. Precondition: A is not singular.
+Matrix solve(const ConstMatrix& A, const ConstMatrix& B);
+/// The same with row and column pivots, which is slower and takes a nearly singular A.
+Matrix solve_by_full_pivots(const ConstMatrix& A, const ConstMatrix& B);
+Matrix inverse(const ConstMatrix& A);  ///< Precondition: A is square and not singular.
+
+}  // namespace poesy::linalg
