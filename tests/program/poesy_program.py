@@ -1,6 +1,8 @@
 """What the tests of the program share: running it, and a study that is quick to solve."""
 
 import os
+import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -31,6 +33,25 @@ method = "gauss-newton"
 [run]
 seed = 5
 """
+
+
+def with_memory(megabytes, *arguments, cwd=None):
+    """How the program ends that may have so much address space."""
+    limit = 1_000_000 * megabytes
+    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, capture_output=True, timeout=120, check=False,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+
+
+def least_to_start():
+    """Megabytes from which on the program starts. With less the system's loader ends it with 127, or a library that it is
+    linked to dies in its own start, before the program's."""
+    return 2 + max(megabytes for megabytes in range(20, 200) if with_memory(megabytes, "--version").returncode != 0)
+
+
+def least_to_work():
+    """Megabytes from which on the program begins to work, as it says with less."""
+    said = with_memory(least_to_start(), "models", "3-prs").stderr.decode()
+    return int(re.search(r"this takes (\d+) MB of memory at least", said)[1])
 
 
 class ProgramTest(unittest.TestCase):

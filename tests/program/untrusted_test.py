@@ -5,12 +5,11 @@ import csv
 import json
 import os
 import re
-import resource
 import shutil
 import subprocess
 
 import h5py
-from poesy_program import GALLERY, PROGRAM, STUDY, ProgramTest, main
+from poesy_program import GALLERY, PROGRAM, STUDY, ProgramTest, least_to_start, least_to_work, main, with_memory
 
 MINI = """\
 format = "poesy-study"
@@ -50,9 +49,7 @@ class Untrusted(ProgramTest):
     def with_memory(self, megabytes, *arguments):
         if os.environ.get("POESY_SANITIZE"):
             self.skipTest("a sanitizer takes all address space, and ends a process that lacks memory")
-        limit = 1_000_000 * megabytes
-        done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=120, check=False,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        done = with_memory(megabytes, *arguments, cwd=self.folder)
         return done.returncode, done.stderr.decode()
 
 
@@ -134,22 +131,18 @@ class Spreadsheets(Untrusted):
 class Memory(Untrusted):
     def test_little_memory_is_no_damage(self):
         self.run_study(mini())
+        least = least_to_start()
         for command in (("show", "r.h5"), ("report", "r.h5"), ("export", "r.h5", "-d", "out"), ("verify", "r.h5")):
-            code, said = self.with_memory(41, *command)
+            code, said = self.with_memory(least, *command)
             with self.subTest(command[0]):
                 self.assertEqual(code, 3, said)
                 self.assertIn("memory", said)
                 self.assertNotIn("is damaged", said)
                 self.assertNotIn("internal", said)
 
-    def least_to_load(self):
-        """Megabytes with which the system's loader loads the program. With less the loader ends it with 127, and just above
-        that a library that has no room for its own start may."""
-        return 1 + next(megabytes for megabytes in range(20, 200) if self.with_memory(megabytes, "--version")[0] != 127)
-
     def test_any_little_memory_is_said(self):
-        """From where the program is just loaded to where it has enough, for every command."""
-        least = self.least_to_load()
+        """From where the program just starts to where it has enough, for every command."""
+        least = least_to_start()
         self.run_study(mini())
         for k in (1, 2):
             self.succeeds("run", "study.toml", "--shard", f"{k}/2", "-o", f"{k}.h5", "--quiet")
@@ -161,7 +154,7 @@ class Memory(Untrusted):
                     ("merge", "1.h5", "2.h5", "-o", "m.h5"), ("show", "r.h5"), ("export", "r.h5", "-d", "out"), ("verify", "r.h5"),
                     ("report", "r.h5"), ("replay", "r.h5", "q_1", 0, 0)]
         for command in commands:
-            for megabytes in range(least, least + 36, 3):
+            for megabytes in range(least, least_to_work() + 12, 3):
                 self.check_little_memory(megabytes, *command)
 
     def write_tables(self, rows):
@@ -171,14 +164,16 @@ class Memory(Untrusted):
 
     def test_threads_that_cannot_be_started_are_said(self):
         self.write("study.toml", mini())
-        for megabytes, threads in ((100, 64), (290, 64), (1000, 256), (2000, 1024)):
-            said = self.check_little_memory(megabytes, "run", "study.toml", "-o", "o.h5", "--threads", threads)
+        own = least_to_work()
+        for megabytes, threads in ((34, 64), (224, 64), (934, 256), (1934, 1024)):
+            said = self.check_little_memory(own + megabytes, "run", "study.toml", "-o", "o.h5", "--threads", threads)
             self.assertIn(f"{threads} threads cannot be started", said)
             self.assertEqual(list(self.folder.glob("o.h5*")), [])
 
     def check_need(self, need, megabytes, work, *command):
-        """That it lacks memory for this work, and says how much that takes: `need` MB, about."""
-        code, said = self.with_memory(megabytes, *command)
+        """That it lacks memory for this work with so much more than it takes to begin, and says how much that takes: `need`
+        MB, about."""
+        code, said = self.with_memory(least_to_work() + megabytes, *command)
         with self.subTest(work, megabytes=megabytes):
             self.assertEqual(code, 3, said)
             found = re.search(f"there is not enough memory for this {work}: it takes about (\\d+) MB", said)
@@ -189,7 +184,7 @@ class Memory(Untrusted):
         self.write("study.toml", mini())
         self.write_tables(1000)
         for result in ((), ("-o", "v.h5")):
-            for megabytes in (80, 120, 150):
+            for megabytes in (14, 54, 84):
                 self.check_need(130, megabytes, "evaluation", "evaluate", "study.toml", "--poses", "p.csv", "--errors", "e.csv",
                                 "--quiet", "--threads", 1, *result)
         self.assertEqual(list(self.folder.glob("v.h5*")), [])
@@ -198,9 +193,9 @@ class Memory(Untrusted):
         self.write("study.toml", mini("count = 5000", 'factors = "all"\nsamples = 2'))
         for k in (1, 2):
             self.succeeds("run", "study.toml", "--shard", f"{k}/2", "-o", f"{k}.h5", "--quiet")
-        self.check_need(255, 300, "merge", "merge", "1.h5", "2.h5", "-o", "m.h5")
-        self.check_need(104, 200, "merge", "merge", "1.h5", "2.h5", "-o", "m.h5")
-        code, said = self.with_memory(100, "merge", "1.h5", "2.h5", "-o", "m.h5")
+        self.check_need(255, 234, "merge", "merge", "1.h5", "2.h5", "-o", "m.h5")
+        self.check_need(104, 134, "merge", "merge", "1.h5", "2.h5", "-o", "m.h5")
+        code, said = self.with_memory(least_to_work() + 34, "merge", "1.h5", "2.h5", "-o", "m.h5")
         self.assertEqual(code, 3, said)
         self.assertRegex(said, r"h5: cannot be read for want of memory: \d+ MB are enough")
         self.assertEqual(list(self.folder.glob("m.h5*")), [])
@@ -208,8 +203,8 @@ class Memory(Untrusted):
     def test_a_run_says_what_it_needs(self):
         sizes = ", ".join(f'"{k + 1} um"' for k in range(20))
         self.write("large.toml", mini("count = 600", f'kind = "coupling"\nlinear = [{sizes}]'))
-        for megabytes in (80, 120):
-            code, said = self.with_memory(megabytes, "run", "large.toml", "--quiet", "--threads", 1)
+        for megabytes in (14, 54):
+            code, said = self.with_memory(least_to_work() + megabytes, "run", "large.toml", "--quiet", "--threads", 1)
             with self.subTest(megabytes):
                 self.assertEqual(code, 3, said)
                 self.assertRegex(said, r"not enough memory for this run: it takes about \d+ MB")
