@@ -37,11 +37,12 @@ except ImportError as missing:
         "/usr/bin/python3"
     )
 
-NEWEST_MAJOR = 1
+MAJOR = 1  # of the format
 HDF5_FILTERS = {1, 2, 3, 4, 5, 6}  # any other is a plugin, which HDF5 would look for and run
 ROUNDING = 1e-10  # an index below it, in SI, is zero but for rounding
 # In which unit people read an SI unit, and how many of it are one of that; any other unit is shown as it is.
 DISPLAY = {"m": ("mm", 1e3), "rad": ("deg", 180.0 / math.pi)}
+INDEX = "global_corrected"  # the index, as `poesy show` has it
 FIGURES = (".svg", ".png", ".pdf")
 
 
@@ -109,7 +110,7 @@ def stranger(file: h5py.File) -> str:
 
 
 def read_result(path: str) -> Result:
-    """Reads a whole file. Raises ResultError where it is no result, one of a newer major version, or reads other files."""
+    """Reads a whole file. Raises ResultError where it is no result, one of another major version, or reads other files."""
     if Path(path).exists() and not Path(path).is_file():
         raise ResultError(f"{path}: is a folder, a FIFO or a device; give a result file")
     try:
@@ -123,8 +124,8 @@ def read_result(path: str) -> Result:
         found = about.get("filetype", "none")
         raise ResultError(f"{path}: not a result of poesy (attribute filetype: {found}); results come from 'poesy run'")
     major, minor = about["version"]
-    if major > NEWEST_MAJOR:
-        raise ResultError(f"{path}: version {major}.{minor}, this reads {NEWEST_MAJOR}.x; take the newer script")
+    if major != MAJOR:
+        raise ResultError(f"{path}: version {major}.{minor}, this reads {MAJOR}.x; take the script of that version")
     if strange:
         raise ResultError(f"{path}: {strange}, and a result reads nothing but itself; do not trust it; take another copy")
     groups = {name: xarray.load_dataset(path, engine="h5netcdf", group=name) for name in names}
@@ -141,7 +142,7 @@ def default_response(result: Result) -> str:
 def ranked_errors(result: Result, response: str | None = None) -> list[RankedError]:
     """The errors by their effect, global index x sigma, the largest first; those without an index last.
 
-    The index is the corrected one, as in `poesy show`; the published one where an older poesy wrote the file.
+    The index is the corrected one, as in `poesy show`.
     """
     if "sensitivity" not in result.groups:
         kind = f"of kind {result.kind}, which has no indices"
@@ -154,15 +155,11 @@ def ranked_errors(result: Result, response: str | None = None) -> list[RankedErr
     sigma = dict(zip(result.groups["factors"]["name"].values, result.groups["factors"]["sigma"].values))
 
     def spread(factor: str) -> float:
-        value = float(found[_index_name(result)].sel(factor=factor)) * sigma[factor]
+        value = float(found[INDEX].sel(factor=factor)) * sigma[factor]
         return -1.0 if math.isnan(value) else value
 
     order = sorted(sigma, key=spread, reverse=True)
     return [_ranked_error(result, response, factor, sigma[factor]) for factor in order]
-
-
-def _index_name(result: Result) -> str:
-    return "global_corrected" if "global_corrected" in result.groups["sensitivity"] else "global"
 
 
 def _ranked_error(result: Result, response: str, factor: str, sigma: float) -> RankedError:
@@ -171,8 +168,8 @@ def _ranked_error(result: Result, response: str, factor: str, sigma: float) -> R
     si = result.units("factor")[factor]
     sigma_unit, to_sigma = DISPLAY.get(si, (si, 1.0))
     at = result.groups["sensitivity"].sel(response=response, factor=factor)
-    index = [float(at[_index_name(result) + end]) for end in ("", "_ci_low", "_ci_high")]
-    rounding = max(ROUNDING, float(at["rounding"]) / sigma if "rounding" in at else 0.0)
+    index = [float(at[INDEX + end]) for end in ("", "_ci_low", "_ci_high")]
+    rounding = max(ROUNDING, float(at["rounding"]) / sigma)
     index = [0.0 if abs(value) < rounding else value for value in index]
     return RankedError(
         factor,

@@ -163,31 +163,39 @@ enum class Stored {
   as_whole_numbers,  ///< doubles as 64-bit unsigned integers
 };
 
+/// Whether each file of its kind has a dataset.
+enum class Presence {
+  always,
+  where_computed,  ///< a list, which is empty and not written where the study did not compute it
+};
+
 /// A dataset of a group of a result file.
 template <class Found>
 struct FieldRow {
   /// A row of a table: the members below, in their order. (As an aggregate with defaults it breaks GCC 12.)
   FieldRow(std::string dataset, Member<Found> elements, Axes along, std::string in, std::string meaning,
-           std::string came_with = "", std::vector<Attribute<Found>> beside = {}, Stored as = Stored::as_it_is)
+           std::vector<Attribute<Found>> beside = {}, Stored as = Stored::as_it_is)
       : name(std::move(dataset)),
         member(elements),
         axes(std::move(along)),
         unit(std::move(in)),
         description(std::move(meaning)),
-        since(std::move(came_with)),
         attributes(std::move(beside)),
         stored(as) {}
+  /// The same of a list that may be missing.
+  FieldRow(std::string dataset, Member<Found> elements, Axes along, std::string in, std::string meaning, Presence when)
+      : FieldRow(std::move(dataset), elements, std::move(along), std::move(in), std::move(meaning)) {
+    presence = when;
+  }
 
-  std::string name;         ///< in its group
-  Member<Found> member;     ///< its elements
-  Axes axes;                ///< at the root; none for a scalar
-  std::string unit;         ///< "m", "1", or one of the texts above
-  std::string description;  ///< a sentence for people
-  /// Name of the dataset with which it came: files of older versions have neither, and the member stays empty. Empty
-  /// where all files have it. A result without such elements is written without the dataset.
-  std::string since;
+  std::string name;                          ///< in its group
+  Member<Found> member;                      ///< its elements
+  Axes axes;                                 ///< at the root; none for a scalar
+  std::string unit;                          ///< "m", "1", or one of the texts above
+  std::string description;                   ///< a sentence for people
   std::vector<Attribute<Found>> attributes;  ///< written beside it, not read
   Stored stored;                             ///< in which form
+  Presence presence = Presence::always;      ///< in which files
 };
 
 /// Rows of a group, in the order in which they are written.
@@ -261,7 +269,8 @@ bool write_field(ResultBuilder& result, const std::string& group, const FieldRow
     using Value = std::remove_cvref_t<decltype(std::declval<Found>().*member)>;
     if constexpr (detail::kIsList<Value>) {
       const Value& list = things.front().*member;
-      if (!field.since.empty() && list.empty() && h5::size(result.shape(field.axes)) > 0) return false;
+      const bool computed = !list.empty() || h5::size(result.shape(field.axes)) == 0;
+      if (field.presence == Presence::where_computed && !computed) return false;
       if constexpr (std::is_same_v<Value, std::vector<double>>) {
         if (field.stored == Stored::as_whole_numbers) {
           result.add_computed<std::uint64_t>(
@@ -336,10 +345,10 @@ void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, std::span<Found> things) {
   for (const FieldRow<Found>& field : fields) {
-    if (!field.since.empty() && !file.exists(group + "/" + field.since)) continue;
+    const std::string path = group + "/" + field.name;
+    if (field.presence == Presence::where_computed && !file.exists(path)) continue;
     const auto read = [&](auto member) {
       using Value = std::remove_cvref_t<decltype(std::declval<Found>().*member)>;
-      const std::string path = group + "/" + field.name;
       if constexpr (detail::kIsList<Value>) {
         things.front().*member = read_along<typename Value::value_type>(file, path, field.axes);
       } else {
@@ -361,9 +370,7 @@ void read_fields(const h5::File& file, const std::string& group, const Fields<Fo
 template <class Thing>
 std::vector<Thing> read_columns(const h5::File& file, const std::string& group, const Fields<Thing>& fields) {
   const std::size_t length = axis_length(file, fields.front().axes.front());
-  for (const FieldRow<Thing>& field : fields) {
-    if (field.since.empty()) check_shape(file, group + "/" + field.name, {length});
-  }
+  for (const FieldRow<Thing>& field : fields) check_shape(file, group + "/" + field.name, {length});
   std::vector<Thing> things(length);
   read_fields(file, group, fields, std::span(things));
   return things;

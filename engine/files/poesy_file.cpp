@@ -61,13 +61,13 @@ std::string filetype_of(const h5::File& file) {
 void check_version(const std::string& path, const h5::File& file) {
   const auto version = file.attribute<std::int64_t>("/", "version");
   if (version.size() != 2) throw h5::Error("attribute 'version' is not two numbers");
-  if (version[0] > kMajorVersion) {
-    throw FileError(
-        path,
-        fmt::format("is of format version {}.{}, newer than this program's {}.{}", version[0], version[1],
-                    kMajorVersion, kMinorVersion),
-        "use the poesy that wrote it (" + printable(text_attribute(file, "poesy_version")) + ") or a newer one");
-  }
+  if (version[0] == kMajorVersion) return;
+  const bool newer = version[0] > kMajorVersion;
+  throw FileError(path,
+                  fmt::format("is of format version {}.{}, {} than this program's {}.{}", version[0], version[1],
+                              newer ? "newer" : "older", kMajorVersion, kMinorVersion),
+                  fmt::format("use the poesy that wrote it ({}){}", printable(text_attribute(file, "poesy_version")),
+                              newer ? " or a newer one" : ", or run the study again"));
 }
 
 /// A file descriptor.

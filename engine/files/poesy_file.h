@@ -18,12 +18,12 @@ namespace poesy {
 inline constexpr std::string_view kResultFile = "poesy-result";
 inline constexpr std::string_view kShardFile = "poesy-shard";
 /// @}
-/// A reader refuses a newer major version; a minor version only adds.
+/// The version of the format. A reader refuses another major version.
 inline constexpr std::int64_t kMajorVersion = 1;
-/// From the first release on it grows with what older programs may pass over.
+/// It grows with what is added and may be passed over.
 inline constexpr std::int64_t kMinorVersion = 0;
 
-/// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, of a newer major version,
+/// Opens a file that poesy wrote, a result or a shard. Throws FileError when it is not one, of another major version,
 /// or not a plain tree (h5::File::expect_plain_tree): whoever reads it reads nothing else. Throws h5::Error when it is
 /// damaged in a way that HDF5 reports.
 h5::File open_poesy_file(const std::string& path);

@@ -19,9 +19,9 @@ namespace poesy {
 namespace {
 
 const Fields<SelectedPoses> kPoseFields{
-    {"time", &SelectedPoses::time, kByPose, "s", "When the trajectory reaches the pose", "time"},
+    {"time", &SelectedPoses::time, kByPose, "s", "When the trajectory reaches the pose", Presence::where_computed},
     {"condition", &SelectedPoses::condition, kByPose, "1",
-     "Condition number of the passive joints' Jacobian; infinity at a singular pose", "condition"}};
+     "Condition number of the passive joints' Jacobian; infinity at a singular pose"}};
 
 const Fields<RejectedPoses> kRejectedFields{
     {"reason", &RejectedPoses::reason, {"rejection"}, "1", "Why poses were rejected"},
@@ -29,21 +29,21 @@ const Fields<RejectedPoses> kRejectedFields{
 
 const Axes kScalar{};
 
-const Fields<RunFacts> kFactFields{{"created", &RunFacts::created, kScalar, "1", "When the run ended (UTC, ISO 8601)"},
-                                   {"host", &RunFacts::host, kScalar, "1", "Name of the machine"},
-                                   {"cpu", &RunFacts::cpu, kScalar, "1", "Its processor"},
-                                   {"threads", &RunFacts::threads, kScalar, "1", "Threads, of all ranks together"},
-                                   {"ranks", &RunFacts::ranks, kScalar, "1", "MPI ranks"},
-                                   {"wall_seconds", &RunFacts::wall_seconds, kScalar, "s", "Time the solves took"},
-                                   {"checkpoint_seconds", &RunFacts::checkpoint_seconds, kScalar, "s",
-                                    "Of that time, spent on checkpoints", "checkpoint_seconds"},
-                                   {"solves", &RunFacts::solves, kScalar, "1", "Solves of the mechanism"}};
+const Fields<RunFacts> kFactFields{
+    {"created", &RunFacts::created, kScalar, "1", "When the run ended (UTC, ISO 8601)"},
+    {"host", &RunFacts::host, kScalar, "1", "Name of the machine"},
+    {"cpu", &RunFacts::cpu, kScalar, "1", "Its processor"},
+    {"threads", &RunFacts::threads, kScalar, "1", "Threads, of all ranks together"},
+    {"ranks", &RunFacts::ranks, kScalar, "1", "MPI ranks"},
+    {"wall_seconds", &RunFacts::wall_seconds, kScalar, "s", "Time the solves took"},
+    {"checkpoint_seconds", &RunFacts::checkpoint_seconds, kScalar, "s", "Of that time, spent on checkpoints"},
+    {"solves", &RunFacts::solves, kScalar, "1", "Solves of the mechanism"}};
 
 /// Rows of a list of things with names. what: "error", on the axis "factor", for instance.
 Fields<NamedUnit> name_fields(const std::string& axis, const std::string& what) {
   return {{"name", &NamedUnit::name, {axis}, "1", "Name of the " + what},
           {"unit", &NamedUnit::unit, {axis}, "1", "SI unit of the " + what},
-          {"description", &NamedUnit::description, {axis}, "1", "What the " + what + " is, in words", "description"}};
+          {"description", &NamedUnit::description, {axis}, "1", "What the " + what + " is, in words"}};
 }
 
 template <class Thing>
@@ -283,7 +283,7 @@ CsvTable pose_table(const StoredResult& result) {
     table.columns.push_back({with_unit(coordinate.name, coordinate.unit),
                              [&result, c](std::size_t m) { return result.poses[PoseIndex(m)][c]; }});
   }
-  if (!result.condition.empty()) table.columns.push_back(list_column("condition", result.condition));
+  table.columns.push_back(list_column("condition", result.condition));
   return table;
 }
 

@@ -55,27 +55,27 @@ std::string check_result_path(const std::string& path, std::span<const std::stri
 struct NamedUnit {
   std::string name;              ///< as in the model's description
   std::string unit;              ///< "m", "rad" or "1"
-  std::string description = {};  ///< what it is, in words; empty in files of older versions
+  std::string description = {};  ///< what it is, in words
 };
 
 const Unit& display(const NamedUnit& named);  ///< The unit in which people read it: mm for m.
 
 /// What a result file of any kind says, read back. Members that the file does not have are empty.
 struct StoredResult {
-  std::string kind;            ///< name of the kind of study
-  std::string title;           ///< of the study
-  std::string model;           ///< name of the mechanism
-  std::string study_text;      ///< the study with every default filled in
-  std::string mechanism_text;  ///< the file that describes the mechanism; empty where there is none
-  std::string poesy_version;   ///< of the program that wrote it
-  std::string git_commit;      ///< of that program
-  std::string content_sha256;  ///< as the file states it
-  bool changed = false;        ///< whether the content no longer has that hash
-  std::string metric;  ///< ModelDescription::metric; empty where nothing is weighed, and in files of older versions
+  std::string kind;                          ///< name of the kind of study
+  std::string title;                         ///< of the study
+  std::string model;                         ///< name of the mechanism
+  std::string study_text;                    ///< the study with every default filled in
+  std::string mechanism_text;                ///< the file that describes the mechanism; empty where there is none
+  std::string poesy_version;                 ///< of the program that wrote it
+  std::string git_commit;                    ///< of that program
+  std::string content_sha256;                ///< as the file states it
+  bool changed = false;                      ///< whether the content no longer has that hash
+  std::string metric;                        ///< ModelDescription::metric; empty where nothing is weighed
   std::vector<PlatformPoint> metric_points;  ///< of the platform's metric, in its frame, m
   std::vector<NamedUnit> pose_coordinates;   ///< names of a pose's columns
   PoseSet poses;                             ///< [M]
-  std::vector<double> condition;             ///< [M] of each pose; empty in files of older versions
+  std::vector<double> condition;             ///< [M] of each pose
   std::vector<double> time;                  ///< [M] s, ascending, of poses along a trajectory; else empty
   std::vector<NamedUnit> factors;            ///< [P] errors that vary or are tried
   std::vector<NamedUnit> responses;          ///< [R]
@@ -84,7 +84,7 @@ struct StoredResult {
   RunFacts facts;                            ///< of the run, no part of the content
 
   std::vector<double> factor_sigma;              ///< [P] standard deviations of errors that were drawn, SI
-  std::vector<std::string> factor_distribution;  ///< [P] "normal", ...; empty in files of older versions
+  std::vector<std::string> factor_distribution;  ///< [P] of these errors: "normal", ...
   /// What the samples varied, one after the other: the errors, or kAllFactors. Empty where nothing was drawn.
   std::vector<std::string> varied;
   std::vector<Failure> failures;                 ///< the first; their slots are positions in `varied`
@@ -105,8 +105,8 @@ const Found& found_of(const StoredResult& result) {
 /// What a failure's address says where all errors vary together.
 inline constexpr std::string_view kAllFactors = "all";
 
-/// Reads a result file of a kind that find_kind knows. Throws FileError when it is not one, or of a newer major
-/// version. One that was changed since it was written is read as it is, and says so.
+/// Reads a result file of a kind that find_kind knows. Throws FileError when it is not one, or of another
+/// major version. One that was changed since it was written is read as it is, and says so.
 StoredResult read_result(const std::string& path, FindFileKind find_kind);
 
 /// What a recomputed content hash is compared with.

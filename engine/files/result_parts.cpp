@@ -110,7 +110,6 @@ void add_sigma(ResultBuilder& result, const Study& study) {
 
 void read_sigma(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_along<double>(file, "/factors/sigma", {"factor"});
-  if (!file.exists("/factors/distribution")) return;
   result.factor_distribution = read_along<std::string>(file, "/factors/distribution", {"factor"});
   check_names(result.factor_distribution, "/factors/distribution");
 }
@@ -199,7 +198,6 @@ void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, c
 }
 
 std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result) {
-  if (!file.exists("/failure")) return {};
   std::vector<Failure> failures;
   for (const FailureRow& row : read_columns(file, "/solver", kFailureFields)) {
     if (row.pose >= result.poses.size()) throw h5::Error("/solver/failed_pose names an unknown pose");

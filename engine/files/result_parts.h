@@ -85,7 +85,7 @@ void append_solve_columns(CsvTable& table, const std::vector<SolveCounts>& solve
 /// The first failures, as addresses, `total` in all; slots: the name of each. Follows add_solver.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
                   std::uint64_t total);
-/// None in files of older versions. Reads `varied` and `poses` of the result.
+/// What add_failures listed. Reads `varied` and `poses` of the result.
 std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result);
 CsvTable failure_table(const StoredResult& result);  ///< failures.csv, of a sampled result.
 

@@ -6,7 +6,7 @@
 
 namespace poesy {
 
-std::string poesy_version();  ///< "0.1.0"
+std::string poesy_version();  ///< "0.2.0"
 
 /// The commit this program was built from, 40 hexadecimal digits, with "-dirty" behind it when files
 /// differed from that commit; "unknown" when it was not built in a git checkout.

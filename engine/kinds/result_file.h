@@ -17,7 +17,7 @@ namespace poesy {
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, std::any found,
                   const RunFacts& facts);
 
-/// Reads a result file. Throws FileError when it is not one, or of a newer major version. One that was changed since it
+/// Reads a result file. Throws FileError when it is not one, or of another major version. One that was changed since it
 /// was written is read as it is, and says so.
 StoredResult read_result(const std::string& path);
 

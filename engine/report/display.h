@@ -42,7 +42,7 @@ Common common(const std::vector<std::string>& a, const std::vector<std::string>&
 std::vector<std::string> only_in(const std::vector<std::string>& these, const std::vector<std::string>& others);
 
 /// By what mismatch of angle was weighed against mismatch of position: "platform, by displacement of 3 points". Empty
-/// where nothing is weighed, and for results of older versions.
+/// where nothing is weighed.
 std::string metric_text(const StoredResult& result);
 
 /// A value of a response, SI, in the unit in which people read it, "0.05 mm".

@@ -86,7 +86,7 @@ struct TwoRankings {
 void check_comparable(const StoredResult& a, const std::string& path_a, const StoredResult& b,
                       const std::string& path_b);
 
-/// Whether two results are by different metrics, as far as both say it; files of older versions do not.
+/// Whether two results are by different metrics; not where one of them weighs nothing.
 bool differ_in_metric(const StoredResult& a, const StoredResult& b);
 
 /// What a reader must know of one of them, on one line: "A: title (path); metric: ...; ranked by gap; 5 of 1 000 solves
@@ -98,7 +98,7 @@ std::string ranked_text(char letter, const RankedResult& ranked);
 /// - kind, model, title, poesy_version, git_commit, content_sha256
 /// - metric: name, null where nothing is weighed; metric_points: [[x, y, z]] in m, null where it has none
 /// - seed, where the study has one; poses
-/// - errors, responses: [{name, unit (SI), description}], the description empty in files of older versions
+/// - errors, responses: [{name, unit (SI), description}]
 /// - solves: total, not_converged, by_status: {converged, stagnated, ...}
 /// - run: created, threads, wall_seconds
 /// - tables: [{name, caption, columns: [{name, heading, unit, kind}], rows, shown, notes}]

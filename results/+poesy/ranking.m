@@ -13,9 +13,6 @@ function ranked = ranking(result, response)
     result = poesy.read(result);
   end
   all = result.ranked;
-  if isempty(all.value)
-    error('poesy:nothing', 'a result of kind %s that has nothing to rank: %s', result.kind, all.what);
-  end
   if nargin < 2 || isempty(response)
     lengths = [find(strcmp(all.units, 'mm')); 1];
     response = all.responses{lengths(1)};

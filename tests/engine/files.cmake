@@ -3,7 +3,7 @@ poesy_test(result_file_test LABELS unit
                    engine/kinds/monte_carlo/fields_test.cpp engine/kinds/sobol/fields_test.cpp engine/kinds/coupling/fields_test.cpp engine/files/fields_test.cpp engine/files/export_test.cpp engine/files/file_writer_test.cpp engine/files/output_folder_test.cpp
                    engine/kinds/stored_study_test.cpp engine/kinds/sensitivity/tolerance_files_test.cpp
                    engine/kinds/sensitivity/fidelity_fields_test.cpp engine/kinds/sensitivity/separation_fields_test.cpp
-           LINKS poesy_kinds DATA)
+           LINKS poesy_kinds)
 poesy_test(content_hash_test LABELS unit SOURCES engine/files/content_hash_test.cpp engine/files/h5_disk_test.cpp LINKS poesy_kinds hdf5::hdf5)
 poesy_test(result_robustness_test LABELS robustness SOURCES engine/files/result_robustness_test.cpp engine/files/trial_read_test.cpp
            LINKS poesy_kinds hdf5::hdf5)

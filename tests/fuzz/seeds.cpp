@@ -60,6 +60,7 @@ void write_sensitivity_seed(const std::string& path) {
 
 void write_convergence_seed(const std::string& path) {
   test::Example example;
+  example.study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
   SensitivityResult result = example.sensitivity();
   ConvergenceResult& convergence = result.convergence.emplace();
   convergence.min = 1000;
@@ -73,7 +74,6 @@ void write_convergence_seed(const std::string& path) {
   convergence.reached.assign(indices, 1);
   convergence.relative_half_width.assign(indices, 0.5);
   convergence.samples.assign(result.factors, 2000);
-  example.study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
   write_result(path, example.study, example.poses, result, example.facts);
 }
 
@@ -132,7 +132,7 @@ void write_results(const std::string& folder) {
 
 /// Without the digest, which the fuzzer adds. seed: the position of its study among the small ones.
 void write_checkpoint(const std::string& path, std::uint64_t seed, std::span<const Bytes> stages) {
-  const CheckpointIdentity identity{.poesy_version = "0.1.0",
+  const CheckpointIdentity identity{.poesy_version = "0.2.0",
                                     .git_commit = "abc",
                                     .model = "fake",
                                     .seed = seed,

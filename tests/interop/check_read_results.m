@@ -145,4 +145,5 @@ check_groups(examples);
 check_ranked(examples);
 fails(@() read_results(fullfile(tables, 'global.csv')), 'not a result of poesy');
 fails(@() read_results(fullfile(examples, 'newer.h5')), 'has version 2.0, this reads 1.x');
+fails(@() read_results(fullfile(examples, 'older.h5')), 'has version 0.9, this reads 1.x');
 fails(@() read_results(fullfile(examples, 'stranger.h5')), 'filetype: something-else');

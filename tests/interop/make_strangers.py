@@ -1,4 +1,4 @@
-"""Writes files that are no results, or of a newer version, beside the examples.
+"""Writes files that are no results, or of another version, beside the examples.
 
 usage: make_strangers.py EXAMPLES
 """
@@ -10,7 +10,8 @@ import h5py
 
 
 def main(examples):
-    for name, filetype, version in (("newer", "poesy-result", [2, 0]), ("stranger", "something-else", [1, 0])):
+    strangers = (("newer", "poesy-result", [2, 0]), ("older", "poesy-result", [0, 9]), ("stranger", "something-else", [1, 0]))
+    for name, filetype, version in strangers:
         with h5py.File(pathlib.Path(examples) / f"{name}.h5", "w") as file:
             file.attrs["filetype"] = filetype
             file.attrs["version"] = version

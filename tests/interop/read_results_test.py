@@ -108,6 +108,7 @@ class Examples(unittest.TestCase):
             ("monte_carlo.h5",): "of kind monte-carlo, which has no indices",
             ("evaluate.h5",): "of kind evaluate, which has no indices",
             ("newer.h5",): "version 2.0, this reads 1.x",
+            ("older.h5",): "version 0.9, this reads 1.x",
             ("stranger.h5",): "not a result of poesy (attribute filetype: something-else)",
             ("nameless.h5",): "not a result of poesy (attribute filetype: none)",
             ("sensitivity.h5", "--response", "absent"): "it has angular_deformation, linear_deformation",

@@ -131,18 +131,6 @@ class Linearity(ProgramTest):
                               "-d", "out")
             self.assertEqual(done.returncode, 2 if refused else 0, multiple)
 
-    def test_result_of_an_older_version_says_that_nothing_is_known(self):
-        result = self.result()
-        with h5py.File(self.folder / result, "r+") as file:
-            del file["sensitivity/index_change"]
-        printed = " ".join(self.succeeds("tolerances", result, "--response", "linear_deformation", "--limit", "0.03 mm", "-d",
-                                         "out").split())
-        self.assertIn("whether indices hold at other sizes is not known, because an older poesy", printed)
-        self.assertNotIn("at a tenth", self.succeeds("show", result))
-        self.succeeds("report", result)
-        self.succeeds("export", result, "-d", "tables")
-        self.assertFalse((self.folder / "tables/index_change.csv").exists())
-
     def test_shards_and_threads_give_the_bits_of_one_run(self):
         self.result()
         for shard in ("1/2", "2/2"):

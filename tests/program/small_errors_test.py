@@ -140,26 +140,5 @@ class SmallErrors(ProgramTest):
             self.assertTrue((file["sensitivity/global"][:] <= file["sensitivity/global_ci_high"][:]).all())
 
 
-class OlderResults(ProgramTest):
-    def test_are_shown_by_the_published_estimator(self):
-        self.write("study.toml", study("2upr-rpu", "1 mm", "1 deg", 4))
-        self.succeeds("run", "study.toml", "--quiet")
-        with h5py.File(self.folder / "study.h5", "r+") as file:
-            for name in [name for name in file["sensitivity"] if name.startswith("global_corrected")] + ["rounding"]:
-                del file["sensitivity"][name]
-            at = list(file["responses/name"].asstr()).index("linear_deformation")
-            published = file["sensitivity/global"][at] * file["factors/sigma"][:]
-            names = file["factors/name"].asstr()[:]
-        ranked = json.loads(self.succeeds("show", "study.h5", "--json"))["tables"][0]
-        self.assertTrue(any("an older poesy" in note for note in ranked["notes"]), ranked["notes"])
-        self.assertNotIn("index_published", ranked["rows"][0])
-        effects = {row["error"]: row["effect"] for row in ranked["rows"]}
-        for name, effect in zip(names, published):
-            self.assertTrue(math.isclose(effects[name], 1e3 * effect, rel_tol=1e-12, abs_tol=1e-12), name)
-        for command in (["report", "study.h5"], ["export", "study.h5", "-d", "tables"],
-                        ["tolerances", "study.h5", "--response", "linear_deformation", "--extrapolate", "-d", "out"]):
-            self.succeeds(*command)
-
-
 if __name__ == "__main__":
     main()

@@ -52,7 +52,7 @@ class TemporaryFiles(ResumptionTest):
         return run
 
     def test_guessable_names_are_not_used(self):
-        """Links under the names of version 0.1 lead nowhere."""
+        """Links under names that can be guessed lead nowhere."""
         os.symlink("victim", self.folder / "r.h5.part.tmp")
         os.symlink("victim", self.folder / "r.h5.part.1.tmp")
         script = f'ln -s victim r.h5.tmp.$$; exec "{PROGRAM}" run quick.toml -o r.h5 --quiet --keep-checkpoint'

@@ -265,15 +265,6 @@ class Tolerances(ProgramTest):
         self.refuses(result, "--response", RESPONSE, "--limit", "0.05 mm", words=["--limit", "background", "not solved"])
         self.assertIn("unknown", self.succeeds("tolerances", result, "--response", RESPONSE))
 
-    def test_result_of_an_older_version(self):
-        result = self.result()
-        with h5py.File(self.folder / result, "r+") as file:
-            del file["tolerances"]
-            del file["sensitivity/background"]
-        self.refuses(result, "--response", RESPONSE, words=[result, "older poesy", "run the study again"])
-        self.succeeds("show", result)
-        self.succeeds("export", result, "-d", "tables")
-
     def test_nothing_has_an_effect(self):
         result = self.result(STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '["delta_1_1_y", "epsilon_1_1_z"]'))
         self.refuses(result, "--response", "angular_deformation", words=["no error", "angular_deformation"])

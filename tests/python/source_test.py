@@ -64,7 +64,7 @@ class Source(unittest.TestCase):
     def test_version_is_the_projects(self):
         project = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
         self.assertIn(f"project(poesy VERSION {poesy.__version__} ", project)
-        self.assertIn(f'version = "{poesy.__version__}"', (PACKAGE / "pyproject.toml").read_text(encoding="utf-8"))
+        self.assertIn('version = { attr = "poesy.__version__" }', (PACKAGE / "pyproject.toml").read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

@@ -200,7 +200,7 @@ MonteCarloResult MonteCarloCollector::result() && {
     columns_.set_overall(overall, sketches_[r], sketches_[r].count());
   }
   for (std::size_t m = 0; m < found.poses; ++m) append_failures(0, PoseIndex(m), failed_[m], found.failures);
-  if (found.poses > 0) found.effects = effects();
+  found.effects = effects();
   if (!limits_.empty()) found.verdicts = judge_draws(limits_, asked_.judge, asked_.share, found, sketches_);
   return std::move(found);
 }

@@ -6,7 +6,6 @@
 #include "engine/kinds/monte_carlo/machine_fields.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/monte_carlo/yield.h"
-#include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
@@ -17,8 +16,6 @@ const Axes kQuantileAtPose{"response", "pose", "quantile"};
 const Axes kOverallQuantile{"response", "quantile"};
 const std::vector<Attribute<MonteCarlo>> kInterval{{"conf_level", &MonteCarlo::conf_level}};
 const std::vector<Attribute<MonteCarlo>> kSketch{{"quantile_relative_error", &MonteCarlo::quantile_relative_error}};
-/// With it came the intervals of quantiles.
-constexpr const char* kWithIntervals = "quantiles_ci_low";
 const std::string kEndOfInterval =
     " end of an interval for the quantile of the distribution, whatever that is, from order statistics (binomial); it "
     "is wide enough for what quantile_relative_error rounds away, and infinite where the samples are too few for an "
@@ -34,21 +31,19 @@ const Group<MonteCarlo> kMonteCarlo{
     {{"response", &MonteCarlo::responses}, {"pose", &MonteCarlo::poses}},
     {{"mean", &MonteCarlo::mean, kByResponsePose, kResponseUnit, "Mean over the samples; NaN where none counts"},
      {"mean_ci_low", &MonteCarlo::mean_ci_low, kByResponsePose, kResponseUnit,
-      "Lower end of Student's interval of the mean", "", kInterval},
+      "Lower end of Student's interval of the mean", kInterval},
      {"mean_ci_high", &MonteCarlo::mean_ci_high, kByResponsePose, kResponseUnit,
-      "Upper end of Student's interval of the mean", "", kInterval},
+      "Upper end of Student's interval of the mean", kInterval},
      {"std", &MonteCarlo::std, kByResponsePose, kResponseUnit, "Sample standard deviation"},
      {"min", &MonteCarlo::min, kByResponsePose, kResponseUnit, "Smallest sample"},
      {"max", &MonteCarlo::max, kByResponsePose, kResponseUnit, "Largest sample"},
      {"count", &MonteCarlo::count, kByResponsePose, "1", "Samples behind these: solved, or as not_converged has it"},
      {"quantiles", &MonteCarlo::quantiles, kQuantileAtPose, kResponseUnit,
-      "Order statistic of rank ceil(q n) of n samples, off by its part quantile_relative_error at most", "", kSketch},
-     {"rms", &MonteCarlo::rms, kByResponsePose, kResponseUnit, "Root mean square of the samples; NaN where none counts",
-      "rms"},
-     {"quantiles_ci_low", &MonteCarlo::quantiles_ci_low, kQuantileAtPose, kResponseUnit, kLowerEnd, kWithIntervals,
-      kInterval},
-     {"quantiles_ci_high", &MonteCarlo::quantiles_ci_high, kQuantileAtPose, kResponseUnit, kUpperEnd, kWithIntervals,
-      kInterval},
+      "Order statistic of rank ceil(q n) of n samples, off by its part quantile_relative_error at most", kSketch},
+     {"rms", &MonteCarlo::rms, kByResponsePose, kResponseUnit,
+      "Root mean square of the samples; NaN where none counts"},
+     {"quantiles_ci_low", &MonteCarlo::quantiles_ci_low, kQuantileAtPose, kResponseUnit, kLowerEnd, kInterval},
+     {"quantiles_ci_high", &MonteCarlo::quantiles_ci_high, kQuantileAtPose, kResponseUnit, kUpperEnd, kInterval},
      {"overall_mean", &MonteCarlo::overall_mean, kByResponse, kResponseUnit, "Mean over the samples of all poses"},
      {"overall_std", &MonteCarlo::overall_std, kByResponse, kResponseUnit,
       "Sample standard deviation over the samples of all poses"},
@@ -58,43 +53,31 @@ const Group<MonteCarlo> kMonteCarlo{
       "Largest value over the samples of all poses"},
      {"overall_count", &MonteCarlo::overall_count, kByResponse, "1", "Samples of all poses that count"},
      {"overall_quantiles", &MonteCarlo::overall_quantiles, kOverallQuantile, kResponseUnit,
-      "As quantiles, over the samples of all poses", "", kSketch},
+      "As quantiles, over the samples of all poses", kSketch},
      {"overall_rms", &MonteCarlo::overall_rms, kByResponse, kResponseUnit,
-      "Root mean square over the samples of all poses", "overall_rms"},
+      "Root mean square over the samples of all poses"},
      {"overall_quantiles_ci_low", &MonteCarlo::overall_quantiles_ci_low, kOverallQuantile, kResponseUnit, kLowerEnd,
-      kWithIntervals, kInterval},
+      kInterval},
      {"overall_quantiles_ci_high", &MonteCarlo::overall_quantiles_ci_high, kOverallQuantile, kResponseUnit, kUpperEnd,
-      kWithIntervals, kInterval},
+      kInterval},
      {"histogram_edges",
       &MonteCarlo::histogram_edges,
       {"response", "edge"},
       kResponseUnit,
       "Edges of the bins; the first and the last are the extremes; bins that are not needed have no width and stand at "
-      "the end; NaN where no sample counts",
-      "histogram_counts"},
+      "the end; NaN where no sample counts"},
      {"histogram_counts",
       &MonteCarlo::histogram_counts,
       {"response", "bin"},
       "1",
-      "Samples of all poses in each bin, exact; the first and the last bin hold the outermost 0.05 % each",
-      "histogram_counts"},
+      "Samples of all poses in each bin, exact; the first and the last bin hold the outermost 0.05 % each"},
      {"share_magnitude", &MonteCarlo::share_magnitude, kByResponsePose, kResponseUnit,
       "Within this magnitude stays the share of all draws that [analysis] share asks for; draws that do not count are "
       "outside; infinite where they are too many",
-      "share_magnitude"}}};
+      Presence::where_computed}}};
 
 const FieldRow<MonteCarlo>& row(std::string_view name) {
   return *std::ranges::find(kMonteCarlo.fields, name, &FieldRow<MonteCarlo>::name);
-}
-
-/// In files of older versions the root mean squares follow from the rest.
-void fill_in_root_mean_squares(MonteCarlo& found) {
-  for (std::size_t k = found.rms.size(); k < found.mean.size(); ++k) {
-    found.rms.push_back(root_mean_square(found.mean[k], found.std[k], found.count[k]));
-  }
-  for (std::size_t r = found.overall_rms.size(); r < found.responses; ++r) {
-    found.overall_rms.push_back(root_mean_square(found.overall_mean[r], found.overall_std[r], found.overall_count[r]));
-  }
 }
 
 /// Appends columns of numbers and quantiles: those of the poses of a response (prefix "", first: its first number) or
@@ -113,7 +96,6 @@ void append_number_columns(CsvTable& table, const StoredResult& result, const st
   };
   for (std::size_t q = 0; q < levels; ++q) append_quantile(q, "");
   table.columns.push_back(field_column(with_unit("rms", unit), row(prefix + "rms"), found, first));
-  if (found.quantiles_ci_low.empty()) return;
   for (std::size_t q = 0; q < levels; ++q) {
     append_quantile(q, "_ci_low");
     append_quantile(q, "_ci_high");
@@ -178,7 +160,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
     result.file().set_attribute("/monte_carlo/share_magnitude", "share",
                                 asked_of<MonteCarloOptions>(study.analysis).share);
   }
-  if (found.effects) write_effects(result, *found.effects);
+  write_effects(result, found.effects);
   if (found.machines) write_machines(result, *found.machines);
   add_limits(result, study.model(), found.verdicts);
   if (found.verdicts && found.verdicts->yield) {
@@ -195,10 +177,10 @@ void read(const h5::File& file, StoredResult& result) {
   found.levels = file.read<double>("/quantile");
   found.quantile_relative_error = file.attribute<double>("/monte_carlo/quantiles", "quantile_relative_error").at(0);
   read_group(file, kMonteCarlo, found);
-  if (file.exists("/edge") && axis_length(file, "edge") != axis_length(file, "bin") + 1) {
-    throw h5::Error("/edge does not have one position more than /bin");
+  const std::size_t bins = axis_length(file, "bin");
+  if (bins == 0 || axis_length(file, "edge") != bins + 1) {
+    throw h5::Error("/edge does not have one position more than /bin, or there is no bin");
   }
-  fill_in_root_mean_squares(found);
   result.verdicts = read_limits(file, result);
   found.effects = read_effects(file);
   found.machines = read_machines(file);
@@ -218,10 +200,8 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   tables.push_back(sigma_table(result));
   for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(response_table(result, r));
   tables.push_back(overall_table(result));
-  if (!found.histogram_counts.empty()) {
-    for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(histogram_table(result, r));
-  }
-  if (found.effects) append_effect_tables(tables, result);
+  for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(histogram_table(result, r));
+  append_effect_tables(tables, result);
   if (found.machines) append_machine_tables(tables, result);
   append_limit_table(tables, result);
   CsvTable solves = lines_of_poses(result, "not_converged");

@@ -242,8 +242,7 @@ void write_machines(ResultBuilder& result, const MachineResult& found) {
   write_group(result, kCurvesOfLargest, found.effects_on_largest);
 }
 
-std::optional<EffectResult> read_effects(const h5::File& file) {
-  if (!file.exists("/effect_bin")) return std::nullopt;
+EffectResult read_effects(const h5::File& file) {
   if (axis_length(file, "effect_bin") != kEffectBins) throw h5::Error("/effect_bin does not have 32 positions");
   EffectResult found;
   found.s1_poses = file.read<std::uint64_t>("/effect_pose");
@@ -267,7 +266,7 @@ std::optional<MachineResult> read_machines(const h5::File& file) {
 }
 
 void append_effect_tables(CsvTables& tables, const StoredResult& result) {
-  const EffectResult& found = *monte_carlo_of(result).effects;
+  const EffectResult& found = monte_carlo_of(result).effects;
   tables.push_back(index_table(result, "S1", found.effects));
   for (std::size_t r = 0; r < result.responses.size(); ++r) tables.push_back(curve_table(result, found, r));
 }

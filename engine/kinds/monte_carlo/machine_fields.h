@@ -10,8 +10,8 @@ namespace poesy {
 
 /// Adds first-order indices and the group /monte_carlo/main_effect. Precondition: /monte_carlo is there.
 void write_effects(ResultBuilder& result, const EffectResult& found);
-/// The opposite; empty in files of older versions. Throws h5::Error.
-std::optional<EffectResult> read_effects(const h5::File& file);
+/// The opposite. Throws h5::Error.
+EffectResult read_effects(const h5::File& file);
 /// Appends S1.csv and the curves.
 void append_effect_tables(CsvTables& tables, const StoredResult& result);
 

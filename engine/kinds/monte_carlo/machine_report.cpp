@@ -19,7 +19,7 @@ constexpr int kDigits = 6;
 
 const MachineResult& machines_of(const StoredResult& result) { return *monte_carlo_of(result).machines; }
 
-const EffectResult& effects_of(const StoredResult& result) { return *monte_carlo_of(result).effects; }
+const EffectResult& effects_of(const StoredResult& result) { return monte_carlo_of(result).effects; }
 
 /// A tenth of an error's sigma: gradients are shown for a change by that, because errors have different units.
 constexpr double kPart = 0.1;

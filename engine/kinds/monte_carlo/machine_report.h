@@ -15,10 +15,10 @@ namespace poesy {
 /// gradient; at which poses machines are rejected.
 std::vector<Table> machine_tables(const StoredResult& result);
 
-/// First-order indices. Precondition: monte_carlo_of(result).effects is there.
+/// First-order indices.
 Table effect_table(const StoredResult& result);
 
-/// The section on what each error does alone. Precondition: likewise.
+/// The section on what each error does alone.
 void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
 /// The section that comes after the limits: what the yield depends on.

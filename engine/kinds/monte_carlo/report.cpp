@@ -85,11 +85,11 @@ void add_worst_pose(std::vector<Cell>& row, const std::vector<double>& at_poses,
   row.push_back(std::isnan(at_poses[worst]) ? text_cell("") : count_cell(worst));
 }
 
-/// Of [R x M x Q] numbers of quantiles, those of one response and quantile, [M]; empty where there are none.
+/// Of [R x M x Q] numbers of quantiles, those of one response and quantile, [M].
 std::vector<double> at_poses(const MonteCarloResult& found, const std::vector<double>& quantiles, std::size_t r,
                              std::size_t q) {
   std::vector<double> values;
-  for (std::size_t m = 0; m < found.poses && !quantiles.empty(); ++m) {
+  for (std::size_t m = 0; m < found.poses; ++m) {
     values.push_back(quantiles[(r * found.poses + m) * found.levels.size() + q]);
   }
   return values;
@@ -99,7 +99,7 @@ std::vector<double> at_poses(const MonteCarloResult& found, const std::vector<do
 struct WorstPoses {
   std::vector<double> quantile;  ///< [M]
   std::size_t worst;             ///< the pose of the largest
-  double low;                    ///< its interval; NaN in files of older versions
+  double low;                    ///< its interval
   double high;
   std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, the largest quantile first
 };
@@ -110,7 +110,6 @@ WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
   poses.worst = worst_pose(poses.quantile);
   const std::vector<double> low = at_poses(found, found.quantiles_ci_low, r, highest);
   const std::vector<double> high = at_poses(found, found.quantiles_ci_high, r, highest);
-  if (low.empty()) return poses;
   poses.low = low[poses.worst];
   poses.high = high[poses.worst];
   for (std::size_t m = 0; m < found.poses; ++m) {
@@ -169,7 +168,6 @@ Table poses_table(const StoredResult& result) {
                   number_column("largest_quantile_pose", "at pose"), number_column(name + "_low", "low", "", 1),
                   number_column(name + "_high", "high", "", 1), number_column("poses_like_it", "poses like it")}};
   for (const std::size_t r : result.headline) table.rows.push_back(poses_row(result, r));
-  if (found.quantiles_ci_low.empty()) return table;
   table.notes.push_back(
       fmt::format("low, high: {} interval of the largest {}, from order statistics; inf: too few samples for an end. "
                   "poses like it: other "
@@ -246,7 +244,7 @@ void add_how_large(const StoredResult& result, std::span<const Table> tables, Pa
   section.table(tables, "overall");
   if (found.machines) section.table(tables, "machines");
   for (const std::size_t r : headline_order(result)) {
-    if (found.histogram_counts.empty() || found.overall_count[r] == 0) continue;
+    if (found.overall_count[r] == 0) continue;
     add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, page.figures.pool),
                distribution_caption(result, r));
   }
@@ -328,7 +326,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_limits(tables, page);
   if (monte_carlo_of(result).machines) add_machine_sections(result, tables, page);
   add_how_large(result, tables, page);
-  if (monte_carlo_of(result).effects) add_effects_section(result, tables, page);
+  add_effects_section(result, tables, page);
   add_where(result, page);
   add_how_sure(result, tables, page);
 }
@@ -339,8 +337,7 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
   constexpr double kLittle = 0.1;
   const MonteCarloResult& found = monte_carlo_of(result);
-  if (!found.effects) return {};
-  const MainEffects& effects = found.effects->effects;
+  const MainEffects& effects = found.effects.effects;
   const std::size_t factors = result.factors.size();
   const auto share = [&](std::size_t p) { return effects.s1[r * factors + p]; };
   std::vector<std::size_t> order;  // those that certainly have an effect alone
@@ -427,11 +424,10 @@ ErrorShares error_shares(const StoredResult& result) {
   if (found.poses == 0) return {};
   const std::size_t r = response_named(result, default_ranking(result));
   const std::string& response = result.responses[r].name;
-  ErrorShares shares{.pose_what = "the root mean square of " + response, .at_poses = of_row(found.rms, r, found.poses)};
-  if (!found.effects) return shares;
-  shares.what = "first-order index S1 of " + response;
-  shares.values = of_row(found.effects->effects.s1, r, result.factors.size());
-  return shares;
+  return {.what = "first-order index S1 of " + response,
+          .values = of_row(found.effects.effects.s1, r, result.factors.size()),
+          .pose_what = "the root mean square of " + response,
+          .at_poses = of_row(found.rms, r, found.poses)};
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
@@ -453,7 +449,7 @@ std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOpt
     tables.push_back(overall_table(result));
     tables.push_back(poses_table(result));
     if (found.machines) std::ranges::move(machine_tables(result), std::back_inserter(tables));
-    if (found.effects) tables.push_back(effect_table(result));
+    tables.push_back(effect_table(result));
   }
   return tables;
 }

@@ -110,11 +110,11 @@ struct MonteCarloResult {
   std::vector<double> quantiles;     ///< [R x M x Q]
   std::vector<double> rms;           ///< [R x M] root mean square
   /// [R x M x Q] interval of the distribution's quantile (stats/buckets.h), an end infinite where the samples
-  /// are too few for it; empty in files of older versions.
+  /// are too few for it.
   std::vector<double> quantiles_ci_low;
   std::vector<double> quantiles_ci_high;  ///< likewise
-  /// [R x M] where limits are judged by a share of the draws: the magnitude within which that share of them stays.
-  /// Draws that do not count never stay within anything; infinite where they are too many.
+  /// [R x M] where limits are judged by a share of the draws, else empty: the magnitude within which that share of them
+  /// stays. Draws that do not count never stay within anything; infinite where they are too many.
   std::vector<double> share_magnitude;
 
   std::vector<double> overall_mean;               ///< [R]
@@ -124,9 +124,9 @@ struct MonteCarloResult {
   std::vector<std::uint64_t> overall_count;       ///< [R]
   std::vector<double> overall_quantiles;          ///< [R x Q]
   std::vector<double> overall_rms;                ///< [R]
-  std::vector<double> overall_quantiles_ci_low;   ///< [R x Q] empty in files of older versions
+  std::vector<double> overall_quantiles_ci_low;   ///< [R x Q]
   std::vector<double> overall_quantiles_ci_high;  ///< [R x Q] likewise
-  /// Histograms of the samples of all poses (stats/buckets.h), B bins each; empty in files of older versions.
+  /// Histograms of the samples of all poses (stats/buckets.h), B bins each.
   std::vector<double> histogram_edges;          ///< [R x (B + 1)]
   std::vector<std::uint64_t> histogram_counts;  ///< [R x B]
   std::vector<SolveCounts> solves;              ///< [M]
@@ -136,8 +136,7 @@ struct MonteCarloResult {
   /// Where it states limits.
   std::optional<LimitVerdicts> verdicts;
 
-  /// First-order indices; empty in files of older versions.
-  std::optional<EffectResult> effects;
+  EffectResult effects;  ///< first-order indices
   /// Where errors are drawn per machine.
   std::optional<MachineResult> machines;
 

@@ -34,7 +34,6 @@ constexpr double kHardly = 0.01;
 
 /// None where not all effects are known, or none has one.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
-  if (!has_tolerances(result)) return std::nullopt;
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
   const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
@@ -80,7 +79,6 @@ std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
     widest = std::max(widest, reach / shown.value[at]);
   }
   std::string text = fmt::format("Intervals reach at most {:.2g} % away from their index.", 100.0 * widest);
-  if (!has_index_changes(result)) return text;
   const std::size_t changing = changing_errors(result, ranked.response).size();
   return text + (changing == 0
                      ? " The indices hold at a tenth of the sizes as well."

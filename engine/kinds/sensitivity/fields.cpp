@@ -24,42 +24,33 @@ const Group<Indices> kIndices{
     {{"global", &Indices::global, kByResponseFactor, kIndexUnit,
       "Global index: mean over the poses + standard deviation over the poses (Du et al. 2022, Eqs. 53-54)"},
      {"global_ci_low", &Indices::global_ci_low, kByResponseFactor, kIndexUnit, "Lower end of the interval of global",
-      "", kLevel},
+      kLevel},
      {"global_ci_high", &Indices::global_ci_high, kByResponseFactor, kIndexUnit, "Upper end of the interval of global",
-      "", kLevel},
+      kLevel},
      {"global_corrected", &Indices::global_corrected, kByResponseFactor, kIndexUnit,
       "Global index without the sampling noise that 'global' counts as spread between poses; NaN: the error is too "
-      "small for its effect to be told from rounding",
-      "global_corrected"},
+      "small for its effect to be told from rounding"},
      {"global_corrected_ci_low", &Indices::global_corrected_ci_low, kByResponseFactor, kIndexUnit,
-      "Lower end of the interval of global_corrected", "global_corrected", kLevel},
+      "Lower end of the interval of global_corrected", kLevel},
      {"global_corrected_ci_high", &Indices::global_corrected_ci_high, kByResponseFactor, kIndexUnit,
-      "Upper end of the interval of global_corrected", "global_corrected", kLevel},
+      "Upper end of the interval of global_corrected", kLevel},
      {"rounding", &Indices::rounding, kByResponse, kResponseUnit,
-      "Up to this an effect, index x sigma, cannot be told from the rounding of solves", "global_corrected"},
+      "Up to this an effect, index x sigma, cannot be told from the rounding of solves"},
      {"index_change", &Indices::index_change, kByResponseFactor, "1",
       "Change of 'global' where the error is a tenth as large, by the same few draws at up to 32 poses: index there / "
-      "index here - 1; 0: the index holds at other sizes; NaN: not known, or no effect at either size",
-      "index_change"},
+      "index here - 1; 0: the index holds at other sizes; NaN: not known, or no effect at either size"},
      {"local", &Indices::local, kByResponseFactorPose, kIndexUnit,
       "Index at each pose: sigma(response) / sigma(error) (Du et al. 2022, Eqs. 51-52)"},
      {"local_ci_low", &Indices::local_ci_low, kByResponseFactorPose, kIndexUnit, "Lower end of the interval of local",
-      "", kLevel},
+      kLevel},
      {"local_ci_high", &Indices::local_ci_high, kByResponseFactorPose, kIndexUnit, "Upper end of the interval of local",
-      "", kLevel},
-     {"count",
-      &Indices::count,
-      kByResponseFactorPose,
-      "1",
-      "Samples behind the index",
-      "",
-      {},
-      Stored::as_whole_numbers},
+      kLevel},
+     {"count", &Indices::count, kByResponseFactorPose, "1", "Samples behind the index", {}, Stored::as_whole_numbers},
      {"mean", &Indices::mean, kByResponseFactorPose, kResponseUnit, "Mean of the response over the samples"},
      {"std", &Indices::std, kByResponseFactorPose, kResponseUnit,
       "Standard deviation of the response over the samples"},
      {"background", &Indices::background, kByResponsePose, kResponseUnit,
-      "The response with all varied errors zero; NaN where that was not solved", "background"}}};
+      "The response with all varied errors zero; NaN where that was not solved"}}};
 
 const Axes kHistoryAxes{"response", "factor", "samples"};
 
@@ -70,9 +61,9 @@ const CourseWords kHistory{
      kCourseLevel,
      {},
      {{"global", &EstimateCourse::value, kHistoryAxes, kIndexUnit, "Global index after so many samples at each pose"},
-      {"global_ci_low", &EstimateCourse::ci_low, kHistoryAxes, kIndexUnit, "Lower end of the interval of global", "",
+      {"global_ci_low", &EstimateCourse::ci_low, kHistoryAxes, kIndexUnit, "Lower end of the interval of global",
        kCourseLevel},
-      {"global_ci_high", &EstimateCourse::ci_high, kHistoryAxes, kIndexUnit, "Upper end of the interval of global", "",
+      {"global_ci_high", &EstimateCourse::ci_high, kHistoryAxes, kIndexUnit, "Upper end of the interval of global",
        kCourseLevel}}},
     "samples",
     "Samples at each pose; the last is the study's number",
@@ -96,7 +87,7 @@ void add_radius_tau(ResultBuilder& result, const std::vector<double>& tau) {
               "to first order, without the background's errors, at up to 32 of the poses"});
 }
 
-/// Empty where the file has none.
+/// Empty where the mechanism has no such points.
 std::vector<double> read_radius_tau(const h5::File& file) {
   if (!file.exists("/metric/radius_tau")) return {};
   if (axis_length(file, "radius_multiple") != kPointsRadii.size())
@@ -121,11 +112,10 @@ void append_index_columns(CsvTable& table, const StoredResult& result, const std
   }
 }
 
-/// By the published estimator, and by the corrected one where the file has it.
+/// By the published estimator, and by the corrected one.
 CsvTable global_table(const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "global");
   for (const std::string& estimator : {std::string("global"), std::string("global_corrected")}) {
-    if (estimator == "global_corrected" && sensitivity_of(result).global_corrected.empty()) continue;
     for (std::size_t r = 0; r < result.responses.size(); ++r) {
       for (const bool displayed : {false, true}) append_index_columns(table, result, estimator, r, displayed);
     }
@@ -193,10 +183,10 @@ void read(const h5::File& file, StoredResult& result) {
   read_group<Indices>(file, kIndices, found);
   found.solves = read_solver(file, kByFactorPose);
   found.radius_tau = read_radius_tau(file);
-  if (file.exists(kHistory.group.path)) found.history = read_course(file, kHistory);
   result.varied = texts(result.factors, &NamedUnit::name);
   result.failures = read_failures(file, result);
   result.convergence = read_convergence(file, kConvergence);
+  if (!result.convergence) found.history = read_course(file, kHistory);
   read_tolerance_group(file, result.factors, found);
   read_separation(file, found);
   read_fidelity(file, found);
@@ -207,7 +197,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   const Indices& found = sensitivity_of(result);
   tables.push_back(sigma_table(result));
   tables.push_back(global_table(result));
-  if (!found.index_change.empty()) tables.push_back(index_change_table(result));
+  tables.push_back(index_change_table(result));
   append_local_tables(tables, result);
   append_solver_tables(tables, result);
   tables.push_back(failure_table(result));

@@ -209,9 +209,8 @@ std::string first_order(const StoredResult& result, std::span<const double> valu
   return order ? order->name(result) : std::string();
 }
 
-Comparable comparable_sensitivity(const StoredResult& result, const StoredResult& other) {
-  const bool corrected = has_corrected_indices(result) && has_corrected_indices(other);
-  const GlobalIndices indices = corrected ? shown_indices(result) : published_indices(result);
+Comparable comparable_sensitivity(const StoredResult& result, const StoredResult&) {
+  const GlobalIndices indices = shown_indices(result);
   Comparable all = comparable_by_response(result, "error", names_of(result.factors));
   all.ranked = true;
   const auto add = [&](std::string label, std::string array, bool as_effect) {
@@ -222,7 +221,6 @@ Comparable comparable_sensitivity(const StoredResult& result, const StoredResult
   };
   add("effect at the size each study sets (index x sigma)", "effect", true);
   add("global index", "index", false);
-  if (sensitivity_of(result).background.empty()) return all;
   all.total_label = "All errors together, predicted from each alone: root mean square over samples and poses";
   for (const std::size_t r : response_order(result)) all.totals.push_back(total_rms(result, r));
   return all;

@@ -118,7 +118,7 @@ SensitivityResult sensitivity_result(const Plan& plan, CellStats cells, std::vec
 }
 
 double index_rounding(const SensitivityResult& result, std::size_t response, double sigma) {
-  return index_rounding(result.rounding.empty() ? 0.0 : result.rounding[response], sigma);
+  return index_rounding(result.rounding[response], sigma);
 }
 
 ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma, std::size_t response) {

@@ -187,8 +187,6 @@ double index_change_solves(const Plan& plan) {
   return static_cast<double>(plan.slots() * chosen_poses(plan) * kScales.size() * first_draws(plan, 0).count);
 }
 
-bool has_index_changes(const StoredResult& result) { return !sensitivity_of(result).index_change.empty(); }
-
 Cell change_cell(double change) {
   if (std::isnan(change)) return text_cell("");
   // Rounding has either sign.
@@ -230,7 +228,6 @@ std::string index_change_text(const StoredResult& result, std::size_t response) 
 
 std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,
                                            const MeanSquare& mean_square, double added) {
-  if (!has_index_changes(result)) return {};
   const double most = kNegligible / static_cast<double>(result.factors.size()) * added;
   std::vector<std::size_t> list = changing_errors(result, response);
   std::erase_if(list, [&](std::size_t p) {
@@ -255,7 +252,6 @@ std::string negligible_text(const StoredResult& result, const ResponseTolerances
 }
 
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances) {
-  if (!has_index_changes(result)) return {};
   const std::span<const double> changes = changes_of(result, tolerances.response);
   std::vector<std::string> list;
   for (const std::size_t p : changing_errors(result, tolerances.response)) {

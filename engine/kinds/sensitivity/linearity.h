@@ -38,19 +38,15 @@ std::optional<std::vector<double>> index_changes(const Plan& plan, const Model& 
 /// Solves that index_changes makes.
 double index_change_solves(const Plan& plan);
 
-/// Whether the result says it; those of older versions do not.
-bool has_index_changes(const StoredResult& result);
-
 /// By which share the index changes where the error is a tenth as large, for a percent_column.
 Cell change_cell(double change);
 
 /// The errors that have an effect on the response and whose index changes with size, the largest change first.
-/// Precondition: has_index_changes.
 std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t response);
 
 /// For how many of the errors that have an effect the response's index holds, and for which not, the largest change
 /// first: "the index on gap holds at a tenth of the size, within 2 %: 15 of 25 errors with an effect; not for
-/// epsilon_3_4_z (-99.1 %), ...". Precondition: has_index_changes.
+/// epsilon_3_4_z (-99.1 %), ...".
 std::string index_change_text(const StoredResult& result, std::size_t response);
 
 /// What negligible errors add to a mean square together is at most this share of it.
@@ -58,8 +54,7 @@ inline constexpr double kNegligible = 1e-3;
 
 /// The errors whose index on the response changes with size although it does not matter: at the size studied each adds
 /// at most kNegligible / P of `added` to the response's mean square, with P the number of all errors. So their
-/// tolerance may be the size studied, and their index at other sizes is not needed. Empty where the result does not say
-/// how indices change.
+/// tolerance may be the size studied, and their index at other sizes is not needed.
 std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,
                                            const MeanSquare& mean_square, double added);
 
@@ -73,7 +68,7 @@ inline constexpr double kSameSize = 2.0;
 /// way to share a limit, and at which size to study them: "2 errors have an index on gap that changes with size, by so
 /// much at a tenth of it, and a tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at 0.02
 /// deg), ...", the largest change first, ten at the most. The size is where the tolerance will be about the size, if
-/// the index grows with a power of it. Empty where there is none, or the result does not say how indices change.
+/// the index grows with a power of it. Empty where there is none.
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
 }  // namespace poesy

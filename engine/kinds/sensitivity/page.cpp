@@ -30,9 +30,6 @@ constexpr double kWideInterval = 0.10;
 constexpr std::string_view kCorrected =
     "The published estimator counts the noise of sampling as spread between poses; the value shown is without that "
     "noise, and 'published' in the table is with it.";
-constexpr std::string_view kPublished =
-    "The value shown is the published estimator, which counts the noise of sampling as spread between poses, because "
-    "an older poesy wrote this result.";
 
 BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& pool) {
   const GlobalIndices shown = shown_indices(result);
@@ -50,8 +47,7 @@ void add_which_errors_matter(const StoredResult& result, std::span<const Table> 
       "The global index of an error is the scatter of a response for each unit of scatter of the error, its mean over "
       "the {} plus its spread between them. Times the size that the study gives the error it is the effect, which "
       "compares lengths with angles. Bars end at the value; the thin lines are {:.3g} % intervals. {}",
-      counted(result.poses.size(), "pose", "poses"), 100.0 * sensitivity_of(result).conf_level,
-      has_corrected_indices(result) ? kCorrected : kPublished));
+      counted(result.poses.size(), "pose", "poses"), 100.0 * sensitivity_of(result).conf_level, kCorrected));
   if (const std::string text = few_matter_text(result); !text.empty()) section.paragraph(text);
   Bars bars{{{"response", names_of(result.responses, response_order(result))}},
             {bar_quantity(result, true, page.figures.pool), bar_quantity(result, false, page.figures.pool)},
@@ -144,10 +140,9 @@ void add_where(const StoredResult& result, Page& page) {
   figures.add_workspace(section, std::move(fields));
 }
 
-/// With fewer samples; none where an older version wrote the result.
-std::optional<EstimateCourse> course_of(const StoredResult& result) {
-  if (result.convergence) return with_ends(result.convergence->course);
-  return sensitivity_of(result).history;
+/// With fewer samples.
+EstimateCourse course_of(const StoredResult& result) {
+  return result.convergence ? with_ends(result.convergence->course) : sensitivity_of(result).history.value();
 }
 
 /// Effects on each response in the order of importance.
@@ -169,22 +164,18 @@ Lines effects_over_samples(const StoredResult& result, const EstimateCourse& cou
 
 void add_how_sure(const StoredResult& result, std::span<const Table> tables, Page& page) {
   Section& section = add_how_sure(page, "How sure are the indices", sensitivity_of(result).conf_level);
-  const std::optional<EstimateCourse> course = course_of(result);
-  if (course && course->samples.size() < 2) {
+  const EstimateCourse course = course_of(result);
+  if (course.samples.size() < 2) {
     section.paragraph("With so few samples there is no smaller study to show how indices settle.");
-  } else if (course) {
+  } else {
     section.paragraph(
         "What a study with fewer samples would have found: curves that have become flat, with narrow bands, would not "
         "change with more. Effects are index x sigma; errors without effect are left out.");
-    add_figure(page, section, "convergence", effects_over_samples(result, *course, page.figures.pool),
+    add_figure(page, section, "convergence", effects_over_samples(result, course, page.figures.pool),
                "The effect of each error by the published estimator over the number of samples, with its interval.");
     section.paragraph(
         "The curves are of the published estimator. Where poses differ by little more than chance it is at the upper "
         "end of its interval, because chance adds to the spread between poses; more samples close the gap.");
-  } else {
-    section.paragraph(
-        "An older poesy wrote this result, which did not keep how its indices settled with the number of samples. Run "
-        "the study again, and its report shows it.");
   }
   section.table(tables, "convergence");
 }
@@ -224,7 +215,6 @@ void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& 
 }
 
 void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
-  if (!has_index_changes(result)) return;
   const std::size_t response = response_named(result, default_ranking(result));
   if (changing_errors(result, response).empty()) return;
   list.push_back(fmt::format("Some indices say something about the size of the errors in this study and no other: {}.",
@@ -261,13 +251,11 @@ ErrorShares error_shares(const StoredResult& result) {
   if (result.factors.empty() || result.poses.size() == 0) return {};
   const std::size_t r = response_named(result, default_ranking(result));
   const std::string& response = result.responses[r].name;
-  ErrorShares shares{.pose_what = "the effect of all errors on " + response,
-                     .at_poses = root_sum_squares(local_effects(result, r), result.poses.size())};
-  if (!has_tolerances(result)) return shares;
   const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, r));
-  shares.what = "share of the mean square of " + response;
-  shares.values = mean_square_shares(found, result.factor_sigma);
-  return shares;
+  return {.what = "share of the mean square of " + response,
+          .values = mean_square_shares(found, result.factor_sigma),
+          .pose_what = "the effect of all errors on " + response,
+          .at_poses = root_sum_squares(local_effects(result, r), result.poses.size())};
 }
 
 Settling settling(const StoredResult& result) {

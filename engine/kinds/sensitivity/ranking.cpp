@@ -167,46 +167,29 @@ Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
     const std::string& name = result.responses[r].name;
     add_index(list, result, r, "index_" + name, name, dispensable++);
   }
-  if (has_index_changes(result)) {
-    list.push_back({percent_column("index_change", "at a tenth", kIndexChange), [&result, response](std::size_t p) {
-                      return change_cell(sensitivity_of(result).index_change[response * result.factors.size() + p]);
-                    }});
-  }
+  list.push_back({percent_column("index_change", "at a tenth", kIndexChange), [&result, response](std::size_t p) {
+                    return change_cell(sensitivity_of(result).index_change[response * result.factors.size() + p]);
+                  }});
   list.push_back({percent_column("not_converged", "not converged", kNotConverged),
                   [&](std::size_t p) { return percent_cell(share_not_converged(sensitivity_of(result), p)); }});
-  if (has_corrected_indices(result)) {
-    list.push_back(
-        index_column(result, sensitivity_of(result).global, response, "index_published", "published", dispensable));
-  }
+  list.push_back(
+      index_column(result, sensitivity_of(result).global, response, "index_published", "published", dispensable));
   return list;
 }
 
 std::vector<std::string> ranked_notes(const StoredResult& result, const RankedErrors& ranked) {
-  std::vector<std::string> list{fmt::format(
-      "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
-      "between them; low, high: its {:.3g} % interval",
-      result.responses[ranked.response].name, 100.0 * sensitivity_of(result).conf_level)};
-  if (has_corrected_indices(result)) {
-    list.emplace_back(
-        "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
-        "poses; index is without that noise");
-  } else {
-    list.push_back(
-        fmt::format("index is the published estimator, which counts the noise of sampling as spread between "
-                    "poses, because an older poesy ({}) wrote this result",
-                    result.poesy_version));
-  }
-  list.emplace_back(
-      "effect: index x sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
-      "indices per mm and per deg do not compare");
-  if (has_index_changes(result)) {
-    list.emplace_back(
-        "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
-        "changes, the index says something about the size studied and no other");
-    list.push_back(index_change_text(result, ranked.response));
-  }
-  list.emplace_back("not converged: share of the samples whose solve did not settle");
-  return list;
+  return {fmt::format(
+              "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
+              "between them; low, high: its {:.3g} % interval",
+              result.responses[ranked.response].name, 100.0 * sensitivity_of(result).conf_level),
+          "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
+          "poses; index is without that noise",
+          "effect: index x sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
+          "indices per mm and per deg do not compare",
+          "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
+          "changes, the index says something about the size studied and no other",
+          index_change_text(result, ranked.response),
+          "not converged: share of the samples whose solve did not settle"};
 }
 
 /// How the ranking changes with the points of the platform's metric; empty where the result does not say it.
@@ -248,16 +231,8 @@ Table ranked_table(const StoredResult& result, const RankedErrors& ranked) {
 
 }  // namespace
 
-bool has_corrected_indices(const StoredResult& result) { return !sensitivity_of(result).global_corrected.empty(); }
-
-GlobalIndices published_indices(const StoredResult& result) {
-  const SensitivityResult& found = sensitivity_of(result);
-  return {found.global, found.global_ci_low, found.global_ci_high};
-}
-
 GlobalIndices shown_indices(const StoredResult& result) {
   const SensitivityResult& found = sensitivity_of(result);
-  if (!has_corrected_indices(result)) return published_indices(result);
   return {found.global_corrected, found.global_corrected_ci_low, found.global_corrected_ci_high};
 }
 

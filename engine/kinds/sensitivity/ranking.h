@@ -30,13 +30,7 @@ struct GlobalIndices {
   const std::vector<double>& high;   ///< upper end
 };
 
-/// Whether the result has corrected indices; those of older versions have none.
-bool has_corrected_indices(const StoredResult& result);
-
-/// The published ones, which every result has.
-GlobalIndices published_indices(const StoredResult& result);
-
-/// The corrected ones where the result has them, else the published ones.
+/// Those that are shown and that rank: the corrected ones.
 GlobalIndices shown_indices(const StoredResult& result);
 
 /// Below which a (global or local) index of the response and the error is rounding.

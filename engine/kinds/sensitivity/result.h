@@ -56,7 +56,7 @@ struct FidelityResult {
 /// What a sensitivity study found: R responses, P varied factors, M poses; SI; NaN where undefined. global is the
 /// published estimator; global_corrected is what tables and figures call the index, free of what sampling adds to
 /// global (stats/indices.h), and NaN where the error is too small for its effect to be told from rounding
-/// (stats/indices.h). Files of older versions have neither this nor rounding: they are empty.
+/// (stats/indices.h).
 struct SensitivityResult {
   std::size_t responses = 0;  ///< R
   std::size_t factors = 0;    ///< P
@@ -77,10 +77,10 @@ struct SensitivityResult {
   std::vector<double> global_corrected_ci_high;  ///< [R x P]
   std::vector<double> rounding;                  ///< [R] standard deviation up to which an effect may be rounding
   /// [R x P] index at a tenth of the study's sizes over that at these sizes, less 1 (kinds/sensitivity/linearity.h);
-  /// NaN where that is not known. Empty in files of older versions.
+  /// NaN where that is not known.
   std::vector<double> index_change;
   /// [2 x R] Kendall's tau with the ranking by points of the metric at kPointsRadii
-  /// (kinds/sensitivity/points_radius.h). Empty where the mechanism has no such metric, and in files of older versions.
+  /// (kinds/sensitivity/points_radius.h). Empty where the mechanism has no such metric.
   std::vector<double> radius_tau;
   std::vector<double> background;              ///< [R x M] all varied errors zero; NaN where that was not solved
   std::vector<SolveCounts> solves;             ///< [P x M] of the samples; the background's solves are not among them
@@ -91,19 +91,18 @@ struct SensitivityResult {
   std::optional<ConvergenceResult> convergence;
   /// The global indices after fewer samples, where it has a fixed number of them, with intervals: each is what a study
   /// with exactly so many samples at each pose (engine/run/evaluate_unit.h) would find, bit by bit. The
-  /// last is the result's. Not in files of older versions.
+  /// last is the result's.
   std::optional<EstimateCourse> history;
 
   /// Over all cells.
   SolveCounts total() const { return total_of(solves); }
 };
 
-/// What a sensitivity result says, read back. Its failures and its convergence are those of StoredResult; its
-/// `background` is empty in files of older versions.
+/// What a sensitivity result says, read back. Its failures and its convergence are those of StoredResult.
 struct StoredSensitivity : SensitivityResult {
-  std::vector<std::uint64_t> factor_limb;                          ///< [P] empty in files of older versions
-  std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] likewise; none where no error has an effect
-  std::vector<double> mean_square_bound;                           ///< [R] Response::mean_square_bound; likewise
+  std::vector<std::uint64_t> factor_limb;                          ///< [P]
+  std::vector<std::optional<ReferenceError>> tolerance_reference;  ///< [R] none where no error has an effect
+  std::vector<double> mean_square_bound;                           ///< [R] Response::mean_square_bound
   std::string separation_measure;                                  ///< what length `separation` speaks of
   std::vector<std::string> published_class;  ///< [P] the literature's class of each error, where that is separated
   std::vector<std::string> fidelities;       ///< the two that `fidelity` compares

@@ -303,10 +303,6 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
 
 std::string set_sensitivity_tolerances(const StoredResult& result, const TolerancesOptions& options,
                                        const Catalog& catalog, std::size_t width) {
-  if (!has_tolerances(result)) {
-    throw InputError({options.result}, "has no tolerances, for an older poesy (" + result.poesy_version + ") wrote it",
-                     "run the study again");
-  }
   const std::size_t response = chosen_response(options, result);
   const NamedUnit& named = result.responses[response];
   check_sizes(options, result, response);

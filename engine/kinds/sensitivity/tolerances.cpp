@@ -44,8 +44,7 @@ const Fields<ToleranceGroup> kReadFields{
      "Tolerance of reference_factor"},
     {"mean_square_bound", &ToleranceGroup::mean_square_bound, kByResponse, "1",
      "To first order, the mean square of all errors together is at most this times the sum of those of each error "
-     "alone; 1: they add exactly",
-     "mean_square_bound"}};
+     "alone; 1: they add exactly"}};
 
 /// What follows from other groups, and is for other programs alone.
 const Group<ToleranceGroup> kToleranceGroup{
@@ -58,9 +57,9 @@ const Group<ToleranceGroup> kToleranceGroup{
      {"index", &ToleranceGroup::index, kByResponseFactor, kIndexUnit,
       "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
      {"index_ci_low", &ToleranceGroup::index_ci_low, kByResponseFactor, kIndexUnit,
-      "Lower end of the interval of index", "", kIndexLevel},
+      "Lower end of the interval of index", kIndexLevel},
      {"index_ci_high", &ToleranceGroup::index_ci_high, kByResponseFactor, kIndexUnit,
-      "Upper end of the interval of index", "", kIndexLevel},
+      "Upper end of the interval of index", kIndexLevel},
      {"equal_effect", &ToleranceGroup::equal_effect, kByResponseFactor, "SI: factor unit, see /tolerances/unit",
       "Tolerance that gives every error the reference's effect: index(reference) / index x reference_tolerance (Du et "
       "al. 2022, Section 6.3, Table 10); infinity: no effect on its own; NaN: unknown"},
@@ -116,9 +115,7 @@ void append_tolerance_columns(CsvTable& table, const StoredResult& result, const
   table.columns.push_back(list_column(heading("index_ci_high", index_unit, ""), found.global_ci_high, first));
   table.columns.push_back(
       {"mean_square_share", [shares = tolerances.all.mean_square_share](std::size_t p) { return shares[p]; }});
-  table.columns.push_back({"index_change", [&found, first](std::size_t p) {
-                             return found.index_change.empty() ? kNaN : found.index_change[first + p];
-                           }});
+  table.columns.push_back(list_column("index_change", found.index_change, first));
   std::vector<std::pair<std::string, std::vector<double>>> lists{{"equal_effect", tolerances.all.equal_effect}};
   if (tolerances.limit) {
     lists.emplace_back("limit_equal_effect", tolerances.limit->equal_effect);
@@ -175,7 +172,7 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
 
 /// How much the limit may be exceeded although the study was made at small errors.
 void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
-  if (!tolerances.limit || sensitivity_of(result).mean_square_bound.empty()) return;
+  if (!tolerances.limit) return;
   const double bound = std::sqrt(sensitivity_of(result).mean_square_bound[tolerances.response]);
   if (bound == 1.0) return;
   const NamedUnit& response = result.responses[tolerances.response];
@@ -234,12 +231,6 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   add_bound_note(list, result, tolerances);
   add_distribution_note(list, result);
   add_extrapolation_note(list, result, tolerances);
-  if (!has_index_changes(result)) {
-    list.push_back(
-        fmt::format("whether indices hold at other sizes is not known, because an older poesy ({}) wrote "
-                    "this result",
-                    result.poesy_version));
-  }
   if (!tolerances.negligible.empty()) list.push_back(negligible_text(result, tolerances));
   if (!tolerances.caveat.empty()) list.push_back(tolerances.caveat);
   list.push_back(fmt::format(
@@ -311,7 +302,6 @@ void write_tolerance_group(ResultBuilder& result, const Study& study, const Sens
 }
 
 void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found) {
-  if (!file.exists("/tolerances")) return;
   ToleranceGroup group;
   read_fields(file, "/tolerances", kReadFields, group);
   found.factor_limb = group.limb;
@@ -326,11 +316,6 @@ void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& fa
   }
 }
 
-bool has_tolerances(const StoredResult& result) {
-  const StoredSensitivity& found = sensitivity_of(result);
-  return !found.factor_limb.empty() && !found.background.empty();
-}
-
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response) {
   const StoredSensitivity& found = sensitivity_of(result);
   return {response, response_tolerances(found, result.factor_sigma, response, found.tolerance_reference[response]),
@@ -338,7 +323,6 @@ ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t res
 }
 
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result) {
-  if (!has_tolerances(result)) return;
   for (std::size_t r = 0; r < sensitivity_of(result).tolerance_reference.size(); ++r) {
     CsvTable table = lines_of_factors(result, "tolerances_" + result.responses[r].name);
     table.columns.push_back({"angular", [&](std::size_t p) {
@@ -364,9 +348,7 @@ std::string write_tolerances(const std::string& folder, const StoredResult& resu
                 {"unit", unit},
                 {"display_unit", [&](std::size_t p) { return std::string(display(result.factors[p]).name); }},
                 {"index_unit", [&](std::size_t p) { return response_unit + "/" + unit(p); }},
-                {"studied_as", [&](std::size_t p) {
-                   return result.factor_distribution.empty() ? std::string("unknown") : result.factor_distribution[p];
-                 }}};
+                {"studied_as", [&](std::size_t p) { return result.factor_distribution[p]; }}};
   const auto heading = [](const std::string& name, const std::string&, const char* suffix) { return name + suffix; };
   append_tolerance_columns(table, result, tolerances, heading);
   return write_csv(folder, table);
@@ -383,7 +365,6 @@ Table tolerance_table(const StoredResult& result, const ResponseTolerances& tole
 }
 
 void add_tolerance_section(const StoredResult& result, Page& page) {
-  if (!has_tolerances(result)) return;
   Section& section = page.add_section("tolerances", "How tight must each be");
   const std::size_t response = response_named(result, default_ranking(result));
   const std::string& name = result.responses[response].name;

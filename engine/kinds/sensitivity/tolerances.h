@@ -32,9 +32,9 @@ struct ResponseTolerances {
 void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found);
 void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, StoredSensitivity& found);
 /// @}
-/// tolerances_RESPONSE.csv; none for a file of an older version.
+/// tolerances_RESPONSE.csv.
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
-/// The section of a report, where the result has tolerances.
+/// The section of a report.
 void add_tolerance_section(const StoredResult& result, Page& page);
 
 /// The lists of tolerances [P] that are to be used: within the limit by either way to share it, without one those of
@@ -45,10 +45,7 @@ std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerance
 /// it is an error of (Model::error_bound). Throws InputError when the stored study cannot be read with this catalog.
 std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog);
 
-/// Whether a sensitivity result holds what tolerances are made of; one of an older version may not.
-bool has_tolerances(const StoredResult& result);
-
-/// Those of one response, counted from the reference that the result states. Precondition: has_tolerances().
+/// Those of one response, counted from the reference that the result states.
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response);
 
 /// Writes tolerances.csv into a folder, made if missing, for programs that assign tolerances:

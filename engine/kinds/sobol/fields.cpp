@@ -50,39 +50,26 @@ struct Layout {
             {"without_sign", &SobolResult::without_sign, kByResponse, "1",
              "1 where no sample was below zero: such a response, the length of a vector for instance, is not "
              "additive even where the vector is linear"}},
-        pairs{{"S2",
-               &SobolResult::S2,
-               {"response", axis, "other"},
-               "1",
-               "Second-order index: the closed index of two together without those of each; NaN on the diagonal",
-               "S2"},
-              {"S2_ci_low",
-               &SobolResult::S2_ci_low,
-               {"response", axis, "other"},
-               "1",
-               "Lower end of the interval of S2",
-               "S2"},
-              {"S2_ci_high",
-               &SobolResult::S2_ci_high,
-               {"response", axis, "other"},
-               "1",
-               "Upper end of the interval of S2",
-               "S2"}},
-        effects{
-            {"Sh",
-             &SobolResult::Sh,
-             {"response", axis},
+        pairs{
+            {"S2",
+             &SobolResult::S2,
+             {"response", axis, "other"},
              "1",
-             "Shapley effect: the share of the variance, what is made together divided evenly; all add up to 1, "
-             "also where errors are correlated",
-             "Sh"},
-            {"Sh_ci_low", &SobolResult::Sh_ci_low, {"response", axis}, "1", "Lower end of the interval of Sh", "Sh"},
-            {"Sh_ci_high",
-             &SobolResult::Sh_ci_high,
-             {"response", axis},
+             "Second-order index: the closed index of two together without those of each; NaN on the diagonal"},
+            {"S2_ci_low", &SobolResult::S2_ci_low, {"response", axis, "other"}, "1", "Lower end of the interval of S2"},
+            {"S2_ci_high",
+             &SobolResult::S2_ci_high,
+             {"response", axis, "other"},
              "1",
-             "Upper end of the interval of Sh",
-             "Sh"}} {}
+             "Upper end of the interval of S2"}},
+        effects{{"Sh",
+                 &SobolResult::Sh,
+                 {"response", axis},
+                 "1",
+                 "Shapley effect: the share of the variance, what is made together divided evenly; all add up to 1, "
+                 "also where errors are correlated"},
+                {"Sh_ci_low", &SobolResult::Sh_ci_low, {"response", axis}, "1", "Lower end of the interval of Sh"},
+                {"Sh_ci_high", &SobolResult::Sh_ci_high, {"response", axis}, "1", "Upper end of the interval of Sh"}} {}
 
   std::string axis;
   Group<SobolIndices> at_poses;
@@ -154,8 +141,13 @@ void read(const h5::File& file, StoredResult& result) {
   read_group(file, rows.at_poses, found.at_poses);
   read_fields(file, rows.at_poses.path, rows.beside, found);
   read_group(file, rows.aggregated, found.aggregated);
-  read_fields(file, rows.aggregated.path, rows.pairs, found);
-  read_fields(file, rows.aggregated.path, rows.effects, found);
+  const auto read_if_computed = [&](const Fields<SobolResult>& fields) {
+    if (file.exists(rows.aggregated.path + "/" + fields.front().name)) {
+      read_fields(file, rows.aggregated.path, fields, found);
+    }
+  };
+  read_if_computed(rows.pairs);
+  read_if_computed(rows.effects);
   if (!found.vectors.empty()) read_group(file, rows.of_vectors, found.of_vectors);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);

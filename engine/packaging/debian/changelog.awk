@@ -42,7 +42,7 @@ function end_entry(  command, stamp) {
   next
 }
 !inside { next }
-/^### / { flush_item(); printf "\n  [ %s ]\n", $2; next }
+/^### / { flush_item(); printf "\n  [ %s ]\n", substr($0, 5); next }
 /^- / { flush_item(); item = substr($0, 3); next }
 /^ +[^ ]/ { sub(/^ +/, ""); item = item " " $0; next }
 /^$/ { flush_item() }

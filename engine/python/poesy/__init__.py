@@ -33,7 +33,7 @@ from ._ranking import Ranking
 from ._result import Result, read
 from ._run import run
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 program: str | os.PathLike[str] | None = None
 """The program to run. ``None``: the environment variable POESY says it, else the first `poesy` on PATH is taken."""

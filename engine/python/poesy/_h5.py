@@ -15,7 +15,7 @@ import xarray
 
 from ._errors import DamagedFile, FileError
 
-NEWEST_MAJOR = 1
+MAJOR = 1  # of the format
 _BOOKKEEPING = frozenset({"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"})
 _DEEPEST, _MOST_NAMES = 16, 16  # results have three levels, and datasets of up to seven names
 _OWN_FILTERS = range(1, 7)  # gzip, shuffle, fletcher32, szip, nbit, scaleoffset
@@ -30,7 +30,7 @@ class _StrangeFile(Exception):
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
     """The file, open to be read. Raises `FileError` where it is not there, `DamagedFile` where it is no result, is damaged
-    here or when it is read in the block, is of a newer version, or would read other files."""
+    here or when it is read in the block, is of another version of the format, or would read other files."""
     if not path.exists():
         raise FileError(f"{path}: there is no such file; results come from poesy.run")
     if not path.is_file():  # HDF5 would wait for a FIFO
@@ -58,8 +58,9 @@ def _check(path: Path, file: h5py.File) -> None:
         found = _printable(str(filetype))
         raise DamagedFile(f"{path}: is no result of poesy (attribute filetype: {found}); results come from poesy.run")
     major, minor = file.attrs["version"]
-    if major > NEWEST_MAJOR:
-        raise DamagedFile(f"{path}: version {major}.{minor}, this reads {NEWEST_MAJOR}.x; take a newer package")
+    if major != MAJOR:
+        remedy = "take a newer package" if major > MAJOR else "run the study again"
+        raise DamagedFile(f"{path}: version {major}.{minor}, this reads {MAJOR}.x; {remedy}")
 
 
 def _printable(text: str) -> str:

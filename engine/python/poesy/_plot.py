@@ -138,7 +138,7 @@ class Plots:
         result = self._result
         if "monte_carlo/main_effect" not in result.groups:
             lacks = f"this result of kind {result.kind} has no main effects"
-            raise NotInResult(f"{result.path}: {lacks}; kind monte-carlo has, since 0.2")
+            raise NotInResult(f"{result.path}: {lacks}; kind monte-carlo has")
         response = result.response(response)
         group = result.to_xarray("monte_carlo/main_effect").sel(response=response)
         factors = result.to_xarray("factors")
@@ -244,7 +244,7 @@ def _sensitivity_field(result: Result, response: str, of: str | None) -> _Field:
     group = result.to_xarray("sensitivity").sel(response=response)
     found = _selected(result, group, "factor", error)
     sigma = float(result.to_xarray("factors")["sigma"].values[list(group["factor"].values).index(error)])
-    rounding = float(found["rounding"]) / sigma if "rounding" in found else 0.0
+    rounding = float(found["rounding"]) / sigma
     unit = Unit(*result.response_unit(response))
     local = [_ranking.told_from_rounding(float(value), rounding) for value in found["local"].values]
     return _Field(np.array(local) * sigma / unit.si, f"effect of {error} on {response}", unit.name)
@@ -261,10 +261,9 @@ def _monte_carlo_field(result: Result, response: str | None, quantity: str | Non
     name = result.response(response)
     unit = Unit(*result.response_unit(name))
     group = result.to_xarray("monte_carlo").sel(response=name)
-    there = [one for one in _QUANTITIES if one in group]  # files of version 0.1 have no rms
-    quantity = quantity or there[0]
-    if quantity not in there:
-        raise NotInResult(f"{result.path}: quantity is {quantity!r}; it is one of {', '.join(there)}")
+    quantity = quantity or _QUANTITIES[0]
+    if quantity not in _QUANTITIES:
+        raise NotInResult(f"{result.path}: quantity is {quantity!r}; it is one of {', '.join(_QUANTITIES)}")
     return _Field(group[quantity].values / unit.si, f"{quantity} of {name}", unit.name)
 
 

@@ -172,6 +172,6 @@ def exception_of(done: Finished) -> Error:
 
 
 def version() -> dict[str, Any]:
-    """``{"version": "0.1.0", "commit": "..."}`` of the program that would run. Raises `ProgramNotFound`."""
+    """``{"version": "0.2.0", "commit": "..."}`` of the program that would run. Raises `ProgramNotFound`."""
     words = call("--version").split()
     return {"version": words[1], "commit": words[2].strip("()")}

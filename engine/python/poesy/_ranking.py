@@ -209,13 +209,6 @@ def told_from_rounding(index: float, rounding: float) -> float:
     return math.nan if rounding > _INDEX_OF_INTEREST else 0.0
 
 
-def index_names(group: xarray.Dataset) -> tuple[str, str, str]:
-    """The datasets of the indices that the program shows, and of the ends of their intervals: the corrected ones, where
-    the program that wrote the file had them."""
-    name = "global_corrected" if "global_corrected" in group else "global"
-    return name, f"{name}_ci_low", f"{name}_ci_high"
-
-
 def _in_order(values: Any) -> list[int]:
     """Positions of the values, the largest first, NaN last; equal ones stay in their order."""
     return sorted(range(len(values)), key=lambda at: -math.inf if math.isnan(values[at]) else values[at], reverse=True)
@@ -234,8 +227,8 @@ def _sensitivity(result: Result, response: str | None) -> Ranking:
     effect_unit = shown(result.units("response")[response])
     names, units = factors["name"].values, factors["unit"].values
     sigmas = factors["sigma"].values
-    ends = np.stack([found[name].values for name in index_names(found)])
-    rounding = float(found["rounding"]) if "rounding" in found else 0.0
+    ends = np.array(_with_ends(found, "global_corrected")).T
+    rounding = float(found["rounding"])
     rows: list[Row] = []
     for rank, p in enumerate(_in_order(ends[0] * sigmas), start=1):
         unit = shown(str(units[p]))
@@ -275,10 +268,7 @@ def _sobol(result: Result, response: str | None) -> Ranking:
 
 def _monte_carlo(result: Result, response: str | None) -> Ranking:
     response = result.response(response)
-    group = result.to_xarray("monte_carlo")
-    if "S1" not in group:
-        raise NotInResult(f"{result.path}: has no S1, because an older poesy wrote it; run the study again")
-    found = group.sel(response=response)
+    found = result.to_xarray("monte_carlo").sel(response=response)
     alone = _with_ends(found, "S1")
     names = [str(name) for name in found["factor"].values]
     rows = tuple(

@@ -67,8 +67,8 @@ class Result:
             }  # fmt: skip
             self._descriptions = {
                 axis: dict(zip(_h5.texts(file, f"{axis}s/name"), _h5.texts(file, f"{axis}s/description")))
-                for axis in ("response", "factor") if f"{axis}s/description" in file
-            }  # fmt: skip
+                for axis in ("response", "factor")
+            }
             self.verdict = verdict(file)
         self.study: dict[str, Any] = tomllib.loads(self._study_text)
 
@@ -211,6 +211,6 @@ def read(path: str | os.PathLike[str]) -> Result:
     FileError
         Where there is no such file.
     DamagedFile
-        Where it is no result of poesy, is damaged, or is of a newer version than this package reads.
+        Where it is no result of poesy, is damaged, or is of a version of the format that this package does not read.
     """
     return Result(path)

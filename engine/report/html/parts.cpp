@@ -136,7 +136,6 @@ HeatMap PoseFigures::heat_map(std::vector<HeatLayer> layers, std::vector<std::st
 }
 
 void PoseFigures::add_condition(std::vector<Field>& fields) const {
-  if (result_.condition.empty()) return;
   fields.push_back({"condition number of the pose", "", add("condition", result_.condition)});
 }
 

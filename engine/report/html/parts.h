@@ -125,11 +125,10 @@ std::string limits_text(const StoredResult& result);
 /// Adds the section on the study's limits, where it states any. tables: of the result.
 void add_limits(std::span<const Table> tables, Page& page);
 
-/// The section that comes first: what the responses are, in words. Files of older versions do not say it; then nothing
-/// is added.
+/// The section that comes first: what the responses are, in words.
 void add_responses(const StoredResult& result, Page& page);
 
-/// The section that has every error and every pose coordinate with its unit and what it is, where the file says it;
+/// The section that has every error and every pose coordinate with its unit and what it is;
 /// figures say it as well, where a reader points at a name.
 void add_glossary(const StoredResult& result, Page& page);
 

@@ -9,10 +9,6 @@
 namespace poesy {
 namespace {
 
-bool described(const std::vector<NamedUnit>& things) {
-  return std::ranges::any_of(things, [](const NamedUnit& thing) { return !thing.description.empty(); });
-}
-
 /// A description as a sentence of its own.
 std::string sentence(const NamedUnit& thing) {
   std::string text = thing.description;
@@ -201,7 +197,6 @@ Table facts_table(const ReportKind& kind, std::span<const ReportedResult> result
 }  // namespace
 
 void add_responses(const StoredResult& result, Page& page) {
-  if (!described(result.responses)) return;
   for (const NamedUnit& response : result.responses) page.figures.about.emplace(response.name, response.description);
   std::vector<std::size_t> shown = headline_order(result);
   for (const std::size_t r : result.signed_headline) {
@@ -213,14 +208,10 @@ void add_responses(const StoredResult& result, Page& page) {
 }
 
 void add_glossary(const StoredResult& result, Page& page) {
-  const std::vector<NamedUnit>& errors = result.factors;
-  const std::vector<NamedUnit>& coordinates = result.pose_coordinates;
-  if (!described(errors) && !described(coordinates)) return;
-  for (const NamedUnit& error : errors) page.figures.about.emplace(error.name, error.description);
+  for (const NamedUnit& error : result.factors) page.figures.about.emplace(error.name, error.description);
   Section& section = page.add_section("names", "What the names mean");
-  if (described(coordinates))
-    section.table(table_of("coordinates", "coordinate", "Coordinates of a pose", coordinates));
-  if (described(errors)) section.table(table_of("errors", "error", "Errors", errors));
+  section.table(table_of("coordinates", "coordinate", "Coordinates of a pose", result.pose_coordinates));
+  section.table(table_of("errors", "error", "Errors", result.factors));
 }
 
 void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page) {

@@ -10,8 +10,9 @@ function result = from_file(file)
     error('poesy:filetype', '%s: not a result of poesy (attribute filetype: %s)', file, filetype);
   end
   version = h5readatt(file, '/', 'version');
-  if version(1) > 1
-    error('poesy:version', '%s: has version %d.%d, this reads 1.x; take the newer +poesy', file, version(1), version(2));
+  if version(1) ~= 1
+    error('poesy:version', '%s: has version %d.%d, this reads 1.x; take the +poesy of that version', file, version(1), ...
+          version(2));
   end
   result.kind = char(h5readatt(file, '/', 'kind'));
   info = h5info(file);
@@ -32,7 +33,7 @@ function all = children(file, groups)
       name = group.Datasets(d).Name;
       values = h5read(file, [group.Name '/' name]);
       if ~isnumeric(values)
-        values = cellstr(values);  % a string array or, in older versions, already a cell array
+        values = cellstr(values);  % a string array or, in older versions of MATLAB, already a cell array
       end
       here.(name) = values;
     end
@@ -42,11 +43,8 @@ end
 
 % h5read gives the axes in reversed order: what the file has as [R x P] arrives as [P x R].
 function indices = sensitivity_of(groups)
-  name = 'global_corrected';
-  if ~isfield(groups.sensitivity, name)
-    name = 'global';  % an older poesy wrote the file
-  end
   found = groups.sensitivity;
   indices = poesy.internal.indices(groups.factors.name, groups.factors.unit, groups.factors.sigma, groups.responses.name, ...
-                                   groups.responses.unit, found.(name), found.([name '_ci_low']), found.([name '_ci_high']));
+                                   groups.responses.unit, found.global_corrected, found.global_corrected_ci_low, ...
+                                   found.global_corrected_ci_high);
 end

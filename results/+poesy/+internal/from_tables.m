@@ -46,15 +46,10 @@ function indices = sensitivity_of(tables)
   units(abs(scale * pi / 180 - 1) < 1e-6) = {'rad'};
   % global.csv: for each response index, lower and upper end in SI, then the same three in mm or deg. The header says
   % "linear_deformation [m per m or rad]". After the published indices of all responses come the corrected ones, likewise.
-  columns = tables.global.columns(2:end);
-  index_units = tables.global.units(2:end);
-  numbers = tables.global.values(:, 2:end);
-  corrected = ~cellfun(@isempty, regexp(columns, '_corrected(_ci_low|_ci_high)?$'));
-  if any(corrected)
-    columns = strrep(columns(corrected), '_corrected', '');
-    index_units = index_units(corrected);
-    numbers = numbers(:, corrected);
-  end
+  corrected = ~cellfun(@isempty, regexp(tables.global.columns, '_corrected(_ci_low|_ci_high)?$'));
+  columns = strrep(tables.global.columns(corrected), '_corrected', '');
+  index_units = tables.global.units(corrected);
+  numbers = tables.global.values(:, corrected);
   indices = poesy.internal.indices(tables.factors.rows, units, sigma(:, 1), columns(1:6:end), ...
                                    regexprep(index_units(1:6:end), '^(\S+) per .*$', '$1'), numbers(:, 1:6:end), ...
                                    numbers(:, 2:6:end), numbers(:, 3:6:end));

@@ -3,8 +3,7 @@ function result = indices(factors, factor_units, sigma, responses, response_unit
 %   factors, factor_units            {P x 1}  names and SI units of the errors
 %   responses, response_units        {R x 1}
 %   sigma                            [P x 1]  standard deviation of each error, SI
-%   index, index_low, index_high     [P x R]  global index and its interval, SI: response unit per factor unit; the
-%                                             corrected one, or the published one where an older poesy wrote the result
+%   index, index_low, index_high     [P x R]  corrected global index and its interval, SI: response unit per factor unit
 %   effect, effect_low, effect_high  [P x R]  index x sigma, in effect_units {R x 1}: mm, deg
 %   rank                             [P x R]  rank(k, r) is the error that has the k-th largest effect on response r
   result.kind = 'sensitivity';

@@ -7,11 +7,8 @@ function found = quantities_of_groups(result)
     case 'sensitivity'
       found = poesy.internal.effects(result.sensitivity);
     case 'monte-carlo'
-      found = struct('names', {{}}, 'responses', {{}}, 'units', {{}}, 'value', []);
-      if isfield(groups.monte_carlo, 'S1')
-        found = intervals(groups.monte_carlo, 'S1', struct('names', {groups.factors.name}, 'responses', {responses}, ...
-                                                           'units', {none}));
-      end
+      found = intervals(groups.monte_carlo, 'S1', struct('names', {groups.factors.name}, 'responses', {responses}, ...
+                                                         'units', {none}));
     case 'sobol'
       found = total_indices(groups.sobol.aggregated, responses, none);
     case 'allocation'

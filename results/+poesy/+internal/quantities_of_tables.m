@@ -29,10 +29,6 @@ end
 
 % S1.csv: the index of each response, and the ends of its interval.
 function found = first_order(tables)
-  if ~isfield(tables, 'S1')
-    found = struct('names', {{}}, 'responses', {{}}, 'units', {{}}, 'value', []);
-    return
-  end
   s1 = tables.S1;
   responses = regexprep(s1.columns(2:3:end), '^S1_', '');
   found = struct('names', {s1.rows}, 'responses', {responses}, 'units', {repmat({'1'}, numel(responses), 1)}, ...

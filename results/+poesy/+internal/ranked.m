@@ -6,9 +6,6 @@ function table = ranked(kind, found)
       what = 'global index x sigma';
     case 'monte-carlo'
       what = 'first-order index S1';
-      if isempty(found.value)
-        what = 'it has no first-order indices, because an older poesy wrote it or no error varies by itself';
-      end
     case 'sobol'
       what = 'total index ST';
     case 'allocation'  % mean_square_share [N x 1], because an aim without costs has no share of them

@@ -10,7 +10,7 @@ struct Numbers {
   double level = 0.0;
   std::vector<double> values;
   std::vector<double> counts;
-  std::vector<std::uint8_t> newer;
+  std::vector<std::uint8_t> marks;
   std::string text;
 };
 
@@ -20,9 +20,9 @@ const Group<Numbers> kNumbers{
     "Numbers of a test",
     kNumbersLevel,
     {{"column", &Numbers::columns}},
-    {{"values", &Numbers::values, {"line", "column"}, "m", "Values", "", kNumbersLevel},
-     {"counts", &Numbers::counts, {"column"}, "1", "Counts", "", {}, Stored::as_whole_numbers},
-     {"newer", &Numbers::newer, {"line"}, "1", "Not in older files", "newer"},
+    {{"values", &Numbers::values, {"line", "column"}, "m", "Values", kNumbersLevel},
+     {"counts", &Numbers::counts, {"column"}, "1", "Counts", {}, Stored::as_whole_numbers},
+     {"marks", &Numbers::marks, {"line"}, "1", "Not of every study", Presence::where_computed},
      {"text", &Numbers::text, {}, "1", "A text"}}};
 
 struct Thing {
@@ -60,20 +60,28 @@ TEST(Fields, AGroupReadsBackAsItWasWritten) {
   EXPECT_EQ(read.level, 0.5);
   EXPECT_EQ(read.values, numbers.values);
   EXPECT_EQ(read.counts, numbers.counts);
-  EXPECT_EQ(read.newer, numbers.newer);
+  EXPECT_EQ(read.marks, numbers.marks);
   EXPECT_EQ(read.text, "a");
   EXPECT_EQ(number_at(kNumbers.fields[0], read, 4), 5.0);
 }
 
-TEST(Fields, WhatOlderFilesDoNotHaveStaysEmpty) {
+TEST(Fields, WhatAStudyDidNotComputeStaysEmpty) {
   ResultBuilder builder = with_axes();
-  Numbers older = some();
-  older.newer.clear();
-  write_group(builder, kNumbers, older);
-  EXPECT_FALSE(builder.file().exists("/numbers/newer"));
+  Numbers without = some();
+  without.marks.clear();
+  write_group(builder, kNumbers, without);
+  EXPECT_FALSE(builder.file().exists("/numbers/marks"));
   Numbers read;
   read_group(builder.file(), kNumbers, read);
-  EXPECT_TRUE(read.newer.empty());
+  EXPECT_TRUE(read.marks.empty());
+}
+
+TEST(Fields, WhatEveryStudyComputesMayNotBeMissing) {
+  ResultBuilder builder = with_axes();
+  builder.file().make_group("/numbers");
+  builder.add("/numbers/values", {"line", "column"}, some().values, {"m", "Values"});
+  Numbers read;
+  EXPECT_THROW(read_fields(builder.file(), "/numbers", kNumbers.fields, read), h5::Error);
 }
 
 TEST(Fields, AnotherShapeIsRefused) {

@@ -96,15 +96,6 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   }
 }
 
-TEST(ResultFile, OfAnOlderVersionSaysNothingOfOtherSizes) {
-  const TempFolder folder;
-  Example example;
-  SensitivityResult result = example.sensitivity();
-  result.index_change.clear();
-  write_result(folder / "r.h5", example.study, example.poses, result, example.facts);
-  EXPECT_TRUE(sensitivity_of(read_result(folder / "r.h5")).index_change.empty());
-}
-
 TEST(ResultFile, SaysWhatErrorsAndResponsesAre) {
   const TempFolder folder;
   const Example example;

@@ -173,7 +173,14 @@ void set_version(const std::string& path, std::int64_t major, std::int64_t minor
 TEST_F(UnreadableResult, OfANewerMajorVersion) {
   Example().write_sensitivity(path_);
   set_version(path_, 2, 0);
-  expect_contains(message(), "format version 2.0, newer than this program's 1.0");
+  expect_contains(message(), "format version 2.0, newer than this program's 1.0; use the poesy that wrote it (");
+}
+
+TEST_F(UnreadableResult, OfAnOlderMajorVersion) {
+  Example().write_sensitivity(path_);
+  set_version(path_, 0, 9);
+  expect_contains(message(), "format version 0.9, older than this program's 1.0; use the poesy that wrote it (");
+  expect_contains(message(), "), or run the study again");
 }
 
 TEST(NewerMinorVersion, IsRead) {
@@ -247,19 +254,18 @@ TEST(DamagedResult, WithNamesThatLeadElsewhereIsRefused) {
   }
 }
 
-TEST(OlderResult, WithoutDescriptionsIsRead) {
+TEST(DamagedResult, WithoutWhatEveryResultHasIsRefused) {
   const TempFolder folder;
   const std::string path = folder / "r.h5";
-  Example().write_sensitivity(path);
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  ASSERT_GE(H5Ldelete(file, "/factors/description", H5P_DEFAULT), 0);
-  ASSERT_GE(H5Ldelete(file, "/responses/description", H5P_DEFAULT), 0);
-  H5Fclose(file);
-  const StoredResult stored = read_result(path);
-  ASSERT_FALSE(stored.factors.empty());
-  EXPECT_FALSE(stored.factors[0].name.empty());
-  EXPECT_TRUE(stored.factors[0].description.empty());
-  EXPECT_TRUE(stored.responses[0].description.empty());
+  for (const char* name : {"/factors/description", "/factors/distribution", "/poses/condition", "/solver/failed_pose",
+                           "/sensitivity/global_corrected", "/sensitivity/rounding", "/sensitivity/index_change",
+                           "/sensitivity/background", "/sensitivity/history", "/tolerances"}) {
+    Example().write_sensitivity(path);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    ASSERT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0) << name;
+    H5Fclose(file);
+    expect_contains(file_error([&] { read_result(path); }), "is damaged");
+  }
 }
 
 /// What is said of a result in which `change` put something at /strange.

@@ -143,6 +143,11 @@ class Example {
       result.solves.push_back({.by_status = {90 - m, 7, 2, 1, m}, .iterations = 700 + m, .most_iterations = 50});
     }
     result.failures = {{0, PoseIndex(2), {SampleIndex(0), SolveStatus::singular}}};
+    result.effects.conf_level = result.conf_level;
+    result.effects.s1_poses = {0, 2};
+    next = 1000.0;
+    fill(result.effects.bin_error, 2 * kEffectBins);
+    fill_effects(result.effects.effects, fill);
     return result;
   }
 
@@ -158,7 +163,7 @@ class Example {
     result.share_magnitude.clear();
     MachineResult& found = result.machines.emplace();
     found.conf_level = result.conf_level;
-    double next = 1000.0;
+    double next = 2000.0;
     const auto fill = [&](std::vector<double>& values, std::size_t length) {
       for (std::size_t k = 0; k < length; ++k) values.push_back(next += 0.125);
       values.back() = std::numeric_limits<double>::quiet_NaN();
@@ -173,14 +178,7 @@ class Example {
       values->histogram_edges = result.histogram_edges;
       values->histogram_counts = result.histogram_counts;
     }
-    EffectResult& bins = result.effects.emplace();
-    bins.conf_level = result.conf_level;
-    bins.s1_poses = {0, 2};
-    fill(bins.bin_error, 2 * kEffectBins);
-    for (MainEffects* effects : {&bins.effects, &found.effects_on_largest}) {
-      for (auto* list : {&effects->s1, &effects->s1_ci_low, &effects->s1_ci_high}) fill(*list, 4);
-      for (auto* list : {&effects->mean, &effects->ci_low, &effects->ci_high}) fill(*list, 4 * kEffectBins);
-    }
+    fill_effects(found.effects_on_largest, fill);
     YieldResult& yield = found.yield.emplace();
     yield.conf_level = result.conf_level;
     yield.value = 0.75;
@@ -207,6 +205,13 @@ class Example {
                                    .row = {}}},
                        .yield = YieldVerdict{.asked = 0.9}};
     return result;
+  }
+
+  /// Of two errors on two responses. fill(list, length): gives a list its numbers.
+  template <class Fill>
+  static void fill_effects(MainEffects& effects, const Fill& fill) {
+    for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) fill(*list, 4);
+    for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) fill(*list, 4 * kEffectBins);
   }
 
   /// Of both responses: the first is kept, the second is not, at the last pose.

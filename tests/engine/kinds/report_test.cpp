@@ -423,13 +423,6 @@ TEST_F(HtmlReport, SaysWhatItsNamesMean) {
   EXPECT_LT(html.find("<section id=\"what-is-measured\""), html.find("<section id=\"which-errors-matter\""));
   EXPECT_NE(html.find("<td>tilt of the bolt</td>"), std::string::npos);
   EXPECT_EQ(data(html)["about"]["epsilon_1"], "tilt of the bolt");
-  for (auto* things : {&stored.factors, &stored.responses, &stored.pose_coordinates}) {
-    for (NamedUnit& thing : *things) thing.description.clear();
-  }
-  const std::string older = report(result);
-  check_page(older);
-  EXPECT_EQ(older.find("id=\"what-is-measured\""), std::string::npos);
-  EXPECT_EQ(older.find("id=\"names\""), std::string::npos);
 }
 
 // The first error has the larger index, the second the larger mean square, which is what a limit limits.
@@ -509,10 +502,6 @@ TEST_F(HtmlReport, OfCoupledSourcesOpensAtTheLastSize) {
 
 TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
   ReportedResult result = sensitivity();
-  sensitivity_in(result.stored).history.reset();
-  const std::string without = report(result);
-  EXPECT_FALSE(data(without)["figures"].contains("convergence"));
-  EXPECT_NE(without.find("did not keep how its indices settled"), std::string::npos);
   EstimateCourse history{
       {10, 100}, std::vector<double>(8, 0.5), std::vector<double>(8, 0.25), std::vector<double>(8, 1.0)};
   sensitivity_in(result.stored).history = history;
@@ -675,28 +664,6 @@ TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
             std::string::npos)
       << rows;
   EXPECT_NE(rows.find(">0.7071</td><td>mm</td><td class=\"n\">0.1</td>"), std::string::npos) << rows;
-}
-
-TEST_F(HtmlReport, ComparesByTheEstimatorThatBothResultsHave) {
-  const ReportedResult newer = sensitivity();
-  ReportedResult older = newer;
-  older.path = "b.h5";
-  SensitivityResult& found = sensitivity_in(older.stored);
-  for (auto* values :
-       {&found.global_corrected, &found.global_corrected_ci_low, &found.global_corrected_ci_high, &found.rounding}) {
-    values->clear();
-  }
-  using Pair = std::pair<const ReportedResult*, const ReportedResult*>;
-  for (const auto& [a, b] : {Pair(&newer, &older), Pair(&older, &newer)}) {
-    const Json page = data(report(*a, *b));
-    const std::vector<float> effects = array(page, page["figures"]["side-by-side"]["quantities"][0]["value"]);
-    const std::vector<std::string> responses = page["figures"]["side-by-side"]["choices"][0]["options"];
-    const std::size_t r = responses[0] == newer.stored.responses[0].name ? 0 : 1;
-    const double scale = newer.stored.factor_sigma[0] / display(newer.stored.responses[0]).si;
-    for (const std::size_t at : {r * 2, 4 + r * 2}) {
-      EXPECT_FLOAT_EQ(effects.at(at), static_cast<float>(sensitivity_of(newer.stored).global[0] * scale)) << at;
-    }
-  }
 }
 
 TEST_F(HtmlReport, WarnsOfErrorsTooSmallToTell) {

@@ -22,6 +22,20 @@ inline StoredSensitivity& sensitivity_in(StoredResult& result) { return found_in
 inline MonteCarloResult& monte_carlo_in(StoredResult& result) { return found_in<MonteCarloResult>(result); }
 inline StoredCoupling& coupling_in(StoredResult& result) { return found_in<StoredCoupling>(result); }
 
+/// Gives a sensitivity result these global indices [R x P], which hold at a tenth of the sizes, with intervals of no
+/// width. Precondition: it has its errors and responses.
+inline void set_indices(StoredResult& result, const std::vector<double>& indices) {
+  StoredSensitivity& found = sensitivity_in(result);
+  found.responses = result.responses.size();
+  found.factors = result.factors.size();
+  for (auto* values : {&found.global, &found.global_ci_low, &found.global_ci_high, &found.global_corrected,
+                       &found.global_corrected_ci_low, &found.global_corrected_ci_high}) {
+    *values = indices;
+  }
+  found.rounding.assign(found.responses, 0.0);
+  found.index_change.assign(indices.size(), 0.0);
+}
+
 /// The tables that the result's kind has, its errors ranked by this response.
 inline std::vector<Table> result_tables(const StoredResult& result, const std::string& ranked_by,
                                         RowOrder order = RowOrder::effect) {

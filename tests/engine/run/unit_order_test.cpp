@@ -26,11 +26,11 @@ std::string hash_of(const Study& study, const Model& model, const std::vector<st
     const WorkUnit unit = plan.unit(u);
     cells.merge(unit.slot * plan.poses().size() + unit.pose.value, stats[u]);
   }
+  SensitivityResult result =
+      sensitivity_result(plan, std::move(cells), background_responses(plan, model), response_rounding(model), 0.95);
+  result.index_change.assign(result.responses * result.factors, 0.0);  // found by other solves, after these
   const test::TempFolder folder;
-  write_result(
-      folder / "r.h5", study, poses,
-      sensitivity_result(plan, std::move(cells), background_responses(plan, model), response_rounding(model), 0.95),
-      {});
+  write_result(folder / "r.h5", study, poses, std::move(result), {});
   return verify_result(folder / "r.h5").computed;
 }
 

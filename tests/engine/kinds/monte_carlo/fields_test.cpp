@@ -150,11 +150,10 @@ TEST_F(MonteCarloFile, KeepsWhatMachinesDid) {
   EXPECT_EQ(found.conf_level, written.conf_level);
   expect_same(found.largest, written.largest);
   expect_same(found.rms, written.rms);
-  const EffectResult effects = *example_.machines().effects;
-  ASSERT_TRUE(monte_carlo_of(stored).effects);
-  EXPECT_EQ(monte_carlo_of(stored).effects->s1_poses, effects.s1_poses);
-  expect_same(monte_carlo_of(stored).effects->bin_error, effects.bin_error);
-  expect_same(monte_carlo_of(stored).effects->effects, effects.effects);
+  const EffectResult effects = example_.machines().effects;
+  EXPECT_EQ(monte_carlo_of(stored).effects.s1_poses, effects.s1_poses);
+  expect_same(monte_carlo_of(stored).effects.bin_error, effects.bin_error);
+  expect_same(monte_carlo_of(stored).effects.effects, effects.effects);
   expect_same(found.effects_on_largest, written.effects_on_largest);
   expect_same(*found.yield, *written.yield);
   ASSERT_TRUE(stored.verdicts && stored.verdicts->yield);
@@ -171,20 +170,6 @@ TEST_F(MonteCarloFile, KeepsWhatMachinesDid) {
   EXPECT_EQ(file.shape("/monte_carlo/S1"), (h5::Shape{2, 2}));
 }
 
-/// It was written before there were root mean squares, intervals of quantiles, histograms and limits.
-TEST(OlderMonteCarloFile, IsReadWithoutWhatItDoesNotHave) {
-  const StoredResult stored = read_result(POESY_TEST_DATA "/monte_carlo_0_1.h5");
-  const MonteCarloResult& found = monte_carlo_of(stored);
-  EXPECT_TRUE(found.quantiles_ci_low.empty());
-  EXPECT_TRUE(found.histogram_counts.empty());
-  EXPECT_FALSE(stored.verdicts);
-  ASSERT_EQ(found.overall_rms.size(), found.responses);
-  const double mean = found.overall_mean[0];
-  const auto n = static_cast<double>(found.overall_count[0]);
-  EXPECT_DOUBLE_EQ(found.overall_rms[0],
-                   std::sqrt(mean * mean + found.overall_std[0] * found.overall_std[0] * (n - 1) / n));
-}
-
 std::string first_lines(const std::string& text, std::size_t count) {
   std::size_t end = 0;
   for (std::size_t n = 0; n < count; ++n) end = text.find('\n', end) + 1;
@@ -193,7 +178,7 @@ std::string first_lines(const std::string& text, std::size_t count) {
 
 TEST_F(MonteCarloFile, IsExportedPoseByPose) {
   const std::string tables = folder_.file("tables");
-  EXPECT_EQ(export_tables(path_, tables).size(), 10u);
+  EXPECT_EQ(export_tables(path_, tables).size(), 13u);
   EXPECT_EQ(
       first_lines(test::read_bytes(tables + "/monte_carlo_linear_deformation.csv"), 2),
       "pose,mean [m],mean_ci_low [m],mean_ci_high [m],std [m],min [m],max [m],count,q_0.05 [m],q_0.995 [m],rms [m],"

@@ -114,13 +114,13 @@ TEST(Machines, FindTheYieldOfALinearModel) {
     EXPECT_NEAR(yield.gradient[p], kGradient[p], half * kErrors / 1.96);
     EXPECT_LT(half, 0.1 * std::abs(kGradient[p]));
     // Each error makes a third of the variance.
-    EXPECT_NEAR(found.effects->effects.s1[p], 1.0 / 3.0, 0.02);
-    EXPECT_LT(found.effects->effects.s1_ci_low[p], 1.0 / 3.0);
-    EXPECT_GT(found.effects->effects.s1_ci_high[p], 1.0 / 3.0);
+    EXPECT_NEAR(found.effects.effects.s1[p], 1.0 / 3.0, 0.02);
+    EXPECT_LT(found.effects.effects.s1_ci_low[p], 1.0 / 3.0);
+    EXPECT_GT(found.effects.effects.s1_ci_high[p], 1.0 / 3.0);
   }
   for (std::size_t k = 0; k < 3 * kEffectBins; ++k) {
-    const double half = 0.5 * (found.effects->effects.ci_high[k] - found.effects->effects.ci_low[k]);
-    EXPECT_NEAR(found.effects->effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects->bin_error[k],
+    const double half = 0.5 * (found.effects.effects.ci_high[k] - found.effects.effects.ci_low[k]);
+    EXPECT_NEAR(found.effects.effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects.bin_error[k],
                 half * 4.9 / 1.96);
   }
 }
@@ -158,7 +158,7 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
   }
   for (std::size_t p = 0; p < 3; ++p) {
     const double share = std::pow(LinearModel::kSlopes[p] * study.errors.by_factor[p].standard_deviation(), 2) / all;
-    EXPECT_NEAR(found.effects->effects.s1[p], share, 0.02) << p;
+    EXPECT_NEAR(found.effects.effects.s1[p], share, 0.02) << p;
   }
 }
 
@@ -228,16 +228,15 @@ TEST(MonteCarloEffects, AreThoseOfALinearModel) {
   study.analysis.draws = Draws::per_pose;
   asked_of<MonteCarloOptions>(study.analysis).judge = Judge::rms;
   const MonteCarloResult found = run(study, LinearModel());
-  ASSERT_TRUE(found.effects);
-  EXPECT_EQ(found.effects->s1_poses, (std::vector<std::uint64_t>{0, 1, 2, 4, 5, 6, 8, 9}));
+  EXPECT_EQ(found.effects.s1_poses, (std::vector<std::uint64_t>{0, 1, 2, 4, 5, 6, 8, 9}));
   for (std::size_t p = 0; p < 3; ++p) {
-    const double half = 0.5 * (found.effects->effects.s1_ci_high[p] - found.effects->effects.s1_ci_low[p]);
-    EXPECT_NEAR(found.effects->effects.s1[p], 1.0 / 3.0, half * 4.0 / 1.96);
+    const double half = 0.5 * (found.effects.effects.s1_ci_high[p] - found.effects.effects.s1_ci_low[p]);
+    EXPECT_NEAR(found.effects.effects.s1[p], 1.0 / 3.0, half * 4.0 / 1.96);
     EXPECT_LT(half, 0.02);
   }
   for (std::size_t k = 0; k < 3 * kEffectBins; ++k) {
-    const double half = 0.5 * (found.effects->effects.ci_high[k] - found.effects->effects.ci_low[k]);
-    EXPECT_NEAR(found.effects->effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects->bin_error[k],
+    const double half = 0.5 * (found.effects.effects.ci_high[k] - found.effects.effects.ci_low[k]);
+    EXPECT_NEAR(found.effects.effects.mean[k], LinearModel::kSlopes[k / kEffectBins] * found.effects.bin_error[k],
                 half * 4.9 / 1.96);
   }
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <span>
 
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
@@ -36,6 +37,10 @@ StoredResult example() {
   found.overall_min = {1e-6, 0.0625};
   found.overall_max = {1.25e-2, 3.0};
   found.overall_quantiles = {1.75e-3, 8.5e-3, 0.4375, 1.25};
+  found.effects.s1_poses = {0, 1, 2};
+  found.effects.effects.s1 = {0.25, 0.625, 0.5, 0.125};
+  found.effects.effects.s1_ci_low = {0.125, 0.5, 0.375, 0.0};
+  found.effects.effects.s1_ci_high = {0.375, 0.75, 0.625, 0.25};
   found.solves.resize(3);
   for (SolveCounts& solves : found.solves) solves.by_status[0] = 12000;
   return result;
@@ -57,7 +62,16 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
             "ratio               1         0.5     0.75     2        2     1  1.75   inf        0\n"
             "low, high: 95 % interval of the largest q_0.95, from order statistics; inf: too few samples for an\n"
             "end. poses like it: other poses whose interval reaches above low\n"
-            "linear_deformation: the largest q_0.95 is at pose 0, but its samples do not tell it from pose 1\n");
+            "linear_deformation: the largest q_0.95 is at pose 0, but its samples do not tell it from pose 1\n"
+            "\n"
+            "First-order indices S1: the part of a response's variance that an error makes alone\n"
+            "error      linear_deformation    low   high  ratio    low   high\n"
+            "epsilon_1               0.625  0.5    0.75   0.125  0      0.25\n"
+            "delta_1                 0.25   0.125  0.375  0.5    0.375  0.625\n"
+            "added up over 3 poses; low, high: 95 % interval\n"
+            "linear_deformation: the indices sum to 0.875; what is missing from 1 is what errors do together. A\n"
+            "response without sign makes such interaction of its own, so an error with a small index is not one\n"
+            "without effect\n");
 }
 
 TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
@@ -85,16 +99,6 @@ TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
             "linear_deformation: the largest q_0.95 is at pose 9 (z -181 mm), but its samples do not tell it from pose "
             "8 (z -182 mm), pose 7 (z -183 mm), pose 6 (z -184 mm), pose 5 (z -185 mm), pose 4 (z -186 mm) "
             "and 3 others");
-}
-
-TEST(MonteCarloTable, OfAnOlderResultHasNoIntervals) {
-  StoredResult result = example();
-  monte_carlo_in(result).quantiles_ci_low.clear();
-  monte_carlo_in(result).quantiles_ci_high.clear();
-  const Table table = monte_carlo_tables(result).at(1);
-  EXPECT_EQ(table.rows[0].back().text, "-");
-  EXPECT_EQ(table.rows[0][6].text, "0");
-  EXPECT_TRUE(table.notes.empty());
 }
 
 TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
@@ -163,10 +167,14 @@ TEST(MonteCarloTable, NamesTheWorstOfThePosesThatAreKnown) {
 TEST(MonteCarloTable, ShowsTheHeadlineAlone) {
   StoredResult result = example();
   result.headline = {1};
-  for (const Table& table : monte_carlo_tables(result)) {
+  const std::vector<Table> tables = monte_carlo_tables(result);
+  ASSERT_EQ(tables.size(), 3U);
+  for (const Table& table : std::span(tables).first(2)) {
     ASSERT_EQ(table.rows.size(), 1U);
     EXPECT_EQ(table.rows[0][0].text, "ratio");
   }
+  ASSERT_EQ(tables[2].columns.size(), 4U);  // the error, and the index with its interval
+  EXPECT_EQ(tables[2].columns[1].name, "S1_ratio");
 }
 
 TEST(DefaultRanking, IsTheFirstLengthOfTheHeadline) {

@@ -20,11 +20,7 @@ StoredResult example() {
   result.factor_sigma = {1e-3, 1e-2, 1e-3, 1e-3};
   result.responses = {{"x", "m"}, {"y", "m"}};
   sensitivity_in(result).fidelities = {"exact", "first-order"};
-  sensitivity_in(result).responses = 2;
-  sensitivity_in(result).factors = 4;
-  sensitivity_in(result).global = {1.0, 0.5, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0};
-  sensitivity_in(result).global_ci_low = sensitivity_in(result).global;
-  sensitivity_in(result).global_ci_high = sensitivity_in(result).global;
+  set_indices(result, {1.0, 0.5, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0});
   FidelityResult& found = sensitivity_in(result).fidelity.emplace();
   found.relative_discrepancy = {1e-4, 0.01, kNaN, kInfinity, 2e-5, -0.04, kNaN, kNaN};
   found.nonlinearity = {5e-4, 0.07, kNaN, kInfinity, 6e-4, 0.03, kNaN, kNaN};

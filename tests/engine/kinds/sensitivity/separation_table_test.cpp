@@ -16,11 +16,7 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
   result.factors = {{"q_1", "m"}, {"theta_1", "rad"}, {"b_1", "m"}};
   result.factor_sigma = {1e-3, 1e-2, 1e-3};
   result.responses = {{"position", "m"}};
-  sensitivity_in(result).responses = 1;
-  sensitivity_in(result).factors = 3;
-  sensitivity_in(result).global = {1.0, 0.5, 0.0};
-  sensitivity_in(result).global_ci_low = sensitivity_in(result).global;
-  sensitivity_in(result).global_ci_high = sensitivity_in(result).global;
+  set_indices(result, {1.0, 0.5, 0.0});
   EXPECT_EQ(result_tables(result, "position").size(), 1U);
   SeparationResult& found = sensitivity_in(result).separation.emplace();
   const double none = std::numeric_limits<double>::quiet_NaN();

@@ -212,15 +212,5 @@ TEST_F(ToleranceFiles, ExportHasTheSameRows) {
             "delta_1,0,1,2,6010,7010,1,0.125,0.001,1\n");
 }
 
-TEST_F(ToleranceFiles, ExportLeavesThemOutWithoutABackground) {
-  StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
-  EXPECT_TRUE(has_tolerances(stored));
-  sensitivity_in(stored).background.clear();
-  EXPECT_FALSE(has_tolerances(stored));
-  for (const std::string& path : export_tables(stored, folder_ / "tables")) {
-    EXPECT_EQ(path.find("tolerances"), std::string::npos) << path;
-  }
-}
-
 }  // namespace
 }  // namespace poesy::test

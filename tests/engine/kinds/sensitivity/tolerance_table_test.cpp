@@ -23,14 +23,8 @@ ResponseTolerances example() {
   return found;
 }
 
-StoredResult result() {
-  StoredResult stored = ranked_result();
-  sensitivity_in(stored).factor_limb = {1, 1, 2, 3};
-  return stored;
-}
-
 TEST(ToleranceTable, HasTolerancesInTheUnitOfEachError) {
-  Table table = tolerance_table(result(), example());
+  Table table = tolerance_table(ranked_result(), example());
   EXPECT_EQ(table.notes[0],
             "equal effect: as much as delta_b = 1 mm; with these, predicted root mean square of x: 0.5 mm");
   table.notes.clear();
@@ -39,9 +33,9 @@ TEST(ToleranceTable, HasTolerancesInTheUnitOfEachError) {
             "                              equal\n"
             "error      kind     limb     effect  unit      index        low       high  share\n"
             "                                           [mm/unit]  [mm/unit]  [mm/unit]    [%]\n"
-            "delta_b    linear      1     1       mm        0.4        0.3        0.5       25\n"
-            "epsilon_a  angular     1     0.2292  deg       1.745      1.571      3.491     75\n"
-            "delta_c    linear      2  no effect  mm        0.3        0.2        0.35       0\n"
+            "delta_b    linear      1     1       mm        0.6        0.5        0.7       25\n"
+            "epsilon_a  angular     1     0.2292  deg       2.618      2.443      4.363     75\n"
+            "delta_c    linear      2  no effect  mm        0.8        0.7        0.85       0\n"
             "delta_a    linear      3          -  mm            -          -          -      -\n");
 }
 
@@ -49,7 +43,7 @@ TEST(ToleranceTable, OfALimitHasBothWaysToShareIt) {
   ResponseTolerances found = example();
   found.limit =
       LimitTolerances{.limit = 1e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
-  const Table table = tolerance_table(result(), found);
+  const Table table = tolerance_table(ranked_result(), found);
   EXPECT_EQ(table.columns[4].name, "limit_equal_effect");
   EXPECT_EQ(table.rows[0][4].text, "0.1");
   EXPECT_EQ(table.rows[0][5].text, "1000");
@@ -66,10 +60,10 @@ bool says(const Table& table, std::string_view words) {
 
 TEST(ToleranceTable, OfALimitSaysWhatItLeavesOut) {
   ResponseTolerances found = example();
-  EXPECT_FALSE(says(tolerance_table(result(), found), "kind allocation"));
+  EXPECT_FALSE(says(tolerance_table(ranked_result(), found), "kind allocation"));
   found.limit =
       LimitTolerances{.limit = 1e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
-  const Table table = tolerance_table(result(), found);
+  const Table table = tolerance_table(ranked_result(), found);
   EXPECT_TRUE(
       says(table, "standard deviations under a limit on one root mean square, without costs, bounds or a yield"));
   EXPECT_TRUE(says(table, "A study of kind allocation finds the tolerances of a drawing, with a certificate"));
@@ -77,7 +71,7 @@ TEST(ToleranceTable, OfALimitSaysWhatItLeavesOut) {
 }
 
 TEST(ToleranceTable, SaysByHowMuchALimitMayBeExceeded) {
-  StoredResult stored = result();
+  StoredResult stored = ranked_result();
   ResponseTolerances found = example();
   found.limit =
       LimitTolerances{.limit = 3e-4, .equal_effect = {1e-4, 2e-4, 3e-4, 4e-4}, .equal_tolerance = {1.0, 1.0, 1.0, 1.0}};
@@ -90,7 +84,7 @@ TEST(ToleranceTable, SaysByHowMuchALimitMayBeExceeded) {
 }
 
 TEST(ToleranceTable, SaysWhichErrorsAreNotNormal) {
-  StoredResult stored = result();
+  StoredResult stored = ranked_result();
   stored.factor_distribution = {"normal", "uniform", "triangular", "uniform"};
   EXPECT_TRUE(says(tolerance_table(stored, example()),
                    "3 of 4 errors are not normal in the study (uniform, triangular): the tolerance is still"));

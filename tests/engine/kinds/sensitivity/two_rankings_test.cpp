@@ -22,7 +22,7 @@ StoredResult with_effects(const std::vector<double>& effects) {
   StoredResult result = ranked_result();
   result.factors[3].name = "delta_d";
   for (std::size_t p = 0; p < effects.size(); ++p) {
-    sensitivity_in(result).global[p] = effects[p] / result.factor_sigma[p];
+    sensitivity_in(result).global_corrected[p] = effects[p] / result.factor_sigma[p];
   }
   return result;
 }
@@ -111,8 +111,7 @@ TEST(TwoRankings, SayWhenTheMetricsPointsDiffer) {
   EXPECT_NE(rankings.remarks[1].find("different points"), std::string::npos);
 }
 
-// A file of an older version does not say by which metric it is.
-TEST(TwoRankings, ClaimNothingOfAMetricThatIsNotKnown) {
+TEST(TwoRankings, ClaimNothingOfAMetricWhereOneWeighsNothing) {
   const StoredResult a = by_platform();
   const StoredResult b = with_effects({1e-3, 2e-3, 3e-3, 0.0});
   const TwoRankings rankings = two_rankings({a, "a.h5", "gap", {}}, {b, "b.h5", "x", {}});
