@@ -4,6 +4,8 @@
     bare_root.py         the first command under "Start": it must end well, print the ranked table and the published
                          ranking beside it, and leave results and reports; nothing that only tests need may be installed for it
     bare_root.py test    the second command: all tests must pass
+    bare_root.py python  the third command: what it prints as the next step must rank the errors, the environment must have all
+                         that use_python.py asks for, and a second run must take in what has changed in the sources
 
 It makes the root with mmdebstrap from this machine's sources of Debian packages, clones the commit that is checked out
 here into it, and removes it at the end. It must be started as root; what it mounts, only its own processes see.
@@ -25,6 +27,9 @@ ERRORS = 25  # of the published study
 MOST_PACKAGES = 165
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
+FOR_PYTHON = {"python3-numpy"}  # of these
+MOST_FOR_PYTHON = 290
+ENVIRONMENT = "build/python-venv"
 RESULTS = ("build/2upr-rpu-platform.h5", "build/2upr-rpu-published.h5")
 REPORTS = ("build/2upr-rpu-platform.html", "build/2upr-rpu-both.html")
 HOSTS = "127.0.0.1 localhost\n::1 localhost\n"
@@ -65,12 +70,12 @@ def commands(readme):
 
 
 def command_of(readme, wanted):
-    """The first command; with "test" the one that runs the tests."""
+    """The first command; with "test" or "python" the one that has this word."""
     found = commands(readme)
-    if wanted == "test":
-        found = [command for command in found if command.split() == ["./quickstart", "test"]]
+    if wanted:
+        found = [command for command in found if command.split() == ["./quickstart", wanted]]
     if not found:
-        raise Fault("README.md's code block under '## Start' does not have ./quickstart test")
+        raise Fault(f"README.md's code block under '## Start' does not have ./quickstart {wanted}")
     return found[0]
 
 
@@ -140,18 +145,36 @@ def check_comparison(output):
         raise Fault("the published ranking is not another one")
 
 
-def check_packages(before, after):
+def check_packages(before, after, python=False):
     """That little was installed, and nothing that only tests need."""
-    unneeded = sorted(FOR_TESTS_ALONE & after)
+    unneeded = sorted((FOR_TESTS_ALONE - (FOR_PYTHON if python else set())) & after)
+    most = MOST_FOR_PYTHON if python else MOST_PACKAGES
     if unneeded:
         raise Fault(f"packages of tests are installed for the program: {', '.join(unneeded)}")
-    if len(after - before) > MOST_PACKAGES:
-        raise Fault(f"{len(after - before)} packages are installed; {MOST_PACKAGES} are allowed")
+    if len(after - before) > most:
+        raise Fault(f"{len(after - before)} packages are installed; {most} are allowed")
 
 
 def check_tests(output):
     if not re.search(r"^100% tests passed, 0 tests failed out of [1-9]\d{2,}", output, re.MULTILINE):
         raise Fault("not all tests passed")
+
+
+def next_step(output):
+    """What ./quickstart python says to type next: the lines below its last heading, to the first empty one."""
+    found = re.search(r"^== Next: .*\n((?:.+\n)+)", output, re.MULTILINE)
+    if not found or f"{ENVIRONMENT}/bin/activate" not in found[1] or "import poesy" not in found[1]:
+        raise Fault("./quickstart python does not say how to activate the environment and what to do then")
+    return found[1]
+
+
+def check_python_ranking(output):
+    """That the errors of the published study are ranked, the one that matters most first."""
+    rows = re.findall(r"^ *(\d+) +((?:delta|epsilon)_\d_\d_[xyz]) +([\d.]+) ", output, re.MULTILINE)
+    if len(rows) < 20 or [int(rank) for rank, _, _ in rows] != list(range(1, len(rows) + 1)):
+        raise Fault(f"Python prints {len(rows)} lines of a ranking, not the first 20")
+    if rows[0][1] != "epsilon_1_1_x" or not 0.5 < float(rows[0][2]) < 0.7:
+        raise Fault(f"Python's first error is {rows[0][1]} with {rows[0][2]} mm, not epsilon_1_1_x with 0.6 mm")
 
 
 def installed(root):
@@ -224,6 +247,22 @@ def check_program(root, output):
         run([*ENTER, root, f"/{CLONE}/build/release/bin/poesy", "verify", f"/{CLONE}/{name}"])
 
 
+def check_python(root, command, output, clock):
+    """What the command says, what the environment has, and that the command renews it."""
+    print("== What ./quickstart python says to type next", flush=True)
+    check_python_ranking(follow(root, next_step(output), clock))
+    follow(root, f"echo '== The environment' && {ENVIRONMENT}/bin/python -B tests/packaging/use_python.py {ENVIRONMENT}", clock)
+    package = root / CLONE / ENVIRONMENT / "lib/python3/dist-packages/poesy"
+    (package / "_dropped.py").write_text("", encoding="utf-8")
+    with (root / CLONE / "engine/python/poesy/__init__.py").open("a", encoding="utf-8") as file:
+        file.write("\nchanged = True\n")
+    clock.begin(f"{command}, again")
+    follow(root, command, clock)
+    follow(root, f"{ENVIRONMENT}/bin/python -c 'import poesy; assert poesy.changed'", clock)
+    if (package / "_dropped.py").exists():
+        raise Fault("./quickstart python leaves a module that is not in the sources")
+
+
 def summary(clock, command, count, output):
     print(f"\n{command} in a bare root: {count} packages installed")
     for name, seconds in clock.seconds():
@@ -245,6 +284,9 @@ def try_out(wanted, work):
     after = installed(root)
     if wanted == "test":
         check_tests(output)
+    elif wanted == "python":
+        check_packages(before, after, python=True)
+        check_python(root, command, output, clock)
     else:
         check_packages(before, after)
         check_program(root, output)
@@ -252,7 +294,7 @@ def try_out(wanted, work):
 
 
 def main():
-    if sys.argv[1:] not in ([], ["test"]):
+    if sys.argv[1:] not in ([], ["test"], ["python"]):
         sys.exit(__doc__)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     work = Path(tempfile.mkdtemp(prefix="poesy-bare-root-"))
