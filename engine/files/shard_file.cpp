@@ -141,11 +141,11 @@ void write_shard(const std::string& path, const Study& study, const SelectedPose
     file.set_attribute("/shard", "shards", std::uint64_t{shard.count});
     for (std::size_t k = 0; k < stages.size(); ++k) {
       const std::string path_of_state = state_path(k);
-      file.write_slices<std::uint8_t>(path_of_state, {stages[k].size()},
-                                      [&](std::size_t first, std::span<std::uint8_t> to) {
-                                        std::ranges::transform(std::span(stages[k]).subspan(first, to.size()),
-                                                               to.begin(), std::to_integer<std::uint8_t>);
-                                      });
+      file.write_slices<std::uint8_t>(
+          path_of_state, {stages[k].size()}, [&](std::size_t first, std::span<std::uint8_t> to) {
+            std::ranges::transform(std::span(stages[k]).subspan(first, to.size()), to.begin(),
+                                   [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+          });
       file.set_attribute(path_of_state, "unit", std::string("1"));
       file.set_attribute(path_of_state, "description", std::string("Accumulators of the shard's cells, as bytes"));
     }

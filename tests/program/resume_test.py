@@ -26,22 +26,16 @@ class Resume(ResumptionTest):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertEqual(self.content_hash(), expected)
 
-    def test_facts_are_of_all_parts(self):
-        """Parts of a quarter of the solves or less: all of them took longer than any one, its start and end included."""
-        start = time.monotonic()
+    def test_solves_are_of_all_parts(self):
         self.undisturbed(SENSITIVITY)
-        quarter = time.monotonic() - start
         self.write("study.toml", SENSITIVITY.replace("12300", "49300"))
         self.stop_early()
-        longest, status = 0.0, 4
-        while status == 4:
-            start = time.monotonic()
-            status = self.resume("--max-wall", f"{quarter} s").returncode
-            longest = max(longest, time.monotonic() - start)
+        seconds = 0.1
+        while (status := self.resume("--max-wall", f"{seconds} s").returncode) == 4:
+            seconds *= 1.5
         self.assertEqual(status, 0)
         with h5py.File(self.folder / "undisturbed.h5") as whole, h5py.File(self.folder / "out.h5") as parts:
             self.assertEqual(parts["run/solves"][()] * 12300, whole["run/solves"][()] * 49300)
-            self.assertGreater(parts["run/wall_seconds"][()], longest)
 
     def test_printed_command(self):
         expected = self.undisturbed(SENSITIVITY)

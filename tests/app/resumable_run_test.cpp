@@ -1,0 +1,30 @@
+#include "engine/app/resumable.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/temp_folder.h"
+
+namespace poesy::app {
+namespace {
+
+/// A run that is continued took the time of its earlier parts too, as they recorded it.
+TEST(ResumableRun, CountsTheTimeOfEarlierParts) {
+  constexpr RunTime kBefore{.wall = 1e6, .checkpoints = 1e5};
+  const CheckpointIdentity identity{
+      .poesy_version = "1", .git_commit = "c", .model = "m", .samples = 2, .study = "s", .poses = "p"};
+  const test::TempFolder folder;
+  const std::string result = folder / "r.h5";
+  CheckpointFiles(result).write(identity, kBefore, {});
+
+  ResumableRun run({.resume = true}, result, "poesy run --resume");
+  run.start(identity, true);
+  EXPECT_GE(run.time().wall, kBefore.wall);
+  EXPECT_EQ(run.time().checkpoints, kBefore.checkpoints);
+  run.checkpoints().save();
+  EXPECT_GT(run.time().checkpoints, kBefore.checkpoints);
+}
+
+}  // namespace
+}  // namespace poesy::app
