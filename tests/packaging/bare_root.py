@@ -99,6 +99,11 @@ def debian_sources(files, codename):
     return "".join(lines), "\n".join(stanzas)
 
 
+def of_suite(sources, codename, suite):
+    """Sources of one Debian release as those of another."""
+    return re.sub(rf"\b{codename}\b", suite, sources)
+
+
 def ranked_rows(output):
     """The rows of the ranked table as dicts by the words of its last heading line."""
     _, found, text = output.partition("== The errors that matter most")
@@ -189,8 +194,8 @@ def run(arguments, **options):
         raise Fault(f"{arguments[0]} ended with exit code {done.returncode}: {' '.join(map(str, arguments))}")
 
 
-def make_root(root, work, packages):
-    """Debian's minimal base with these packages besides, from this machine's sources."""
+def make_root(root, work, packages, suite=None):
+    """Debian's minimal base with these packages besides, from this machine's sources; of its own release, or of another."""
     codename = re.search(r"^VERSION_CODENAME=(\w+)$", Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE)
     if not codename:
         raise Fault("/etc/os-release does not say which Debian this is")
@@ -199,9 +204,9 @@ def make_root(root, work, packages):
     sources = []
     for name, text in zip(("debian.list", "debian.sources"), debian_sources(texts, codename[1])):
         if text:
-            (work / name).write_text(text, encoding="utf-8")
+            (work / name).write_text(of_suite(text, codename[1], suite or codename[1]), encoding="utf-8")
             sources.append(work / name)
-    run(["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", codename[1], root, *sources])
+    run(["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", suite or codename[1], root, *sources])
     shutil.copyfile("/etc/resolv.conf", root / "etc/resolv.conf")
     (root / "etc/hosts").write_text(HOSTS, encoding="utf-8")
     for certificate in Path("/", CERTIFICATES).glob("*.crt"):
@@ -209,12 +214,12 @@ def make_root(root, work, packages):
     run([*ENTER, root, "update-ca-certificates"], stdout=subprocess.DEVNULL)
 
 
-def clone(root, work):
+def clone(root, work, folder=CLONE):
     """The commit that is checked out here, without its history. git may distrust the owner of this repository."""
     (work / ".gitconfig").write_text("[safe]\n\tdirectory = *\n", encoding="utf-8")
     environment = os.environ | {"HOME": str(work), "GIT_CONFIG_NOSYSTEM": "1"}
-    run(["git", "clone", "--quiet", "--depth", "1", f"file://{REPOSITORY}", root / CLONE], env=environment)
-    run(["git", "-C", root / CLONE, "log", "--oneline", "--max-count=1"], env=environment)
+    run(["git", "clone", "--quiet", "--depth", "1", f"file://{REPOSITORY}", root / folder], env=environment)
+    run(["git", "-C", root / folder, "log", "--oneline", "--max-count=1"], env=environment)
 
 
 def follow(root, command, clock, folder=CLONE):

@@ -171,6 +171,12 @@ class BareRootTest(unittest.TestCase):
         self.assertEqual(bare_root.debian_sources(files, "bookworm"), (line, stanza))
         self.expect_fault("no source", bare_root.debian_sources, {"a.sources": other}, "bookworm")
 
+    def test_sources_of_another_release(self):
+        text = "deb http://deb.debian.org/debian bookworm main\nSuites: bookworm bookworm-updates bookworm-security mybookworm\n"
+        other = "deb http://deb.debian.org/debian trixie main\nSuites: trixie trixie-updates trixie-security mybookworm\n"
+        self.assertEqual(bare_root.of_suite(text, "bookworm", "trixie"), other)
+        self.assertEqual(bare_root.of_suite(text, "bookworm", "bookworm"), text)
+
 
 if __name__ == "__main__":
     unittest.main()
