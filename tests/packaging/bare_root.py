@@ -6,6 +6,7 @@
     bare_root.py test    the second command: all tests must pass
     bare_root.py python  the third command: what it prints as the next step must rank the errors, the environment must have all
                          that use_python.py asks for, and a second run must take in what has changed in the sources
+    bare_root.py program python    the first command, then the third in the same root, which saves building the program again
 
 It makes the root with mmdebstrap from this machine's sources of Debian packages, clones the commit that is checked out
 here into it, and removes it at the end. It must be started as root; what it mounts, only its own processes see.
@@ -268,22 +269,18 @@ def check_python(root, command, output, clock):
         raise Fault("./quickstart python leaves a module that is not in the sources")
 
 
-def summary(clock, command, count, output):
-    print(f"\n{command} in a bare root: {count} packages installed")
+def summary(clock, done, output):
+    for command, count in done.items():
+        print(f"\n{command} in a bare root: {count} packages installed", end="")
+    print()
     for name, seconds in clock.seconds():
         print(f"{seconds:8.1f} s  {name[:100]}")
     if "== The errors that matter most" in output:
         print(output.partition("== The errors that matter most\n")[2].partition("\n== ")[0])
 
 
-def try_out(wanted, work):
-    root, clock = work / "root", Clock()
-    command = command_of((REPOSITORY / "README.md").read_text(encoding="utf-8"), wanted)
-    clock.begin("making the root")
-    make_root(root, work, ["ca-certificates", "git"])
-    before = installed(root)
-    clock.begin("cloning")
-    clone(root, work)
+def obey(wanted, command, root, before, clock):
+    """Runs the command and judges what comes of it; gives the number of packages in the root that it needs, and what it says."""
     clock.begin(command)
     output = follow(root, command, clock)
     after = installed(root)
@@ -295,17 +292,33 @@ def try_out(wanted, work):
     else:
         check_packages(before, after)
         check_program(root, output)
-    summary(clock, command, len(after - before), output)
+    return len(after - before), output
+
+
+def try_out(words, work):
+    root, clock, done, outputs = work / "root", Clock(), {}, ""
+    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+    commands_to_try = {command_of(readme, wanted): wanted for wanted in words}
+    clock.begin("making the root")
+    make_root(root, work, ["ca-certificates", "git"])
+    before = installed(root)
+    clock.begin("cloning")
+    clone(root, work)
+    for command, wanted in commands_to_try.items():
+        done[command], output = obey(wanted, command, root, before, clock)
+        outputs += output
+    summary(clock, done, outputs)
 
 
 def main():
-    if sys.argv[1:] not in ([], ["test"], ["python"]):
+    words = sys.argv[1:]
+    if words not in ([], ["test"], ["python"], ["program", "python"]):
         sys.exit(__doc__)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     work = Path(tempfile.mkdtemp(prefix="poesy-bare-root-"))
     work.chmod(0o755)
     try:
-        try_out(" ".join(sys.argv[1:]), work)
+        try_out(["" if word == "program" else word for word in words or ["program"]], work)
     except (Fault, OSError) as fault:
         sys.exit(f"bare_root: {fault}")
     finally:

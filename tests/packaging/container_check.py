@@ -23,7 +23,7 @@ from pathlib import Path
 from bare_root import ENTER, REPOSITORY, Clock, Fault, clone, follow, installed, make_root, run
 
 CONTAINERFILE = "engine/packaging/container/Containerfile"
-SUITES = {"debian:12-slim": "bookworm", "debian:13-slim": "trixie"}
+SUITES = {"docker.io/library/debian:12-slim": "bookworm", "docker.io/library/debian:13-slim": "trixie"}
 # As debuerreotype, which makes Debian's images, sets it for the slim ones.
 SLIM = "".join(f"path-exclude /usr/share/{name}\n" for name in ("doc/*", "groff/*", "info/*", "lintian/overrides/*", "locale/*",
                                                                 "man/*")) + "path-include /usr/share/doc/*/copyright\n"

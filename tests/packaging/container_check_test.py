@@ -10,13 +10,13 @@ import container_check
 from bare_root import REPOSITORY, Clock, Fault
 
 FILE = """# A note
-FROM debian:13-slim AS build
+FROM docker.io/library/debian:13-slim AS build
 COPY . /poesy
 WORKDIR /poesy
 ENV A="b c" D=e
 RUN ./quickstart packages
 
-FROM debian:12-slim
+FROM docker.io/library/debian:12-slim
 COPY --from=build /poesy/poesy_*.deb /packages/
 RUN one && \\
     two
@@ -57,8 +57,8 @@ class ContainerCheckTest(unittest.TestCase):
         self.assertEqual(second.steps[1], ("RUN", "one && two"))
 
     def test_faults_of_the_containerfile(self):
-        for words, old, new in (("not known which Debian", "debian:13-slim", "alpine"), ("does not know ADD", "COPY .", "ADD ."),
-                                ("comes before FROM", "FROM debian:13-slim AS build\n", ""),
+        for words, old, new in (("not known which Debian", "docker.io/library/debian:13-slim", "alpine"), ("does not know ADD", "COPY .", "ADD ."),
+                                ("comes before FROM", "FROM docker.io/library/debian:13-slim AS build\n", ""),
                                 ("one ENTRYPOINT", "ENTRYPOINT", "RUN")):
             self.expect_fault(words, container_check.stages, FILE.replace(old, new))
         for text in ("poesy", '{"a": 1}', "[]", "[1]"):
