@@ -29,7 +29,7 @@ MOST_PACKAGES = 165
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
 FOR_PYTHON = {"python3-numpy"}  # of these
-MOST_FOR_PYTHON = 290
+MOST_FOR_PYTHON = 265
 ENVIRONMENT = "build/python-venv"
 RESULTS = ("build/2upr-rpu-platform.h5", "build/2upr-rpu-published.h5")
 REPORTS = ("build/2upr-rpu-platform.html", "build/2upr-rpu-both.html")
