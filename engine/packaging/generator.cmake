@@ -16,6 +16,11 @@ set(CPACK_PACKAGE_FILE_NAME poesy-${CPACK_PACKAGE_VERSION}-${CPACK_SYSTEM_NAME}-
 if(CPACK_GENERATOR STREQUAL "DEB")
   include(${CMAKE_CURRENT_LIST_DIR}/debian/dependencies.cmake)
   poesy_development_packages(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+  if(CPACK_POESY_PYTHON_VERSION)
+    poesy_python_packages(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS)
+    string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+           ", poesy (= ${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
+  endif()
   set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian/finish.cmake)
 else()
   # As one piece: of components the archive holds only what was installed, not what the script adds.

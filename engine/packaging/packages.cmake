@@ -1,6 +1,7 @@
 # Packages by CPack, from a build folder in which `poesy` and `poesy_completion_and_man` are built:
 #
-#   cpack -G DEB    poesy_VERSION_ARCH.deb, the program with its data, and libpoesy-dev_VERSION_ARCH.deb
+#   cpack -G DEB    poesy_VERSION_ARCH.deb, the program with its data, and libpoesy-dev_VERSION_ARCH.deb; where the build has
+#                   POESY_PYTHON_MODULE and poesy_solver is built, python3-poesy_VERSION_ARCH.deb, both parts of poesy in Python
 #   cpack -G TGZ    the program with its data, for other distributions. Configured by the preset portable it needs the C and
 #                   the C++ library alone: HDF5 is in the program, since other distributions have it under other names and
 #                   Debian's needs forty libraries more, and the others lie beside it.
@@ -50,6 +51,22 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libpoesy-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS cmake)
 
+if(POESY_PYTHON_MODULE)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"Monte Carlo sensitivity engine for precision parallel robots.
+.
+This package has the Python package poesy, which runs the program, reads its
+results as xarray Datasets, ranks errors and draws them, and the compiled
+module poesy_solver, which solves NumPy arrays of errors.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-poesy)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/python/postinst
+      ${CMAKE_CURRENT_LIST_DIR}/debian/python/prerm)
+  set(CPACK_POESY_PYTHON_VERSION ${Python_VERSION})
+endif()
+
 # What generator.cmake and the scripts behind it need to know of the build.
 set(CPACK_POESY_SOURCE ${PROJECT_SOURCE_DIR})
 set(CPACK_POESY_VERSION ${PROJECT_VERSION})
@@ -72,6 +89,9 @@ set(CPACK_POESY_FILE_OF_OpenSSL ${OPENSSL_INCLUDE_DIR}/openssl/crypto.h)
 # for none in programs.
 set(CPACK_POESY_COMPILED_IN ${Eigen3_CONFIG} ${CLI11_CONFIG} ${nlohmann_json_CONFIG}
     ${RANDOM123_INCLUDE_DIR}/Random123/philox.h ${HIGHWAY_INCLUDE_DIR}/hwy/highway.h)
+# The same of the module for Python.
+set(CPACK_POESY_COMPILED_IN_MODULE ${Eigen3_CONFIG} ${RANDOM123_INCLUDE_DIR}/Random123/philox.h
+    ${HIGHWAY_INCLUDE_DIR}/hwy/highway.h ${pybind11_DIR}/pybind11Config.cmake)
 # The preset portable links these statically, and has the program look for others beside itself.
 if(HDF5_USE_STATIC_LIBRARIES)
   list(APPEND CPACK_POESY_COMPILED_IN ${HDF5_C_LIBRARY_hdf5} ${HDF5_C_LIBRARY_sz} ${HDF5_C_LIBRARY_z}

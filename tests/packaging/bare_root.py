@@ -4,6 +4,9 @@
     bare_root.py         the first command under "Start": it must end well, print the ranked table and the published
                          ranking beside it, and leave results and reports; nothing that only tests need may be installed for it
     bare_root.py test    the second command: all tests must pass
+    bare_root.py python  the third command: what it prints as the next step must rank the errors, the environment must have all
+                         that use_python.py asks for, and a second run must take in what has changed in the sources
+    bare_root.py program python    the first command, then the third in the same root, which saves building the program again
 
 It makes the root with mmdebstrap from this machine's sources of Debian packages, clones the commit that is checked out
 here into it, and removes it at the end. It must be started as root; what it mounts, only its own processes see.
@@ -25,6 +28,9 @@ ERRORS = 25  # of the published study
 MOST_PACKAGES = 165
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
+FOR_PYTHON = {"python3-numpy"}  # of these
+MOST_FOR_PYTHON = 265
+ENVIRONMENT = "build/python-venv"
 RESULTS = ("build/2upr-rpu-platform.h5", "build/2upr-rpu-published.h5")
 REPORTS = ("build/2upr-rpu-platform.html", "build/2upr-rpu-both.html")
 HOSTS = "127.0.0.1 localhost\n::1 localhost\n"
@@ -65,12 +71,12 @@ def commands(readme):
 
 
 def command_of(readme, wanted):
-    """The first command; with "test" the one that runs the tests."""
+    """The first command; with "test" or "python" the one that has this word."""
     found = commands(readme)
-    if wanted == "test":
-        found = [command for command in found if command.split() == ["./quickstart", "test"]]
+    if wanted:
+        found = [command for command in found if command.split() == ["./quickstart", wanted]]
     if not found:
-        raise Fault("README.md's code block under '## Start' does not have ./quickstart test")
+        raise Fault(f"README.md's code block under '## Start' does not have ./quickstart {wanted}")
     return found[0]
 
 
@@ -92,6 +98,11 @@ def debian_sources(files, codename):
     if not lines and not stanzas:
         raise Fault(f"apt on this machine has no source for Debian {codename}")
     return "".join(lines), "\n".join(stanzas)
+
+
+def of_suite(sources, codename, suite):
+    """Sources of one Debian release as those of another."""
+    return re.sub(rf"\b{codename}\b", suite, sources)
 
 
 def ranked_rows(output):
@@ -140,18 +151,36 @@ def check_comparison(output):
         raise Fault("the published ranking is not another one")
 
 
-def check_packages(before, after):
+def check_packages(before, after, python=False):
     """That little was installed, and nothing that only tests need."""
-    unneeded = sorted(FOR_TESTS_ALONE & after)
+    unneeded = sorted((FOR_TESTS_ALONE - (FOR_PYTHON if python else set())) & after)
+    most = MOST_FOR_PYTHON if python else MOST_PACKAGES
     if unneeded:
         raise Fault(f"packages of tests are installed for the program: {', '.join(unneeded)}")
-    if len(after - before) > MOST_PACKAGES:
-        raise Fault(f"{len(after - before)} packages are installed; {MOST_PACKAGES} are allowed")
+    if len(after - before) > most:
+        raise Fault(f"{len(after - before)} packages are installed; {most} are allowed")
 
 
 def check_tests(output):
     if not re.search(r"^100% tests passed, 0 tests failed out of [1-9]\d{2,}", output, re.MULTILINE):
         raise Fault("not all tests passed")
+
+
+def next_step(output):
+    """What ./quickstart python says to type next: the lines below its last heading, to the first empty one."""
+    found = re.search(r"^== Next: .*\n((?:.+\n)+)", output, re.MULTILINE)
+    if not found or f"{ENVIRONMENT}/bin/activate" not in found[1] or "import poesy" not in found[1]:
+        raise Fault("./quickstart python does not say how to activate the environment and what to do then")
+    return found[1]
+
+
+def check_python_ranking(output):
+    """That the errors of the published study are ranked, the one that matters most first."""
+    rows = re.findall(r"^ *(\d+) +((?:delta|epsilon)_\d_\d_[xyz]) +([\d.]+) ", output, re.MULTILINE)
+    if len(rows) < 20 or [int(rank) for rank, _, _ in rows] != list(range(1, len(rows) + 1)):
+        raise Fault(f"Python prints {len(rows)} lines of a ranking, not the first 20")
+    if rows[0][1] != "epsilon_1_1_x" or not 0.5 < float(rows[0][2]) < 0.7:
+        raise Fault(f"Python's first error is {rows[0][1]} with {rows[0][2]} mm, not epsilon_1_1_x with 0.6 mm")
 
 
 def installed(root):
@@ -166,8 +195,8 @@ def run(arguments, **options):
         raise Fault(f"{arguments[0]} ended with exit code {done.returncode}: {' '.join(map(str, arguments))}")
 
 
-def make_root(root, work, packages):
-    """Debian's minimal base with these packages besides, from this machine's sources."""
+def make_root(root, work, packages, suite=None):
+    """Debian's minimal base with these packages besides, from this machine's sources; of its own release, or of another."""
     codename = re.search(r"^VERSION_CODENAME=(\w+)$", Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE)
     if not codename:
         raise Fault("/etc/os-release does not say which Debian this is")
@@ -176,9 +205,9 @@ def make_root(root, work, packages):
     sources = []
     for name, text in zip(("debian.list", "debian.sources"), debian_sources(texts, codename[1])):
         if text:
-            (work / name).write_text(text, encoding="utf-8")
+            (work / name).write_text(of_suite(text, codename[1], suite or codename[1]), encoding="utf-8")
             sources.append(work / name)
-    run(["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", codename[1], root, *sources])
+    run(["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", suite or codename[1], root, *sources])
     shutil.copyfile("/etc/resolv.conf", root / "etc/resolv.conf")
     (root / "etc/hosts").write_text(HOSTS, encoding="utf-8")
     for certificate in Path("/", CERTIFICATES).glob("*.crt"):
@@ -186,12 +215,12 @@ def make_root(root, work, packages):
     run([*ENTER, root, "update-ca-certificates"], stdout=subprocess.DEVNULL)
 
 
-def clone(root, work):
+def clone(root, work, folder=CLONE):
     """The commit that is checked out here, without its history. git may distrust the owner of this repository."""
     (work / ".gitconfig").write_text("[safe]\n\tdirectory = *\n", encoding="utf-8")
     environment = os.environ | {"HOME": str(work), "GIT_CONFIG_NOSYSTEM": "1"}
-    run(["git", "clone", "--quiet", "--depth", "1", f"file://{REPOSITORY}", root / CLONE], env=environment)
-    run(["git", "-C", root / CLONE, "log", "--oneline", "--max-count=1"], env=environment)
+    run(["git", "clone", "--quiet", "--depth", "1", f"file://{REPOSITORY}", root / folder], env=environment)
+    run(["git", "-C", root / folder, "log", "--oneline", "--max-count=1"], env=environment)
 
 
 def follow(root, command, clock, folder=CLONE):
@@ -224,41 +253,72 @@ def check_program(root, output):
         run([*ENTER, root, f"/{CLONE}/build/release/bin/poesy", "verify", f"/{CLONE}/{name}"])
 
 
-def summary(clock, command, count, output):
-    print(f"\n{command} in a bare root: {count} packages installed")
+def check_python(root, command, output, clock):
+    """What the command says, what the environment has, and that the command renews it."""
+    print("== What ./quickstart python says to type next", flush=True)
+    check_python_ranking(follow(root, next_step(output), clock))
+    follow(root, f"echo '== The environment' && {ENVIRONMENT}/bin/python -B tests/packaging/use_python.py {ENVIRONMENT}", clock)
+    package = root / CLONE / ENVIRONMENT / "lib/python3/dist-packages/poesy"
+    (package / "_dropped.py").write_text("", encoding="utf-8")
+    with (root / CLONE / "engine/python/poesy/__init__.py").open("a", encoding="utf-8") as file:
+        file.write("\nchanged = True\n")
+    clock.begin(f"{command}, again")
+    follow(root, command, clock)
+    follow(root, f"{ENVIRONMENT}/bin/python -c 'import poesy; assert poesy.changed'", clock)
+    if (package / "_dropped.py").exists():
+        raise Fault("./quickstart python leaves a module that is not in the sources")
+
+
+def summary(clock, done, output):
+    for command, count in done.items():
+        print(f"\n{command} in a bare root: {count} packages installed", end="")
+    print()
     for name, seconds in clock.seconds():
         print(f"{seconds:8.1f} s  {name[:100]}")
     if "== The errors that matter most" in output:
         print(output.partition("== The errors that matter most\n")[2].partition("\n== ")[0])
 
 
-def try_out(wanted, work):
-    root, clock = work / "root", Clock()
-    command = command_of((REPOSITORY / "README.md").read_text(encoding="utf-8"), wanted)
-    clock.begin("making the root")
-    make_root(root, work, ["ca-certificates", "git"])
-    before = installed(root)
-    clock.begin("cloning")
-    clone(root, work)
+def obey(wanted, command, root, before, clock):
+    """Runs the command and judges what comes of it; gives the number of packages in the root that it needs, and what it says."""
     clock.begin(command)
     output = follow(root, command, clock)
     after = installed(root)
     if wanted == "test":
         check_tests(output)
+    elif wanted == "python":
+        check_packages(before, after, python=True)
+        check_python(root, command, output, clock)
     else:
         check_packages(before, after)
         check_program(root, output)
-    summary(clock, command, len(after - before), output)
+    return len(after - before), output
+
+
+def try_out(words, work):
+    root, clock, done, outputs = work / "root", Clock(), {}, ""
+    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+    commands_to_try = {command_of(readme, wanted): wanted for wanted in words}
+    clock.begin("making the root")
+    make_root(root, work, ["ca-certificates", "git"])
+    before = installed(root)
+    clock.begin("cloning")
+    clone(root, work)
+    for command, wanted in commands_to_try.items():
+        done[command], output = obey(wanted, command, root, before, clock)
+        outputs += output
+    summary(clock, done, outputs)
 
 
 def main():
-    if sys.argv[1:] not in ([], ["test"]):
+    words = sys.argv[1:]
+    if words not in ([], ["test"], ["python"], ["program", "python"]):
         sys.exit(__doc__)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     work = Path(tempfile.mkdtemp(prefix="poesy-bare-root-"))
     work.chmod(0o755)
     try:
-        try_out(" ".join(sys.argv[1:]), work)
+        try_out(["" if word == "program" else word for word in words or ["program"]], work)
     except (Fault, OSError) as fault:
         sys.exit(f"bare_root: {fault}")
     finally:

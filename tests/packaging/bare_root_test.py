@@ -18,6 +18,7 @@ On Debian 12:
 ```
 ./quickstart          # installs, builds, runs
 ./quickstart test     # all tests
+./quickstart python   # for Python
 ```
 
 ## Other
@@ -28,6 +29,16 @@ On Debian 12:
 """
 NAMES = [f"{kind}_{limb}_{joint}_{axis}" for kind in ("epsilon", "delta") for limb in "123" for joint in "10"
          for axis in "xyz"][:25]
+SAID = """== Installing
+  1  epsilon_9_9_x
+== Next: activate the environment
+. build/python-venv/bin/activate
+python -c '
+import poesy
+print()'
+
+More: a page
+"""
 PRINTED = """== Building: rank  error
 == The errors that matter most
 Effect of each error on gap
@@ -74,11 +85,13 @@ class BareRootTest(unittest.TestCase):
     def test_commands_of_the_readme(self):
         self.assertEqual(bare_root.command_of(README, ""), "./quickstart")
         self.assertEqual(bare_root.command_of(README, "test"), "./quickstart test")
+        self.assertEqual(bare_root.command_of(README, "python"), "./quickstart python")
 
     def test_readme_without_the_block(self):
         for old, new in (("## Start", "## Begin"), ("./quickstart          #", "make          #")):
             self.expect_fault("no code block", bare_root.command_of, README.replace(old, new), "")
         self.expect_fault("does not have", bare_root.command_of, README.replace("start test", "start tests"), "test")
+        self.expect_fault("have ./quickstart python", bare_root.command_of, README.replace("start python", "start"), "python")
 
     def test_whole_table(self):
         bare_root.check_table(printed())
@@ -115,6 +128,36 @@ class BareRootTest(unittest.TestCase):
         self.expect_fault("npm", bare_root.check_packages, set(), few | {"npm"})
         self.expect_fault("166 packages", bare_root.check_packages, few, few | {str(n) for n in range(166)})
 
+    def test_packages_for_python(self):
+        few = {"g++", "python3-numpy"}
+        bare_root.check_packages(set(), few, python=True)
+        self.expect_fault("python3-numpy", bare_root.check_packages, set(), few)
+        self.expect_fault("octave", bare_root.check_packages, set(), few | {"octave"}, True)
+        many = {str(n) for n in range(bare_root.MOST_FOR_PYTHON + 1)}
+        self.expect_fault(f"{len(many)} packages", bare_root.check_packages, set(), many, True)
+
+    def test_next_step(self):
+        self.assertEqual(bare_root.next_step(SAID), SAID.partition("environment\n")[2].partition("\nMore")[0])
+        for old, new in (("== Next", "== Then"), ("bin/activate", "bin/python"), ("import poesy", "import")):
+            self.expect_fault("does not say", bare_root.next_step, SAID.replace(old, new))
+
+    def test_ranking_in_python(self):
+        rows = [[str(k + 1), NAMES[k], f"{0.6 - 0.02 * k:.3g}", "0.5"] for k in range(20)]
+
+        def check(change=as_is):
+            changed = [list(row) for row in rows]
+            change(changed)
+            bare_root.check_python_ranking("rank  name\n" + "".join(f"  {'  '.join(row)}\n" for row in changed))
+
+        check()
+        for words, change in {
+                "19 lines": lambda rows: rows.pop(),
+                "20 lines": set_cell(3, 0, "9"),
+                "first error is epsilon_3_3_z": set_cell(0, 1, "epsilon_3_3_z"),
+                "with 0.9 mm": set_cell(0, 2, "0.9"),
+        }.items():
+            self.expect_fault(words, check, change)
+
     def test_tests(self):
         bare_root.check_tests("...\n100% tests passed, 0 tests failed out of 1200\n")
         for line in ("99% tests passed, 1 tests failed out of 1200", "100% tests passed, 0 tests failed out of 0", ""):
@@ -127,6 +170,12 @@ class BareRootTest(unittest.TestCase):
         files = {"a.sources": f"{stanza}\n{other}", "b.list": f"{line}deb https://example.org cloud-bookworm main\n"}
         self.assertEqual(bare_root.debian_sources(files, "bookworm"), (line, stanza))
         self.expect_fault("no source", bare_root.debian_sources, {"a.sources": other}, "bookworm")
+
+    def test_sources_of_another_release(self):
+        text = "deb http://deb.debian.org/debian bookworm main\nSuites: bookworm bookworm-updates bookworm-security mybookworm\n"
+        other = "deb http://deb.debian.org/debian trixie main\nSuites: trixie trixie-updates trixie-security mybookworm\n"
+        self.assertEqual(bare_root.of_suite(text, "bookworm", "trixie"), other)
+        self.assertEqual(bare_root.of_suite(text, "bookworm", "bookworm"), text)
 
 
 if __name__ == "__main__":

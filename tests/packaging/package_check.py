@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Makes the packages of a build and uses them in a root that holds only Debian's minimal base.
 
-    package_check.py BUILD                     BUILD is a build folder, in which the program is built
+    package_check.py BUILD                     BUILD is a build folder, in which the program is built; where it has
+                                               POESY_PYTHON_MODULE, poesy_solver too, and python3-poesy is one of the packages
     package_check.py BUILD --no-development    without libpoesy-dev and the project that is built with it
     package_check.py BUILD --portable BUILD2   the tarball from BUILD2, configured by the preset portable; it must run in the
                                                root before anything is installed there
 
 The packages come from cpack, and lintian must find no error in them. In the root, `apt-get install ./poesy_*.deb` is all that
 is done before the published study runs; its ranking must be the one that bare_root.py asks for. Then libpoesy-dev: a project
-that knows the package alone is built and run. Then the tarball, and the Python package (engine/python) with its notebook.
+that knows the package alone is built and run. Then the tarball. Then python3-poesy, which the system's Python uses as
+use_python.py says. Then the Python package as pip installs it (engine/python), with its notebook.
 At last the packages are removed, and nothing of them may stay.
 
 It must be started as root; what it mounts, only its own processes see. It needs mmdebstrap, lintian and dpkg-dev.
@@ -36,6 +38,10 @@ INSTALLED = ("usr/bin/poesy", "usr/share/man/man1/poesy.1.gz", "usr/share/bash-c
              "usr/share/zsh/vendor-completions/_poesy", "usr/share/doc/poesy/copyright",
              "usr/share/doc/poesy/changelog.Debian.gz", "usr/share/doc/poesy/changelog.gz",
              "usr/share/doc/poesy/notices/plot.txt", f"{MECHANISMS}/3-rps/3-rps.toml")
+PYTHON_PLACE = "usr/lib/python3/dist-packages"
+INSTALLED_FOR_PYTHON = (f"{PYTHON_PLACE}/poesy/__init__.py", f"{PYTHON_PLACE}/poesy_solver.pyi",
+                        "usr/share/doc/python3-poesy/copyright", "usr/share/doc/python3-poesy/changelog.Debian.gz",
+                        "usr/share/doc/python3-poesy/notices/pybind11-dev.txt")
 RESULTS = ("platform.h5", "published.h5")
 REPORTS = ("platform.html", "both.html")
 # The headings are those of quickstart, by which bare_root.py finds the tables.
@@ -85,6 +91,41 @@ def only_one(folder, pattern):
     return found[0]
 
 
+def has_module(build):
+    """Whether the build has the module for Python, and so cpack a package with it."""
+    cache = (build / "CMakeCache.txt").read_text(encoding="utf-8")
+    return re.search(r"^POESY_PYTHON_MODULE:BOOL=(ON|TRUE|1|YES)$", cache, re.MULTILINE) is not None
+
+
+def debian_packages(folder, python):
+    """Program, libraries and, where it is wanted and only there, the package for Python (else None)."""
+    names = ["poesy_*.deb", "libpoesy-dev_*.deb", *["python3-poesy_*.deb"] * python]
+    found = [only_one(folder, name) for name in names]
+    others = sorted(set(folder.glob("*.deb")) - set(found))
+    if others:
+        raise Fault(f"cpack also makes {others[0].name}")
+    return found if python else [*found, None]
+
+
+def check_python_depends(depends, version, files):
+    """That the package for Python wants the program of its version, and only the Python that its module is compiled for."""
+    modules = re.findall(r"/poesy_solver\.cpython-(\d)(\d+)-\S+\.so$", files, re.MULTILINE)
+    if len(modules) != 1:
+        raise Fault(f"python3-poesy has {len(modules)} compiled modules")
+    major, minor = modules[0]
+    for wanted in (f"poesy (= {version})", f"python3 (>= {major}.{minor}~)", f"python3 (<< {major}.{int(minor) + 1})"):
+        if wanted not in depends.split(", "):
+            raise Fault(f"python3-poesy does not depend on {wanted}, but on {depends}")
+
+
+def look_into_python(package):
+    def told(*words):
+        return subprocess.run(["dpkg-deb", *words], check=True, text=True, stdout=subprocess.PIPE).stdout
+
+    check_python_depends(told("--field", package, "Depends").strip(), told("--field", package, "Version").strip(),
+                         told("--contents", package))
+
+
 def check_lintian(packages):
     """That lintian finds no error; its warnings are shown."""
     done = subprocess.run(["lintian", "--allow-root", "--fail-on", "error", *packages], check=False, text=True,
@@ -103,15 +144,26 @@ def version_of(build):
     return found[1]
 
 
-def check_files(root):
-    """That everything is where Debian's tools look for it, and not empty."""
-    for name in INSTALLED:
+def check_present(root, names):
+    for name in names:
         file = root / name
         if not file.is_file() or file.stat().st_size == 0:
             raise Fault(f"/{name} is missing or empty")
+
+
+def check_files(root):
+    """That everything is where Debian's tools look for it, and not empty."""
+    check_present(root, INSTALLED)
     manual = gzip.decompress((root / "usr/share/man/man1/poesy.1.gz").read_bytes()).decode()
     if not re.search(r"^\.TH ", manual, re.MULTILINE):
         raise Fault("the manual page has no title")
+
+
+def check_python_files(root):
+    """The same for python3-poesy, and that it was compiled for the Python that is installed."""
+    check_present(root, INSTALLED_FOR_PYTHON)
+    if not list((root / PYTHON_PLACE / "poesy/__pycache__").glob("__init__.cpython-*.pyc")):
+        raise Fault("installing python3-poesy does not compile the package")
 
 
 def check_study(root, output):
@@ -143,8 +195,9 @@ def check_needs(text, wanted):
 def check_removed(root):
     """That nothing of the packages is left."""
     places = (*INSTALLED, "usr/share/poesy", "usr/share/doc/poesy", "usr/share/doc/libpoesy-dev", "usr/include/poesy",
-              "usr/lib/cmake/poesy")
+              "usr/lib/cmake/poesy", "usr/share/doc/python3-poesy")
     left = [name for name in places if (root / name).exists()]
+    left += [str(file.relative_to(root)) for file in sorted((root / PYTHON_PLACE).glob("poesy*"))]
     if left:
         raise Fault(f"removed packages leave /{left[0]}")
 
@@ -179,6 +232,16 @@ def use_tarball(root, tarball, wanted, clock):
                          f"{prefix}/bin/poesy verify tarball.h5", clock, HOME), prefix)
 
 
+def use_python_package(root, package, clock):
+    """With what the package depends on, and without what it only recommends."""
+    for file in (package, REPOSITORY / "tests/packaging/use_python.py"):
+        shutil.copy(file, root / HOME)
+    follow(root, f"echo '== Installing {package.name}' && "
+           f"{APT} install --yes --no-install-recommends ./{package.name} && "
+           "echo '== The Python package of the system' && /usr/bin/python3 use_python.py /usr", clock, HOME)
+    check_python_files(root)
+
+
 def use_python(root, clock):
     """Gives engine/python to tests/packaging/python_install.py, at their places in the tree."""
     script = Path("tests/packaging/python_install.py")
@@ -194,7 +257,7 @@ def use_python(root, clock):
 
 
 def remove(root, clock):
-    follow(root, f"echo '== Removing the packages' && {APT} purge --yes '^(lib)?poesy(-dev)?$'", clock, HOME)
+    follow(root, f"echo '== Removing the packages' && {APT} purge --yes '^(lib|python3-)?poesy(-dev)?$'", clock, HOME)
     check_removed(root)
 
 
@@ -208,10 +271,12 @@ def try_out(build, portable, development, work):
     root, clock = work / "root", Clock()
     clock.begin("making the packages")
     folder = make_packages(build, "DEB", work)
-    program, libraries = only_one(folder, "poesy_*.deb"), only_one(folder, "libpoesy-dev_*.deb")
+    program, libraries, python = debian_packages(folder, has_module(build))
     tarball = only_one(make_packages(portable or build, "TGZ", work), "poesy-*.tar.gz")
     clock.begin("lintian")
-    check_lintian([program, libraries])
+    check_lintian([package for package in (program, libraries, python) if package])
+    if python:
+        look_into_python(python)
     clock.begin("making the root")
     make_root(root, work, ["ca-certificates"])
     before = installed(root)
@@ -223,6 +288,8 @@ def try_out(build, portable, development, work):
         use_tarball(root, tarball, "libhdf5", clock)
     if development:
         use_libraries(root, libraries, version_of(build), clock)
+    if python:
+        use_python_package(root, python, clock)
     use_python(root, clock)
     remove(root, clock)
     summary(clock, count)

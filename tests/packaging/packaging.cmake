@@ -13,7 +13,7 @@ add_test(NAME packaging.downstream
 set_tests_properties(packaging.downstream PROPERTIES LABELS install TIMEOUT 600)
 
 # The programs that use a bare root take minutes and root's rights: .ci/run starts them.
-foreach(name IN ITEMS bare_root package_check)
+foreach(name IN ITEMS bare_root package_check use_python container_check)
   add_test(NAME packaging.${name}_finds_faults
            COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/packaging/${name}_test.py)
   set_tests_properties(packaging.${name}_finds_faults PROPERTIES LABELS install)

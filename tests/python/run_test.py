@@ -153,6 +153,19 @@ class Programs(FolderTest):
             with self.assertRaisesRegex(poesy.ProgramNotFound, "not on PATH; .* poesy.program = "):
                 poesy.evaluate("2upr-rpu", [[0, 0, 0]], {"delta_1_1_y": 1})
 
+    def test_of_a_virtual_environment_comes_before_that_on_path(self):
+        path = self.fake("exit 0")
+        (self.folder / "bin").mkdir()
+        in_environment = self.fake("exit 0", "bin/poesy")
+        with mock.patch.dict(os.environ, {"PATH": str(self.folder)}), mock.patch.object(sys, "prefix", str(self.folder)):
+            self.assertEqual(poesy._program.find(), str(Path(PROGRAM).absolute()))  # POESY
+            del os.environ["POESY"]
+            self.assertEqual(poesy._program.find(), str(in_environment))
+            with mock.patch.object(sys, "base_prefix", str(self.folder)):  # not an environment
+                self.assertEqual(poesy._program.find(), str(path))
+            in_environment.unlink()
+            self.assertEqual(poesy._program.find(), str(path))
+
     def test_exit_codes(self):
         cases = {1: poesy.InternalError, 2: poesy.StudyError, 3: poesy.FileError, 4: poesy.Interrupted, 99: poesy.InternalError}
         for code, kind in cases.items():

@@ -5,7 +5,8 @@
 >>> print(result.ranking())                              # doctest: +SKIP
 >>> result.plot.ranking()                                # doctest: +SKIP
 
-The program itself has to be there: on PATH, or where the environment variable POESY or ``poesy.program`` says.
+The program itself has to be there: in the virtual environment, on PATH, or where the environment variable POESY or
+``poesy.program`` says.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ from ._run import run
 __version__ = "0.2.0"
 
 program: str | os.PathLike[str] | None = None
-"""The program to run. ``None``: the environment variable POESY says it, else the first `poesy` on PATH is taken."""
+"""The program to run. ``None``: the environment variable POESY says it, else the one of this virtual environment is taken,
+else the first `poesy` on PATH."""
 
 __all__ = [
     "Coordinate",
@@ -73,8 +75,9 @@ def __getattr__(name: str) -> Any:
         from poesy_solver import Evaluator
     except ImportError as error:
         raise ImportError(
-            f"poesy.Evaluator is in the compiled module poesy_solver, which is not there ({error}); build it with "
-            "cmake -D POESY_PYTHON_MODULE=ON and cmake --install, or use poesy.evaluate, which needs only the program"
+            f"poesy.Evaluator is in the compiled module poesy_solver, which is not there ({error}); ./quickstart python and "
+            "the Debian package python3-poesy install it, cmake -D POESY_PYTHON_MODULE=ON builds it; or use poesy.evaluate, "
+            "which needs only the program"
         ) from error
     return Evaluator
 

@@ -68,7 +68,8 @@ class Finished:
 
 
 def find() -> str:
-    """The program's path: ``poesy.program``, else the environment variable POESY, else the first `poesy` on PATH.
+    """The program's path: ``poesy.program``, else the environment variable POESY, else the one of this virtual environment,
+    else the first `poesy` on PATH.
 
     Raises
     ------
@@ -83,13 +84,20 @@ def find() -> str:
         if found is None:
             raise ProgramNotFound(f"{source} is {os.fspath(named)!r}, which is no program that can be started")
         return str(Path(found).absolute())
-    found = shutil.which("poesy")
+    found = _of_environment() or shutil.which("poesy")
     if found is None:
         raise ProgramNotFound(
             "the program poesy is not on PATH; build or install it, then add its folder to PATH, or set the environment "
             'variable POESY, or poesy.program = "/path/to/poesy"'
         )
     return str(Path(found).absolute())
+
+
+def _of_environment() -> str | None:
+    """The `poesy` that is installed beside this Python in a virtual environment, which is on PATH only while it is active."""
+    if sys.prefix == sys.base_prefix:
+        return None
+    return shutil.which("poesy", path=os.path.join(sys.prefix, "bin"))
 
 
 def call(*arguments: str | os.PathLike[str], folder: Path | None = None) -> str:
