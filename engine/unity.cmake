@@ -73,6 +73,8 @@ function(poesy_unity target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC takes the files of a group for headers, whose types must not depend on a namespace without a name.
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    # With 512 MB before it looks for garbage, GCC takes a tenth less time for a group.
+    target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=524288)
   endif()
   get_target_property(sources ${target} SOURCES)
   get_target_property(folder ${target} SOURCE_DIR)

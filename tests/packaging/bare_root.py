@@ -8,10 +8,12 @@
                          that use_python.py asks for, and a second run must take in what has changed in the sources
     bare_root.py program python    the first command, then the third in the same root, which saves building the program again
 
+With --suite bookworm or --suite trixie the root has that release of Debian; without, it has this machine's.
 It makes the root with mmdebstrap from this machine's sources of Debian packages, clones the commit that is checked out
 here into it, and removes it at the end. It must be started as root; what it mounts, only its own processes see.
 """
 
+import argparse
 import os
 import re
 import shutil
@@ -295,12 +297,12 @@ def obey(wanted, command, root, before, clock):
     return len(after - before), output
 
 
-def try_out(words, work):
+def try_out(words, suite, work):
     root, clock, done, outputs = work / "root", Clock(), {}, ""
     readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
     commands_to_try = {command_of(readme, wanted): wanted for wanted in words}
     clock.begin("making the root")
-    make_root(root, work, ["ca-certificates", "git"])
+    make_root(root, work, ["ca-certificates", "git"], suite)
     before = installed(root)
     clock.begin("cloning")
     clone(root, work)
@@ -311,14 +313,16 @@ def try_out(words, work):
 
 
 def main():
-    words = sys.argv[1:]
-    if words not in ([], ["test"], ["python"], ["program", "python"]):
-        sys.exit(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("words", nargs="*", choices=["program", "test", "python"], default="program", metavar="COMMAND")
+    parser.add_argument("--suite", choices=["bookworm", "trixie"])
+    asked = parser.parse_args()
+    words = asked.words if isinstance(asked.words, list) else [asked.words]
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     work = Path(tempfile.mkdtemp(prefix="poesy-bare-root-"))
     work.chmod(0o755)
     try:
-        try_out(["" if word == "program" else word for word in words or ["program"]], work)
+        try_out(["" if word == "program" else word for word in words], asked.suite, work)
     except (Fault, OSError) as fault:
         sys.exit(f"bare_root: {fault}")
     finally:

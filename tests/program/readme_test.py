@@ -9,7 +9,7 @@ from poesy_program import ProgramTest, main
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 STUDIES = ROOT / "results/2upr-rpu-sensitivity"
-MOST_WORDS = 1500
+MOST_WORDS = 1300
 
 
 def block(language, containing):
@@ -27,22 +27,29 @@ class Readme(ProgramTest):
     def test_its_study_runs_and_is_judged(self):
         study = self.write("machine.toml", block("toml", "poesy-study"))
         self.assertLessEqual(len(study.read_text().splitlines()), 10)
-        done = self.poesy("run", study, "-o", "machine.h5")
-        shown = self.succeeds("show", "machine.h5")
-        verdict = "PASS" if done.returncode == 0 else "FAIL"
-        self.assertIn(done.returncode, (0, 6), done.stderr.decode())
-        self.assertRegex(shown, rf"{verdict}: the yield")
+        text = " ".join(README.split())
+        angle = re.search(r"the angles get `\"([^\"]*)\"`", text)[1]
+        drawing = study.read_text()
+        tighter = drawing.replace("0.01 deg", angle)
+        half = drawing.replace("0.02 mm", "0.01 mm")
+        percentages = re.findall(r"(?<!\d)\d\d\.\d\d(?= % are good everywhere)|(?<=\*\*PASS\*\*, )[\d.]+(?= %)|(?<=as they were: )[\d.]+(?= %)", text)
+        self.assertEqual(len(percentages), 3)
+        for changed, code, verdict, share in zip((drawing, tighter, half), (6, 0, 6), ("FAIL", "PASS", "FAIL"), percentages):
+            self.write("machine.toml", changed)
+            done = self.poesy("run", "machine.toml", "-o", "machine.h5")
+            self.assertEqual(done.returncode, code, done.stderr.decode())
+            self.assertRegex(self.succeeds("show", "machine.h5"), rf"{verdict}: the yield .*: {share} % of 20 000 machines")
 
     def test_its_study_ranks_as_the_readme_says(self):
         analysis = re.search(r"`(analysis = \{ kind = \"sensitivity\".*?\})`", README.replace("\n", " "))[1]
         study = re.sub(r"^analysis = .*$", analysis, block("toml", "poesy-study"), flags=re.MULTILINE)
         self.write("ranking.toml", study)
-        self.succeeds("run", "ranking.toml")
-        for command in block("", "poesy tolerances ranking.h5").splitlines():
-            arguments = re.findall(r'"[^"]*"|\S+', command.split("#")[0])
-            self.assertEqual(arguments[0], "poesy")
-            if arguments[1] != "run":
-                self.succeeds(*(argument.strip('"') for argument in arguments[1:]))
+        for command in block("", "poesy show ranking.h5").splitlines():
+            self.assertEqual(command.split()[0], "poesy")
+            shown = self.succeeds(*command.split("#")[0].split()[1:])
+        ranked = re.findall(r"^ +\d+ +(delta|epsilon)_", shown, re.MULTILINE)
+        angles, errors = map(int, re.search(r"The first (\d+) of (\d+) places are angles", README).groups())
+        self.assertEqual((ranked.index("delta"), len(ranked)), (angles, errors))
 
     def test_its_rankings_are_of_the_published_study(self):
         rankings = (STUDIES / "rankings.txt").read_text(encoding="utf-8").splitlines()
