@@ -4,7 +4,7 @@
 # same type may be in several. So nobody needs to mind which files are compiled together. Compiled alone are files with
 # options of their own (what must have the same bits everywhere), kernels, generated files, and those with
 # `using namespace`.
-set(POESY_UNITY_FILES 20)  # of a group, at most: more save little and take memory
+set(POESY_UNITY_FILES 40)  # of a group, at most: more save little and take memory
 
 # List of the names that a source defines for itself: in namespaces without a name, and as macros.
 function(poesy_internal_names out text)

@@ -106,8 +106,6 @@ double LuFactors::determinant() const { return static_cast<double>(sign_) * pivo
 
 Matrix solve(const ConstMatrix& A, const ConstMatrix& B) { return LuFactors(A).solve(B); }
 
-Matrix solve_by_full_pivots(const ConstMatrix& A, const ConstMatrix& B) { return A.fullPivLu().solve(B); }
-
 Matrix inverse(const ConstMatrix& A) { return LuFactors(A).inverse(); }
 
 }  // namespace poesy::linalg

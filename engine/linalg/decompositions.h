@@ -81,8 +81,6 @@ class LuFactors {
 
 /// X of A X = B, the square A with row pivots. Precondition: A is not singular.
 Matrix solve(const ConstMatrix& A, const ConstMatrix& B);
-/// The same with row and column pivots, which is slower and takes a nearly singular A.
-Matrix solve_by_full_pivots(const ConstMatrix& A, const ConstMatrix& B);
 Matrix inverse(const ConstMatrix& A);  ///< Precondition: A is square and not singular.
 
 }  // namespace poesy::linalg
