@@ -1,8 +1,10 @@
 # The package poesy, installed beside the compiled module (component python): its sources, and the metadata by which Python
-# knows it (importlib.metadata, pip list), which setuptools makes of pyproject.toml as it does for pip.
+# knows it (importlib.metadata, pip list). As for pip, setuptools makes them of pyproject.toml, README.md and the version in
+# poesy/__init__.py.
 set(python_package ${PROJECT_SOURCE_DIR}/engine/python)
 set(python_metadata ${CMAKE_BINARY_DIR}/python_metadata)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${python_package}/pyproject.toml ${python_package}/README.md)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${python_package}/pyproject.toml ${python_package}/README.md
+             ${python_package}/poesy/__init__.py)
 
 file(REMOVE_RECURSE ${python_metadata})
 file(MAKE_DIRECTORY ${python_metadata})
