@@ -2,7 +2,7 @@
 #
 # Files share a group when no two of them define the same name in their namespaces without a name; the same alias of the
 # same type may be in several. So nobody needs to mind which files are compiled together. Compiled alone are files with
-# options of their own (what must have the same bits everywhere), kernels, generated files, and those with
+# options beyond those of their room, kernels, generated files, and those with
 # `using namespace`.
 set(POESY_UNITY_FILES 40)  # of a group, at most: more save little and take memory
 

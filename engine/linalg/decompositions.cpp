@@ -47,6 +47,8 @@ Vector least_squares(const ConstMatrix& A, const ConstVector& b, double threshol
   return factors.compute(A).solve(b);
 }
 
+Matrix least_squares(const ConstMatrix& A, const ConstMatrix& B) { return Eigen::HouseholderQR<Matrix>(A).solve(B); }
+
 Matrix pseudo_inverse(const ConstMatrix& A) { return A.completeOrthogonalDecomposition().pseudoInverse(); }
 
 Matrix orthogonal_complement(const ConstMatrix& A, double threshold) {
@@ -85,27 +87,30 @@ Vector eigenvalues(const ConstMatrix& A) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-LuFactors::LuFactors(const ConstMatrix& A) {
-  const Eigen::PartialPivLU<Matrix> lu(A);
+LuFactors6::LuFactors6(const Matrix6& A) {
+  const Eigen::PartialPivLU<Matrix6> lu(A);
   factors_ = lu.matrixLU();
-  pivots_ = factors_.diagonal();
   places_ = lu.permutationP().indices();
   sign_ = static_cast<int>(lu.permutationP().determinant());
 }
 
-Matrix LuFactors::solve(const ConstMatrix& B) const {
-  Matrix X = Eigen::PermutationMatrix<Eigen::Dynamic>(places_) * B;
-  factors_.triangularView<Eigen::UnitLower>().solveInPlace(X);
-  factors_.triangularView<Eigen::Upper>().solveInPlace(X);
-  return X;
+LuFactors6::Vector6 LuFactors6::solve(const Vector6& b) const {
+  Vector6 x = Eigen::PermutationMatrix<6>(places_) * b;
+  factors_.triangularView<Eigen::UnitLower>().solveInPlace(x);
+  factors_.triangularView<Eigen::Upper>().solveInPlace(x);
+  return x;
 }
 
-Matrix LuFactors::inverse() const { return solve(Matrix::Identity(factors_.rows(), factors_.cols())); }
+LuFactors6::Matrix6 LuFactors6::inverse() const {
+  Matrix6 inverse;
+  for (Eigen::Index column = 0; column < 6; ++column) inverse.col(column) = solve(Matrix6::Identity().col(column));
+  return inverse;
+}
 
-double LuFactors::determinant() const { return static_cast<double>(sign_) * pivots_.prod(); }
+double LuFactors6::determinant() const { return static_cast<double>(sign_) * factors_.diagonal().prod(); }
 
-Matrix solve(const ConstMatrix& A, const ConstMatrix& B) { return LuFactors(A).solve(B); }
+Matrix solve(const ConstMatrix& A, const ConstMatrix& B) { return Eigen::PartialPivLU<Matrix>(A).solve(B); }
 
-Matrix inverse(const ConstMatrix& A) { return LuFactors(A).inverse(); }
+Matrix inverse(const ConstMatrix& A) { return solve(A, Matrix::Identity(A.rows(), A.cols())); }
 
 }  // namespace poesy::linalg

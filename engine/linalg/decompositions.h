@@ -21,7 +21,7 @@ struct SingularValueDecomposition {
   Matrix V;       ///< empty unless it was asked for
 };
 
-/// Of a matrix with at least one row and one column, by one-sided Jacobi rotations.
+/// Of a matrix with at least one row and one column, by Jacobi rotations.
 /// @{
 Vector singular_values(const ConstMatrix& A);
 SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< Without U.
@@ -34,7 +34,11 @@ std::size_t rank(const ConstMatrix& A, double threshold);
 /// The x of the least norm among those with the least |A x - b|. Pivots below threshold times the largest count as 0.
 Vector least_squares(const ConstMatrix& A, const ConstVector& b, double threshold);
 
-/// Moore and Penrose's inverse [columns x rows].
+/// The X with the least |A X - B|, by columns. Precondition: the columns of A are independent. Not finite where they
+/// are not by rounding alone.
+Matrix least_squares(const ConstMatrix& A, const ConstMatrix& B);
+
+/// Moore and Penrose's inverse [columns x rows]. Pivots below the rounding of the largest count as 0.
 Matrix pseudo_inverse(const ConstMatrix& A);
 
 /// An orthonormal base [rows x (rows - rank)] of what is at right angles to all columns of A. Pivots below threshold
@@ -56,26 +60,29 @@ std::optional<Vector> solve_positive_definite(const ConstMatrix& A, const ConstV
 /// Of a symmetric matrix, the smallest first.
 struct EigenDecomposition {
   Vector values;
-  Matrix vectors;  ///< orthonormal columns; empty unless they were asked for
+  Matrix vectors;  ///< orthonormal columns
 };
 EigenDecomposition eigen_decomposition(const ConstMatrix& A);
 Vector eigenvalues(const ConstMatrix& A);
 
-/// P A = L U of a square matrix, with row pivots.
-class LuFactors {
+/// P A = L U of a [6 x 6] matrix, with row pivots. It allocates nothing, so it may be called for each sample.
+class LuFactors6 {
  public:
-  explicit LuFactors(const ConstMatrix& A);
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Places = Eigen::Matrix<int, 6, 1>;
 
-  Matrix solve(const ConstMatrix& B) const;  ///< X of A X = B. Precondition: A is not singular.
-  Matrix inverse() const;                    ///< Precondition: A is not singular.
+  explicit LuFactors6(const Matrix6& A);
+
+  Vector6 solve(const Vector6& b) const;  ///< x of A x = b. Precondition: A is not singular.
+  Matrix6 inverse() const;                ///< Precondition: A is not singular.
   double determinant() const;
-  const Vector& pivots() const { return pivots_; }               ///< diagonal of U
-  const Eigen::VectorXi& row_places() const { return places_; }  ///< where P moves each row of A
+  Vector6 pivots() const { return factors_.diagonal(); }  ///< diagonal of U
+  const Places& row_places() const { return places_; }    ///< where P moves each row of A
 
  private:
-  Matrix factors_;  ///< L below the diagonal, whose own diagonal is 1, and U
-  Vector pivots_;
-  Eigen::VectorXi places_;
+  Matrix6 factors_;  ///< L below the diagonal, whose own diagonal is 1, and U
+  Places places_;
   int sign_;  ///< determinant of P
 };
 

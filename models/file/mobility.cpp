@@ -134,6 +134,7 @@ std::string dependent_of(const Mechanism& unit, const Matrix& rates, Index rank)
 
 void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Matrix& twists, Mobility& found) {
   if (twists.cols() == 0) return;  // nothing moves; Eigen has no rows of a matrix without columns
+  // Where the coordinates are singular, the least rates that come nearest.
   const Matrix rates = linalg::pseudo_inverse(platform_columns(unit, pose)) * twists;
   Matrix chosen(static_cast<Index>(unit.coordinates.size()), rates.cols());
   for (std::size_t c = 0; c < unit.coordinates.size(); ++c) {

@@ -44,7 +44,7 @@ void evaluate(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r,
   }
 }
 
-bool is_singular(const linalg::LuFactors& factors) {
+bool is_singular(const linalg::LuFactors6& factors) {
   const auto pivots = factors.pivots().cwiseAbs();
   return pivots.minCoeff() <= 64.0 * kEpsilon * pivots.maxCoeff();
 }
@@ -103,16 +103,16 @@ ClosureStart::ClosureStart(const Geometry& geometry, const Configuration& nomina
   for (std::size_t i = 0; i < kLimbs; ++i) limbs[i] = limb_with_errors(geometry, nominal, i, kNone);
   Equations equations;
   evaluate(limbs, r_, kNoMotion, equations);
-  const linalg::LuFactors factors(equations.jacobian);
+  const linalg::LuFactors6 factors(equations.jacobian);
   from_residual_ = is_singular(factors) ? Matrix6::Zero() : Matrix6(-factors.inverse());
   Matrix6 swapped;
   swapped << equations.jacobian.rightCols<3>(), equations.jacobian.leftCols<3>();
-  const linalg::LuFactors eliminated(swapped);
+  const linalg::LuFactors6 eliminated(swapped);
   if (!is_singular(factors)) {
     orientation_ = std::copysign(1.0, factors.determinant());
     pivot_sign_ = std::copysign(1.0, eliminated.pivots().prod());
   }
-  const Eigen::VectorXi& places = eliminated.row_places();
+  const linalg::LuFactors6::Places& places = eliminated.row_places();
   for (std::size_t n = 0; n < order_.size(); ++n) {
     order_[n] = static_cast<std::size_t>(places[static_cast<Eigen::Index>(n)]);
   }
@@ -136,7 +136,7 @@ Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const Vecto
     const auto done = static_cast<std::uint32_t>(iteration);
     evaluate(limbs, r, motion, equations);
     if (!equations.residual.allFinite()) return {SolveStatus::non_finite, done - 1};
-    const linalg::LuFactors factors(equations.jacobian);
+    const linalg::LuFactors6 factors(equations.jacobian);
     if (is_singular(factors)) return {SolveStatus::singular, done - 1};
     const Step step = -factors.solve(equations.residual);
     motion.E = lie::exp(Vector3(step.head<3>())) * motion.E;

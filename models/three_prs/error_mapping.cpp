@@ -130,7 +130,7 @@ Corrections corrections(const Geometry& geometry, const Configuration& nominal) 
     found.motions.col(static_cast<Eigen::Index>(i)) = effects.col(static_cast<Eigen::Index>(factor_of(i, Source::q)));
   }
   const Matrix displacements = joint_displacements(nominal);
-  found.best = linalg::pseudo_inverse(displacements * found.motions.topRows<6>()) * displacements;
+  found.best = linalg::least_squares(displacements * found.motions.topRows<6>(), displacements);
   return found;
 }
 

@@ -79,6 +79,9 @@ class IncludeTableTest(unittest.TestCase):
         self.expect_one("engine/run/result.cpp", "#  include <tbb/parallel_for.h>\n", "engine/run/result.cpp:1: ",
                         "oneTBB (<tbb/parallel_for.h>) belongs in runner.cpp")
 
+    def test_decomposition_in_a_room_that_has_eigen(self):
+        self.expect_one("engine/base/solve.cpp", "#include <Eigen/LU>\n", "engine/base/solve.cpp:1: ", "decompositions")
+
     def test_library_that_the_room_may_not_use(self):
         self.expect_one("models/two_legs/model.cpp", "#include <hdf5.h>\n", "models/two_legs/model.cpp:1: ",
                         "models/two_legs may not include HDF5")

@@ -27,11 +27,11 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[2]
 CLONE = "root/poesy"  # inside the root
 ERRORS = 25  # of the published study
-MOST_PACKAGES = 190  # 149 on Debian 12, 184 on Debian 13
+MOST_PACKAGES = {"bookworm": 155, "trixie": 195}  # 143 and 184 are needed
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db"}
 FOR_PYTHON = {"python3-numpy"}  # of these
-MOST_FOR_PYTHON = 310  # 253 on Debian 12, 296 on Debian 13
+MOST_FOR_PYTHON = {"bookworm": 265, "trixie": 310}  # 253 and 296 are needed
 ENVIRONMENT = "build/python-venv"
 RESULTS = ("build/2upr-rpu-platform.h5", "build/2upr-rpu-published.h5")
 REPORTS = ("build/2upr-rpu-platform.html", "build/2upr-rpu-both.html")
@@ -153,10 +153,10 @@ def check_comparison(output):
         raise Fault("the published ranking is not another one")
 
 
-def check_packages(before, after, python=False):
+def check_packages(before, after, suite, python=False):
     """That little was installed, and nothing that only tests need."""
     unneeded = sorted((FOR_TESTS_ALONE - (FOR_PYTHON if python else set())) & after)
-    most = MOST_FOR_PYTHON if python else MOST_PACKAGES
+    most = (MOST_FOR_PYTHON if python else MOST_PACKAGES)[suite]
     if unneeded:
         raise Fault(f"packages of tests are installed for the program: {', '.join(unneeded)}")
     if len(after - before) > most:
@@ -197,19 +197,25 @@ def run(arguments, **options):
         raise Fault(f"{arguments[0]} ended with exit code {done.returncode}: {' '.join(map(str, arguments))}")
 
 
-def make_root(root, work, packages, suite=None):
-    """Debian's minimal base with these packages besides, from this machine's sources; of its own release, or of another."""
+def own_suite():
+    """The release of Debian that this machine has."""
     codename = re.search(r"^VERSION_CODENAME=(\w+)$", Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE)
     if not codename:
         raise Fault("/etc/os-release does not say which Debian this is")
+    return codename[1]
+
+
+def make_root(root, work, packages, suite=None):
+    """Debian's minimal base with these packages too, from this machine's sources; of its own release, or of another."""
+    codename = own_suite()
     places = [Path("/etc/apt/sources.list"), *sorted(Path("/etc/apt/sources.list.d").glob("*"))]
     texts = {str(place): place.read_text(encoding="utf-8") for place in places if place.is_file()}
     sources = []
-    for name, text in zip(("debian.list", "debian.sources"), debian_sources(texts, codename[1])):
+    for name, text in zip(("debian.list", "debian.sources"), debian_sources(texts, codename)):
         if text:
-            (work / name).write_text(of_suite(text, codename[1], suite or codename[1]), encoding="utf-8")
+            (work / name).write_text(of_suite(text, codename, suite or codename), encoding="utf-8")
             sources.append(work / name)
-    run(["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", suite or codename[1], root, *sources])
+    run(["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", suite or codename, root, *sources])
     shutil.copyfile("/etc/resolv.conf", root / "etc/resolv.conf")
     (root / "etc/hosts").write_text(HOSTS, encoding="utf-8")
     for certificate in Path("/", CERTIFICATES).glob("*.crt"):
@@ -281,7 +287,7 @@ def summary(clock, done, output):
         print(output.partition("== The errors that matter most\n")[2].partition("\n== ")[0])
 
 
-def obey(wanted, command, root, before, clock):
+def obey(wanted, command, suite, root, before, clock):
     """Runs the command and judges what comes of it; gives the number of packages in the root that it needs, and what it says."""
     clock.begin(command)
     output = follow(root, command, clock)
@@ -289,10 +295,10 @@ def obey(wanted, command, root, before, clock):
     if wanted == "test":
         check_tests(output)
     elif wanted == "python":
-        check_packages(before, after, python=True)
+        check_packages(before, after, suite, python=True)
         check_python(root, command, output, clock)
     else:
-        check_packages(before, after)
+        check_packages(before, after, suite)
         check_program(root, output)
     return len(after - before), output
 
@@ -307,9 +313,22 @@ def try_out(words, suite, work):
     clock.begin("cloning")
     clone(root, work)
     for command, wanted in commands_to_try.items():
-        done[command], output = obey(wanted, command, root, before, clock)
+        done[command], output = obey(wanted, command, suite, root, before, clock)
         outputs += output
     summary(clock, done, outputs)
+
+
+def in_work_folder(prefix, function):
+    """Calls it with a folder that goes at the end, also when the program is asked to end; a fault ends the program."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    work = Path(tempfile.mkdtemp(prefix=f"poesy-{prefix.replace('_', '-')}-"))
+    work.chmod(0o755)
+    try:
+        function(work)
+    except (Fault, OSError) as fault:
+        sys.exit(f"{prefix}: {fault}")
+    finally:
+        shutil.rmtree(work)
 
 
 def main():
@@ -318,15 +337,8 @@ def main():
     parser.add_argument("--suite", choices=["bookworm", "trixie"])
     asked = parser.parse_args()
     words = asked.words if isinstance(asked.words, list) else [asked.words]
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    work = Path(tempfile.mkdtemp(prefix="poesy-bare-root-"))
-    work.chmod(0o755)
-    try:
-        try_out(["" if word == "program" else word for word in words], asked.suite, work)
-    except (Fault, OSError) as fault:
-        sys.exit(f"bare_root: {fault}")
-    finally:
-        shutil.rmtree(work)
+    in_work_folder("bare_root", lambda work: try_out(["" if word == "program" else word for word in words],
+                                                     asked.suite or own_suite(), work))
 
 
 if __name__ == "__main__":

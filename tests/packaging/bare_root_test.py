@@ -124,18 +124,20 @@ class BareRootTest(unittest.TestCase):
 
     def test_packages(self):
         few = {"g++", "cmake"}
-        bare_root.check_packages(set(), few)
-        self.expect_fault("npm", bare_root.check_packages, set(), few | {"npm"})
-        too_many = {str(n) for n in range(bare_root.MOST_PACKAGES + 1)}
-        self.expect_fault(f"{bare_root.MOST_PACKAGES + 1} packages", bare_root.check_packages, few, few | too_many)
+        bare_root.check_packages(set(), few, "trixie")
+        self.expect_fault("npm", bare_root.check_packages, set(), few | {"npm"}, "trixie")
+        for suite, most in bare_root.MOST_PACKAGES.items():
+            too_many = {str(n) for n in range(most + 1)}
+            self.expect_fault(f"{most + 1} packages", bare_root.check_packages, few, few | too_many, suite)
 
     def test_packages_for_python(self):
         few = {"g++", "python3-numpy"}
-        bare_root.check_packages(set(), few, python=True)
-        self.expect_fault("python3-numpy", bare_root.check_packages, set(), few)
-        self.expect_fault("octave", bare_root.check_packages, set(), few | {"octave"}, True)
-        many = {str(n) for n in range(bare_root.MOST_FOR_PYTHON + 1)}
-        self.expect_fault(f"{len(many)} packages", bare_root.check_packages, set(), many, True)
+        bare_root.check_packages(set(), few, "trixie", python=True)
+        self.expect_fault("python3-numpy", bare_root.check_packages, set(), few, "trixie")
+        self.expect_fault("octave", bare_root.check_packages, set(), few | {"octave"}, "trixie", True)
+        for suite, most in bare_root.MOST_FOR_PYTHON.items():
+            too_many = {str(n) for n in range(most + 1)}
+            self.expect_fault(f"{most + 1} packages", bare_root.check_packages, set(), too_many, suite, True)
 
     def test_next_step(self):
         self.assertEqual(bare_root.next_step(SAID), SAID.partition("environment\n")[2].partition("\nMore")[0])

@@ -13,14 +13,12 @@ import json
 import re
 import shlex
 import shutil
-import signal
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from bare_root import ENTER, REPOSITORY, Clock, Fault, clone, follow, installed, make_root, run
+from bare_root import ENTER, REPOSITORY, Clock, Fault, clone, follow, in_work_folder, installed, make_root, run
 
 CONTAINERFILE = "engine/packaging/container/Containerfile"
 SUITES = {"docker.io/library/debian:12-slim": "bookworm", "docker.io/library/debian:13-slim": "trixie"}
@@ -243,15 +241,7 @@ def try_out(work):
 def main():
     if sys.argv[1:]:
         sys.exit(__doc__)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    work = Path(tempfile.mkdtemp(prefix="poesy-container-"))
-    work.chmod(0o755)
-    try:
-        try_out(work)
-    except (Fault, OSError) as fault:
-        sys.exit(f"container_check: {fault}")
-    finally:
-        shutil.rmtree(work)
+    in_work_folder("container_check", try_out)
 
 
 if __name__ == "__main__":

@@ -21,13 +21,12 @@ import gzip
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-from bare_root import REPOSITORY, Clock, Fault, check_comparison, check_table, follow, installed, make_root, run
+from bare_root import (REPOSITORY, Clock, Fault, check_comparison, check_table, follow, in_work_folder, installed, make_root,
+                       run)
 
 HOME = "root"  # inside the root
 # Nothing here needs to survive a loss of power, and without that care dpkg is several times as fast.
@@ -301,15 +300,8 @@ def main():
     parser.add_argument("--no-development", action="store_true")
     parser.add_argument("--portable", type=Path, metavar="BUILD2")
     asked = parser.parse_args()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    work = Path(tempfile.mkdtemp(prefix="poesy-packages-"))
-    work.chmod(0o755)
-    try:
-        try_out(asked.build.resolve(), asked.portable and asked.portable.resolve(), not asked.no_development, work)
-    except (Fault, OSError) as fault:
-        sys.exit(f"package_check: {fault}")
-    finally:
-        shutil.rmtree(work)
+    in_work_folder("package_check", lambda work: try_out(asked.build.resolve(), asked.portable and asked.portable.resolve(),
+                                                         not asked.no_development, work))
 
 
 if __name__ == "__main__":

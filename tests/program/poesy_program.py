@@ -1,5 +1,6 @@
 """What the tests of the program share: running it, and a study that is quick to solve."""
 
+import functools
 import os
 import re
 import resource
@@ -42,16 +43,20 @@ def with_memory(megabytes, *arguments, cwd=None):
                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
 
 
+@functools.cache
 def least_to_start():
     """Megabytes from which on the program starts. With less the system's loader ends it with 127, or a library that it is
     linked to dies in its own start, before the program's."""
     return 2 + max(megabytes for megabytes in range(20, 200) if with_memory(megabytes, "--version").returncode != 0)
 
 
+@functools.cache
 def least_to_work():
     """Megabytes from which on the program begins to work, as it says with less."""
     said = with_memory(least_to_start(), "models", "3-prs").stderr.decode()
-    return int(re.search(r"this takes (\d+) MB of memory at least", said)[1])
+    found = re.search(r"this takes (\d+) MB of memory at least", said)
+    assert found, f"with {least_to_start()} MB the program says: {said}"
+    return int(found[1])
 
 
 class ProgramTest(unittest.TestCase):

@@ -47,8 +47,6 @@ class Untrusted(ProgramTest):
         return text
 
     def with_memory(self, megabytes, *arguments):
-        if os.environ.get("POESY_SANITIZE"):
-            self.skipTest("a sanitizer takes all address space, and ends a process that lacks memory")
         done = with_memory(megabytes, *arguments, cwd=self.folder)
         return done.returncode, done.stderr.decode()
 
@@ -129,6 +127,11 @@ class Spreadsheets(Untrusted):
 
 
 class Memory(Untrusted):
+    def setUp(self):
+        if os.environ.get("POESY_SANITIZE"):
+            self.skipTest("a sanitizer takes all address space, and ends a process that lacks memory")
+        super().setUp()
+
     def test_little_memory_is_no_damage(self):
         self.run_study(mini())
         least = least_to_start()

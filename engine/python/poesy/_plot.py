@@ -138,7 +138,7 @@ class Plots:
         result = self._result
         if "monte_carlo/main_effect" not in result.groups:
             lacks = f"this result of kind {result.kind} has no main effects"
-            raise NotInResult(f"{result.path}: {lacks}; kind monte-carlo has")
+            raise NotInResult(f"{result.path}: {lacks}; results of kind monte-carlo have them")
         response = result.response(response)
         group = result.to_xarray("monte_carlo/main_effect").sel(response=response)
         factors = result.to_xarray("factors")
