@@ -45,7 +45,7 @@ void evaluate(const std::array<LimbWithErrors, kLimbs>& limbs, const Vector3& r,
 }
 
 bool is_singular(const linalg::LuFactors6& factors) {
-  const auto pivots = factors.pivots().cwiseAbs();
+  const lie::Screw<double> pivots = factors.pivots().cwiseAbs();
   return pivots.minCoeff() <= 64.0 * kEpsilon * pivots.maxCoeff();
 }
 
