@@ -8,10 +8,10 @@
 /// room alone instantiates them. Matrices of fixed size are taken without a copy where they are stored by columns.
 namespace poesy::linalg {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
-using ConstMatrix = Eigen::Ref<const Matrix>;
-using ConstVector = Eigen::Ref<const Vector>;
+using Matrix = Eigen::MatrixXd;                ///< of any size
+using Vector = Eigen::VectorXd;                ///< of any size
+using ConstMatrix = Eigen::Ref<const Matrix>;  ///< a matrix, or a part of one, that is only read
+using ConstVector = Eigen::Ref<const Vector>;  ///< a vector, or a part of one, that is only read
 
 /// A = U diag(values) V^T with U [rows x rows] and V [columns x columns] orthogonal. The last columns of V belong to
 /// singular values of zero where A has more columns than rows.
@@ -59,24 +59,28 @@ std::optional<Vector> solve_positive_definite(const ConstMatrix& A, const ConstV
 
 /// Of a symmetric matrix, the smallest first.
 struct EigenDecomposition {
-  Vector values;
-  Matrix vectors;  ///< orthonormal columns
+  Vector values;   ///< eigenvalues
+  Matrix vectors;  ///< orthonormal columns, in the order of the values
 };
+
+/// Of a symmetric matrix.
+/// @{
 EigenDecomposition eigen_decomposition(const ConstMatrix& A);
-Vector eigenvalues(const ConstMatrix& A);
+Vector eigenvalues(const ConstMatrix& A);  ///< The smallest first.
+/// @}
 
 /// P A = L U of a [6 x 6] matrix, with row pivots. It allocates nothing, so it may be called for each sample.
 class LuFactors6 {
  public:
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Places = Eigen::Matrix<int, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;  ///< what is factored
+  using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< a right side or a solution
+  using Places = Eigen::Matrix<int, 6, 1>;      ///< of rows, counted from 0
 
-  explicit LuFactors6(const Matrix6& A);
+  explicit LuFactors6(const Matrix6& A);  ///< Factors A, which may be singular.
 
-  Vector6 solve(const Vector6& b) const;  ///< x of A x = b. Precondition: A is not singular.
-  Matrix6 inverse() const;                ///< Precondition: A is not singular.
-  double determinant() const;
+  Vector6 solve(const Vector6& b) const;                  ///< x of A x = b. Precondition: A is not singular.
+  Matrix6 inverse() const;                                ///< Precondition: A is not singular.
+  double determinant() const;                             ///< Of A.
   Vector6 pivots() const { return factors_.diagonal(); }  ///< diagonal of U
   const Places& row_places() const { return places_; }    ///< where P moves each row of A
 
