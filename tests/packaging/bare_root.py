@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Does what README.md tells a new user to do, in a root that holds only Debian's minimal base, ca-certificates and git.
 
-    bare_root.py         the first command under "Start": it must end well, print the ranked table and the published
+    bare_root.py         the first command under "Start": it must build without a warning, end well, print the ranked table and the published
                          ranking beside it, and leave results and reports; nothing that only tests need may be installed for it
     bare_root.py test    the second command: all tests must pass
     bare_root.py python  the third command: what it prints as the next step must rank the errors, the environment must have all
@@ -163,6 +163,13 @@ def check_packages(before, after, suite, python=False):
         raise Fault(f"{len(after - before)} packages are installed; {most} are allowed")
 
 
+def check_warnings(output):
+    """That the compiler of this release warns of nothing."""
+    found = re.findall(r"^\S+\.(?:h|cpp|cxx):\d+:\d+: warning: .*$", output, re.MULTILINE)
+    if found:
+        raise Fault(f"the compiler warns {len(found)} times, first: {found[0]}")
+
+
 def check_tests(output):
     if not re.search(r"^100% tests passed, 0 tests failed out of [1-9]\d{2,}", output, re.MULTILINE):
         raise Fault("not all tests passed")
@@ -291,6 +298,7 @@ def obey(wanted, command, suite, root, before, clock):
     """Runs the command and judges what comes of it; gives the number of packages in the root that it needs, and what it says."""
     clock.begin(command)
     output = follow(root, command, clock)
+    check_warnings(output)
     after = installed(root)
     if wanted == "test":
         check_tests(output)

@@ -122,6 +122,10 @@ class BareRootTest(unittest.TestCase):
         self.expect_fault("not compared", bare_root.check_comparison, printed().replace("== The published", "== Its"))
         self.expect_fault("not another one", bare_root.check_comparison, printed().replace("is 0.6,", "is 0.9,"))
 
+    def test_warnings(self):
+        bare_root.check_warnings("rehash: warning: skipping ca-certificates.crt\na.cpp:3:4: note: here\n")
+        self.expect_fault("a.h:3:4", bare_root.check_warnings, "[1/2] Building\n/root/poesy/a.h:3:4: warning: unused [-Wunused]\n")
+
     def test_packages(self):
         few = {"g++", "cmake"}
         bare_root.check_packages(set(), few, "trixie")
