@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Does what README.md tells a new user to do, in a root that holds only Debian's minimal base, ca-certificates and git.
 
-    bare_root.py         the first command under "Start": it must build without a warning, end well, print the ranked table and the published
-                         ranking beside it, and leave results and reports; nothing that only tests need may be installed for it
+    bare_root.py         the first command under "Start": it must build without a warning, end well, print the ranked table and
+                         the published ranking beside it, and leave results and reports; nothing that only tests need may be
+                         installed for it
     bare_root.py test    the second command: all tests must pass
     bare_root.py python  the third command: what it prints as the next step must rank the errors, the environment must have all
                          that use_python.py asks for, and a second run must take in what has changed in the sources
