@@ -280,7 +280,8 @@ class Locks(Untrusted):
         parents = [parent for parent in self.folder.parents if not os.stat(parent).st_mode & 0o001]
         if parents:
             self.skipTest(f"nobody else reaches {parents[0]}")
-        done = subprocess.run([PROGRAM, "run", "study.toml", "-o", "o.h5", "--quiet"], cwd=self.folder, capture_output=True,
+        program = shutil.copy(PROGRAM, self.folder)  # where it was built, others may have no access
+        done = subprocess.run([program, "run", "study.toml", "-o", "o.h5", "--quiet"], cwd=self.folder, capture_output=True,
                               timeout=120, check=False, user=54321, group=54321, extra_groups=[])
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("o.h5.lock: cannot be opened", done.stderr.decode())
