@@ -118,7 +118,7 @@ class Plots(unittest.TestCase):
         cases = {
             ("coupling", "ranking"): "ranks nothing",
             ("identification", "field"): "no values over poses",
-            ("sensitivity", "main_effects"): "kind monte-carlo has",
+            ("sensitivity", "main_effects"): "results of kind monte-carlo have them",
             ("monte-carlo", "yields"): 'draws = "per machine"',
         }
         for (name, picture), words in cases.items():
