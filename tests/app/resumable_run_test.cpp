@@ -18,7 +18,9 @@ TEST(ResumableRun, CountsTheTimeOfEarlierParts) {
   const std::string result = folder / "r.h5";
   CheckpointFiles(result).write(identity, kBefore, {});
 
-  ResumableRun run({.resume = true}, result, "poesy run --resume");
+  ResumeOptions options;
+  options.resume = true;
+  ResumableRun run(options, result, "poesy run --resume");
   run.start(identity, true);
   EXPECT_GE(run.time().wall, kBefore.wall);
   EXPECT_EQ(run.time().checkpoints, kBefore.checkpoints);
