@@ -34,8 +34,7 @@ std::size_t rank(const ConstMatrix& A, double threshold);
 /// The x of the least norm among those with the least |A x - b|. Pivots below threshold times the largest count as 0.
 Vector least_squares(const ConstMatrix& A, const ConstVector& b, double threshold);
 
-/// The X with the least |A X - B|, by columns. Precondition: the columns of A are independent. Not finite where they
-/// are not by rounding alone.
+/// The X whose columns have the least |A x - b|. Precondition: the columns of A are independent.
 Matrix least_squares(const ConstMatrix& A, const ConstMatrix& B);
 
 /// Moore and Penrose's inverse [columns x rows]. Pivots below the rounding of the largest count as 0.
@@ -57,7 +56,7 @@ Matrix cholesky_root(const ConstMatrix& W);
 /// The solution of A x = b, or nothing where the symmetric A is not positive definite.
 std::optional<Vector> solve_positive_definite(const ConstMatrix& A, const ConstVector& b);
 
-/// Of a symmetric matrix, the smallest first.
+/// Eigenvalues and eigenvectors of a symmetric matrix, the smallest value first.
 struct EigenDecomposition {
   Vector values;   ///< eigenvalues
   Matrix vectors;  ///< orthonormal columns, in the order of the values
