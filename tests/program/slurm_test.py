@@ -98,8 +98,8 @@ class SlurmTest(ResumptionTest):
     def test_time_limit(self):
         """A shard that takes longer than its job may goes back into the queue, until it is done; the merge waits."""
         expected = self.undisturbed(LONG)
-        every_half_minute = 35  # Slurm looks for jobs to be signalled
-        shards = self.submit_shards(1, "--time=1", "--signal=B:TERM@55", self.standing(every_half_minute))
+        # Slurm looks every half minute, and later on a busy machine, for jobs to be signalled; their minute must not end.
+        shards = self.submit_shards(1, "--time=1", "--signal=B:TERM@55", self.standing(50))
         merge = self.submit_merge(shards, 1)
         self.completes(shards)
         self.completes(merge)

@@ -156,20 +156,19 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
     }
   };
   double before = chord.enter;
-  std::optional<double> entry;  // where the feasible piece begins
+  bool inside = false;         // whether a feasible piece is open
+  double entry = chord.enter;  // where it begins
   for (std::size_t k = 0; k <= kScanIntervals; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(kScanIntervals);
     const double position = std::lerp(chord.enter, chord.leave, share);
     move_to(position);
     const bool feasible = collector.test(pose).has_value();
-    if (feasible && !entry) entry = k == 0 ? position : refined(position, before);
-    if (!feasible && entry) {
-      keep_piece(*entry, refined(before, position));
-      entry.reset();
-    }
+    if (feasible && !inside) entry = k == 0 ? position : refined(position, before);
+    if (!feasible && inside) keep_piece(entry, refined(before, position));
+    inside = feasible;
     before = position;
   }
-  if (entry) keep_piece(*entry, chord.leave);
+  if (inside) keep_piece(entry, chord.leave);
 }
 
 /// Whether two poses are equal to rounding in every scaled coordinate. Poses are sorted along a
