@@ -189,38 +189,6 @@ POESY_EACH_INSTRUCTION_SET void triangular_quantiles(double half_width, std::spa
   replace_by_quantiles(TriangularTail{half_width}, uniforms);
 }
 
-/// The quantile function that is linear between values[0 .. last], ascending. A draw is below 1, so that its cell is
-/// one.
-[[gnu::always_inline]] inline double between_values(const double* values, double last, double u) {
-  const double place = u * last;
-  const double cell = std::min(std::floor(place), last - 1.0);
-  const double* const low = values + static_cast<std::ptrdiff_t>(cell);
-  return low[0] + (place - cell) * (low[1] - low[0]);
-}
-
-void measured_quantiles(std::span<const double> values, std::span<double> uniforms) {
-  const auto last = static_cast<double>(values.size() - 1);
-  for (double& u : uniforms) u = between_values(values.data(), last, u);
-}
-
-/// Moments about c of a distribution that is uniform between neighbours of these values, each pair equally likely.
-struct BetweenValues {
-  double mean = 0.0;    ///< of x - c
-  double square = 0.0;  ///< of (x - c)^2
-};
-
-BetweenValues moments_between(std::span<const double> values, double c) {
-  BetweenValues sums;
-  for (std::size_t k = 0; k + 1 < values.size(); ++k) {
-    const double a = values[k] - c;
-    const double b = values[k + 1] - c;
-    sums.mean += 0.5 * (a + b);
-    sums.square += (a * a + a * b + b * b) / 3.0;
-  }
-  const auto count = static_cast<double>(values.size() - 1);
-  return {sums.mean / count, sums.square / count};
-}
-
 /// Where in its half a share of a shifted distribution is, strictly inside (0, 1). 2u and 2u - 1 are exact.
 [[gnu::always_inline]] inline double share_in_half(double u) {
   return u < 0.5 ? 2.0 * u : std::max(2.0 * u - 1.0, kSmallestDraw);
@@ -322,13 +290,13 @@ Distribution Distribution::measured(std::vector<double> values) {
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
     throw std::invalid_argument("values must be finite numbers");
   }
-  std::ranges::sort(values);
-  if (values.front() == values.back()) throw std::invalid_argument("values must not all be equal");
-  const double mean = values.front() + moments_between(values, values.front()).mean;
-  Distribution made(Shape::measured, 0.0, std::max(std::abs(values.front()), std::abs(values.back())),
-                    std::sqrt(moments_between(values, mean).square));
-  made.mean_ = mean;
-  made.values_ = std::move(values);
+  const auto [least, greatest] = std::ranges::minmax(values);
+  if (least == greatest) throw std::invalid_argument("values must not all be equal");
+  SmoothedValues parts(std::move(values));
+  Distribution made(Shape::measured, 0.0, std::max(std::abs(parts.least()), std::abs(parts.greatest())),
+                    parts.standard_deviation());
+  made.mean_ = parts.mean();
+  made.parts_ = std::move(parts);
   return made;
 }
 
@@ -363,7 +331,7 @@ double Distribution::centred_quantile(double u) const {
     case Shape::triangular:
       return quantile_of(TriangularTail{half_width_}, u);
     case Shape::measured:
-      return between_values(values_.data(), static_cast<double>(values_.size() - 1), u);
+      return parts_->quantile(u);
   }
   throw std::logic_error("unknown shape of distribution");
 }
@@ -393,7 +361,8 @@ void Distribution::centred_transform(std::span<double> uniforms) const {
     case Shape::triangular:
       return triangular_quantiles(half_width_, uniforms);
     case Shape::measured:
-      return measured_quantiles(values_, uniforms);
+      for (double& u : uniforms) u = parts_->quantile(u);
+      return;
   }
   throw std::logic_error("unknown shape of distribution");
 }

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/random/smoothed_values.h"
 
 namespace poesy {
 
@@ -25,9 +28,8 @@ class Distribution {
   static Distribution uniform(double half_width);     ///< Constant density on +-half_width > 0.
   static Distribution triangular(double half_width);  ///< Density falling linearly from zero error to +-half_width > 0.
 
-  /// Of measured values x_0 <= ... <= x_n, in any order: a share k / n lies below x_k, and the quantile function is
-  /// linear between (Hyndman and Fan 1996, Am. Stat. 50, 361-365, type 7). So no draw is beyond the smallest and the
-  /// largest of them. The mean need not be zero. At least kLeastMeasured values, finite, not all equal.
+  /// As further parts may be (SmoothedValues): with the mean and, with n - 1, the standard deviation of these values.
+  /// The mean need not be zero. At least kLeastMeasured values, finite, not all equal.
   static Distribution measured(std::vector<double> values);
 
   /// The same about a mean that is off by shift >= 0 (as the errors: m or rad), as often up as down: half of all errors
@@ -42,10 +44,11 @@ class Distribution {
   double shift() const { return shift_; }  ///< Of the mean, as often up as down; 0 unless it is shifted.
   double largest() const { return half_width_ + shift_; }  ///< Largest possible magnitude; infinity for the normal.
   double mean() const { return mean_; }                    ///< Of the distribution; 0 unless it is measured.
-  /// The distribution's own standard deviation about its mean: after truncation; with straight lines between measured
-  /// values, hence not the sample's; with the shift, sqrt(s^2 + shift^2) where s is that without it.
+  /// The distribution's own standard deviation about its mean: after truncation; of measured values the sample's, with
+  /// n - 1; with the shift, sqrt(s^2 + shift^2) where s is that without it.
   double standard_deviation() const { return standard_deviation_; }
-  std::span<const double> values() const { return values_; }  ///< Measured, ascending; empty for other shapes.
+  /// What was measured, and what it is spread over; nothing for other shapes.
+  const std::optional<SmoothedValues>& parts() const { return parts_; }
 
   /// The value below which a share u of all draws lies. With a shift something else that is distributed in the same way
   /// for uniform u: -shift + q(2u) for u < 1/2, else shift + q(2u - 1), with q the quantile without the shift. It goes
@@ -74,7 +77,7 @@ class Distribution {
   double shift_ = 0.0;
   double mean_ = 0.0;
   double standard_deviation_;
-  std::vector<double> values_;
+  std::optional<SmoothedValues> parts_;
 };
 
 /// The value below which a share u of a normal with standard deviation sigma lies, to a few units in the last place.

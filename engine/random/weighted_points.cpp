@@ -39,9 +39,11 @@ WeightedPoints weighted_points(const Distribution& distribution) {
     add_piece(-w, 0.0, 0.5, 1.0, found);
     add_piece(0.0, w, 0.5, -1.0, found);
   }
-  const std::span<const double> values = distribution.values();
-  for (std::size_t k = 0; k + 1 < values.size(); ++k) {
-    add_piece(values[k], values[k + 1], 1.0 / static_cast<double>(values.size() - 1), 0.0, found);
+  if (const auto& parts = distribution.parts()) {
+    for (std::size_t k = 1; k < parts->knots().size(); ++k) {
+      const double share = parts->shares()[k] - parts->shares()[k - 1];
+      if (share > 0.0) add_piece(parts->knots()[k - 1], parts->knots()[k], share, 0.0, found);
+    }
   }
   return found;
 }

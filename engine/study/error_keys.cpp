@@ -101,8 +101,8 @@ const InnerRows<Parameters>& distribution_keys() {
                         {Shape::uniform, "between -half_width and half_width"},
                         {Shape::triangular, "likeliest at 0, down to nothing at -half_width and half_width"},
                         {Shape::measured,
-                         "as values scatter that were measured, between the smallest and the largest "
-                         "of them"}},
+                         "as parts that were measured: with the mean and the standard deviation (n - 1) of their "
+                         "values"}},
                        &Parameters::shape),
                    .missing = "write e.g. {}",
                    .example = "\"normal\"",
@@ -213,7 +213,7 @@ std::string distribution_text(const Distribution& distribution, Dimension dimens
   const Shape shape = distribution.shape();
   std::string text = fmt::format("{{ distribution = {}", in_quotes(name(shape)));
   if (shape == Shape::measured)
-    return text + ", values = " + values_text(distribution.values(), dimension, value) + " }";
+    return text + ", values = " + values_text(distribution.parts()->values(), dimension, value) + " }";
   if (shape == Shape::normal || shape == Shape::truncated_normal) {
     text += ", sigma = " + value(distribution.sigma(), dimension);
   }

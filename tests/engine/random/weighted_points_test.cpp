@@ -31,14 +31,16 @@ TEST(WeightedPoints, HaveTheMomentsOfTheTriangular) {
 
 TEST(WeightedPoints, HaveTheMomentsOfMeasuredValuesWithTies) {
   const std::vector<double> values{-0.5, -0.25, -0.25, -0.25, 0.0, 0.125, 0.75, 1.0};
-  expect_moments(Distribution::measured(values), [&](int k) {
+  const Distribution measured = Distribution::measured(values);
+  const double w = measured.half_width();
+  expect_moments(measured, [&](int k) {
     double sum = 0.0;
-    for (std::size_t n = 0; n + 1 < values.size(); ++n) {
-      const double a = values[n];
-      const double b = values[n + 1];
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      const double a = (values[n] - measured.parts()->half_widths()[n]) / w;
+      const double b = (values[n] + measured.parts()->half_widths()[n]) / w;
       sum += a == b ? std::pow(a, k) : (std::pow(b, k + 1) - std::pow(a, k + 1)) / ((k + 1) * (b - a));
     }
-    return sum / static_cast<double>(values.size() - 1);
+    return sum / static_cast<double>(values.size());
   });
 }
 

@@ -93,9 +93,8 @@ TEST(PolynomialScore, LeavesOutWhatIsStated) {
       const double e = uniform.quantile((k + 0.5) / kSteps);
       estimate += score(e) * given(e) / kSteps;
     }
-    const double truth = test::slope_at(1.0, [&](double size) {
-      return test::share_of_measured(std::array{-size, size}, others, limit);
-    });
+    const double truth =
+        test::slope_at(1.0, [&](double size) { return test::share_of_uniform(-size, size, others, limit); });
     return estimate / truth - 1.0;
   };
   EXPECT_NEAR(bias(0.05, 0.9023), 0.25, 0.02);

@@ -161,21 +161,25 @@ inline YieldCase triangular_case(std::span<const double> sigma, double limit) {
   return made;
 }
 
-/// P(|m + e| <= limit) for a normal e and an m that is uniform between neighbours of these values, [n] ascending.
-inline double share_of_measured(std::span<const double> values, double sigma, double limit) {
+/// P(|m + e| <= limit) for a normal e and an m that is uniform from a to b.
+inline double share_of_uniform(double a, double b, double sigma, double limit) {
   // an integral of the normal's distribution function
   const auto integral = [&](double x) {
     const double z = x / sigma;
     const double share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
     return x * share + sigma * std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
   };
+  return (integral(limit - a) - integral(limit - b) - integral(-limit - a) + integral(-limit - b)) / (b - a);
+}
+
+/// The same for an m of which each measured value, none of them equal to others, is spread evenly over its range.
+inline double share_of_measured(const SmoothedValues& parts, double sigma, double limit) {
   double sum = 0.0;
-  for (std::size_t k = 0; k + 1 < values.size(); ++k) {
-    const double a = values[k];
-    const double b = values[k + 1];
-    sum += (integral(limit - a) - integral(limit - b) - integral(-limit - a) + integral(-limit - b)) / (b - a);
+  for (std::size_t k = 0; k < parts.values().size(); ++k) {
+    const double half = parts.half_widths()[k];
+    sum += share_of_uniform(parts.values()[k] - half, parts.values()[k] + half, sigma, limit);
   }
-  return sum / static_cast<double>(values.size() - 1);
+  return sum / static_cast<double>(parts.values().size());
 }
 
 /// A measured error, of values that differ, and a normal one.
@@ -183,15 +187,15 @@ inline YieldCase measured_case(const std::vector<double>& values, double sigma, 
   const Distribution measured = Distribution::measured(values);
   const auto grown = [&](double deviation) {
     std::vector<double> others;
-    for (const double value : measured.values()) {
+    for (const double value : values) {
       others.push_back(measured.mean() + deviation / measured.standard_deviation() * (value - measured.mean()));
     }
-    return share_of_measured(others, sigma, limit);
+    return share_of_measured(SmoothedValues(others), sigma, limit);
   };
   return {{measured, Distribution::normal(sigma)},
           limit,
           {slope_at(measured.standard_deviation(), grown),
-           slope_at(sigma, [&](double other) { return share_of_measured(measured.values(), other, limit); })}};
+           slope_at(sigma, [&](double other) { return share_of_measured(*measured.parts(), other, limit); })}};
 }
 
 }  // namespace poesy::test

@@ -60,10 +60,10 @@ TEST_F(MeasuredErrors, AreReadFromATableBesideTheStudy) {
       read_here(study_text("[errors.override]\n" + measured("delta_1", "hole [mm]") + measured("epsilon_1", "tilt")));
   const Distribution& hole = study.errors.by_factor[0];
   ASSERT_EQ(hole.shape(), Distribution::Shape::measured);
-  ASSERT_EQ(hole.values().size(), 10u);
-  EXPECT_EQ(hole.values().front(), -0.02 * 1e-3);
-  EXPECT_EQ(hole.values().back(), 0.05 * 1e-3);
-  EXPECT_EQ(study.errors.by_factor[1].values().back(), 6e-4);
+  ASSERT_EQ(hole.parts()->values().size(), 10u);
+  EXPECT_EQ(hole.parts()->values().front(), 0.01 * 1e-3);
+  EXPECT_EQ(hole.parts()->values()[2], 0.05 * 1e-3);
+  EXPECT_EQ(study.errors.by_factor[1].parts()->values()[6], 6e-4);
   EXPECT_EQ(study.errors.by_factor[2].shape(), Distribution::Shape::normal);
   EXPECT_EQ(read_here(study_text("[errors.override]\n" + measured("delta_1", "hole"))).errors.by_factor[0], hole);
 }
