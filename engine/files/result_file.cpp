@@ -287,6 +287,8 @@ CsvTable pose_table(const StoredResult& result) {
   return table;
 }
 
+std::string valid_hash(const StoredResult& result) { return result.changed ? std::string() : result.content_sha256; }
+
 const Unit& display(const NamedUnit& named) { return display_unit(dimension_of(named.unit)); }
 
 void write_result(const std::string& path, std::string_view name, const FileKind& kind, const Study& study,
@@ -320,12 +322,12 @@ Verification verify_result(const std::string& path) {
 std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder) {
   CsvTables tables{pose_table(result)};
   kind.append_tables(tables, result);
-  OutputFolder output(folder);
+  OutputFolder output(folder, valid_hash(result));
   for (const CsvTable& table : tables) output.claim(table.name + ".csv");
-  output.open();
   std::vector<std::string> paths;
-  for (const CsvTable& table : tables) paths.push_back(write_csv(folder, table));
-  output.close();
+  output.fill([&] {
+    for (const CsvTable& table : tables) paths.push_back(write_csv(folder, table));
+  });
   return paths;
 }
 

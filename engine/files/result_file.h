@@ -95,6 +95,8 @@ struct StoredResult {
   std::any found;  ///< what the kind alone found, of the kind's own type: found_of()
 };
 
+std::string valid_hash(const StoredResult& result);  ///< Its content_sha256; empty where the content changed since.
+
 /// What a kind alone found. Precondition: `result` is of the kind that has this type.
 template <class Found>
 const Found& found_of(const StoredResult& result) {
@@ -119,10 +121,11 @@ struct Verification {
 /// Recomputes the content hash of a result file. Throws FileError when it cannot be read as one.
 Verification verify_result(const std::string& path);
 
-/// Writes every table of a result of this kind as CSV into a folder, made if missing: one file per table, first line
-/// the column names with their units. engine/RESULT_FILE.md lists them. Only the first column may hold text (names of
-/// factors), nothing is quoted: in Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns
-/// the paths of the files written. Throws FileError; InputError where a file in the folder is not poesy's.
+/// Writes every table of a result of this kind as CSV into a folder, made if missing, in place of the unchanged tables
+/// of another result (OutputFolder): one file per table, first line the column names with their units.
+/// engine/RESULT_FILE.md lists them. Only the first column may hold text (names of factors), nothing is quoted: in
+/// Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns the paths of the files written.
+/// Throws FileError; InputError where a file that would go is not poesy's, or changed.
 std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder);
 
 }  // namespace poesy

@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+import subprocess
 
 from poesy_program import STUDY, ProgramTest, main
 
@@ -41,6 +42,46 @@ class Exports(Csv):
             path.unlink()
         first = self.exported("out.h5", ".")
         self.assertEqual(self.exported("out.h5", "."), first)
+
+    def listed(self, folder):
+        """The result and the files that the folder's list names, after sha256sum has checked it."""
+        checked = subprocess.run(["sha256sum", "--check", "--strict", "--warn", "poesy.sha256"], cwd=self.folder / folder,
+                                 capture_output=True, text=True, check=False)
+        self.assertEqual((checked.returncode, checked.stderr), (0, ""), checked.stdout)
+        lines = (self.folder / folder / "poesy.sha256").read_text().splitlines()
+        results = [line.removeprefix("# content_sha256 ") for line in lines if line.startswith("# content_sha256 ")]
+        self.assertEqual(len(results), 1)
+        return results[0], {line.split("  ")[1] for line in lines if not line.startswith("#")}
+
+    def test_a_folder_has_the_tables_of_one_result(self):
+        self.write("a.toml", STUDY)
+        self.write("b.toml", STUDY.replace("count = 6", "count = 7").replace('"sensitivity"', '"monte-carlo"'))
+        hashes, tables = {}, {}
+        for name in ("a", "b"):
+            self.succeeds("run", f"{name}.toml", "--quiet")
+            tables[name] = self.exported(f"{name}.h5", name)
+            hashes[name] = self.listed(name)[0]
+            self.assertIn(hashes[name], self.succeeds("verify", f"{name}.h5"))
+        self.assertTrue(tables["a"].keys() - tables["b"].keys())
+        for name in ("a", "b", "a", "a"):
+            self.assertEqual(self.exported(f"{name}.h5", "both"), tables[name])
+            self.assertEqual(self.listed("both"), (hashes[name], tables[name].keys() - {"poesy.sha256"}))
+        # A table that was changed is the user's, and so are others in the folder.
+        self.write("both/mine.csv", POSES)
+        self.write("both/global.csv", POSES)
+        before = {path.name: path.read_bytes() for path in (self.folder / "both").iterdir()}
+        done = self.poesy("export", "b.h5", "-d", "both")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"both/global.csv: was changed since poesy wrote it", done.stderr)
+        self.assertIn(b"name another folder with -d", done.stderr)
+        self.assertEqual({path.name: path.read_bytes() for path in (self.folder / "both").iterdir()}, before)
+
+    def test_other_files_of_the_same_result_stay(self):
+        self.write("a.toml", STUDY)
+        self.succeeds("run", "a.toml", "--quiet")
+        tables = self.exported("a.h5", "t").keys()
+        self.succeeds("tolerances", "a.h5", "--response", "linear_deformation", "--extrapolate", "-d", "t")
+        self.assertEqual({path.name for path in (self.folder / "t").iterdir()}, tables | {"tolerances.csv"})
 
     def test_what_is_exported_is_read_again(self):
         """Poses and errors go round twice, and neither they nor the responses lose a bit."""

@@ -182,6 +182,29 @@ class FullDisk(ResumptionTest):
         self.make_room()
         self.assertEqual(self.resume_to_end(), expected)
 
+    def test_export_says_what_is_in_the_folder(self):
+        self.prepare(SENSITIVITY, "4m")
+        self.succeeds("run", "study.toml", "-o", "../a.h5", "--quiet")
+        self.write("study.toml", re.sub("factors = .*", 'factors = "deforming"', SENSITIVITY))  # larger tables of the same names
+        self.succeeds("run", "study.toml", "-o", "../b.h5", "--quiet")
+        self.succeeds("export", "../a.h5", "-d", "t")
+        before = {path.name: path.read_bytes() for path in (self.folder / "t").iterdir()}
+        for room, said in ((0, "the files in t are as they were before"),
+                           (4 * PAGE, r"\d+ of the \d+ files in t are new, any others are those of before: do not use them "
+                                       "together")):
+            self.fill(leave=room)
+            done = self.poesy("export", "../b.h5", "-d", "t")
+            self.assertEqual(done.returncode, 3)
+            self.assertRegex(done.stderr.decode(), rf"cannot be (written|created).*; make room or choose another folder; {said}\n$")
+            after = {path.name: path.read_bytes() for path in (self.folder / "t").iterdir()}
+            self.assertEqual(after.keys(), before.keys())
+            if room == 0:
+                self.assertEqual(after, before)
+            self.make_room()
+        self.succeeds("export", "../b.h5", "-d", "t")
+        self.succeeds("export", "../b.h5", "-d", "u")
+        self.assertEqual(*({path.name: path.read_bytes() for path in (self.folder / name).iterdir()} for name in "tu"))
+
 
 if __name__ == "__main__":
     if IN_NAMESPACE not in os.environ:

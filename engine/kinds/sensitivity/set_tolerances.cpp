@@ -203,27 +203,32 @@ void set_negligible(ResponseTolerances& found, const StoredResult& result) {
   for (const std::size_t p : found.negligible) found.all.equal_effect[p] = result.factor_sigma[p];
 }
 
+/// How to run the studies, and where a tolerance is as large as it may be.
+std::string commands_of(const Confirmation& written) {
+  std::string commands;
+  for (const std::string& study : written.paths) {
+    const std::string outcome = std::filesystem::path(study).replace_extension(".h5").string();
+    commands += "test with: " + shell_command({"poesy", "run", study, "-o", outcome}) + "\n";
+  }
+  for (const std::string& error : written.at_largest) {
+    commands += "  the tolerance of " + error + ", a quarter of the part that it is an error of, and no more\n";
+  }
+  return commands;
+}
+
 /// Writes the table and the studies that test it; says what that was.
 std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found,
                         const Catalog& catalog) {
   const std::string beside = std::filesystem::path(options.result).stem().string() + "_tolerances";
   const std::string folder = options.folder.empty() ? beside : options.folder;
-  OutputFolder output(folder);
+  OutputFolder output(folder, valid_hash(result));
   claim_tolerance_files(output, result, found, catalog);
-  output.open();
+  std::string table;
   std::string commands;
-  if (found.limit) {
-    const Confirmation written = write_confirmation(folder, result, found, catalog);
-    for (const std::string& study : written.paths) {
-      const std::string outcome = std::filesystem::path(study).replace_extension(".h5").string();
-      commands += "test with: " + shell_command({"poesy", "run", study, "-o", outcome}) + "\n";
-    }
-    for (const std::string& error : written.at_largest) {
-      commands += "  the tolerance of " + error + ", a quarter of the part that it is an error of, and no more\n";
-    }
-  }
-  const std::string table = write_tolerances(folder, result, found);
-  output.close();
+  output.fill([&] {
+    if (found.limit) commands = commands_of(write_confirmation(folder, result, found, catalog));
+    table = write_tolerances(folder, result, found);
+  });
   return table + "\n" + commands;
 }
 

@@ -98,14 +98,12 @@ TEST_F(SwappedFiles, ThatMayBeReplaced) {
 
 TEST_F(SwappedFiles, OfTables) {
   {
-    OutputFolder output(folder_.path());
+    OutputFolder output(folder_.path(), {});
     output.claim("a.csv");
-    output.open();
-    folder_.write("a.csv", "z\n0.1\n");
-    output.close();
+    output.fill([&] { folder_.write("a.csv", "z\n0.1\n"); });
   }
   expect_both(others_, folder_ / "a.csv", [&] {
-    OutputFolder output(folder_.path());
+    OutputFolder output(folder_.path(), {});
     try {
       output.claim("a.csv");
       return true;
