@@ -116,11 +116,12 @@ void append_tolerance_columns(CsvTable& table, const StoredResult& result, const
   table.columns.push_back(
       {"mean_square_share", [shares = tolerances.all.mean_square_share](std::size_t p) { return shares[p]; }});
   table.columns.push_back(list_column("index_change", found.index_change, first));
-  std::vector<std::pair<std::string, std::vector<double>>> lists{{"equal_effect", tolerances.all.equal_effect}};
+  std::vector<std::pair<std::string, std::vector<double>>> lists;
   if (tolerances.limit) {
     lists.emplace_back("limit_equal_effect", tolerances.limit->equal_effect);
     lists.emplace_back("limit_equal_tolerance", tolerances.limit->equal_tolerance);
   }
+  lists.emplace_back("equal_effect", tolerances.all.equal_effect);
   for (const auto& [name, list] : lists) {
     table.columns.push_back(
         {heading(name, si_units(result.factors), ""), [values = list](std::size_t p) { return values[p]; }});
@@ -226,7 +227,7 @@ void add_extrapolation_note(std::vector<std::string>& notes, const StoredResult&
 
 std::vector<std::string> notes(const StoredResult& result, const ResponseTolerances& tolerances) {
   std::vector<std::string> list;
-  add_reference_notes(list, result, tolerances);
+  if (!tolerances.limit) add_reference_notes(list, result, tolerances);
   add_limit_notes(list, result, tolerances);
   add_bound_note(list, result, tolerances);
   add_distribution_note(list, result);
@@ -255,9 +256,10 @@ std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTole
       {text_column("kind", "kind", 4),
        [&](std::size_t p) { return text_cell(error_kind(dimension_of(result.factors[p].unit))); }},
       {number_column("limb", "limb", "", 3),
-       [&](std::size_t p) { return count_cell(sensitivity_of(result).factor_limb[p]); }},
-      tolerance("equal_effect", "equal effect", tolerances.all.equal_effect)};
-  if (tolerances.limit) {
+       [&](std::size_t p) { return count_cell(sensitivity_of(result).factor_limb[p]); }}};
+  if (!tolerances.limit) {
+    list.push_back(tolerance("equal_effect", "equal effect", tolerances.all.equal_effect));
+  } else {
     list.push_back(tolerance("limit_equal_effect", "limit, equal effect", tolerances.limit->equal_effect));
     list.push_back(tolerance("limit_equal_tolerance", "limit, equal tolerance", tolerances.limit->equal_tolerance));
   }

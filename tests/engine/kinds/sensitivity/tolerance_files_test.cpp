@@ -89,12 +89,12 @@ TEST_F(ToleranceFiles, TableReadsWithoutKnowingTheProgram) {
   EXPECT_EQ(
       read_bytes(path),
       "factor,kind,limb,unit,display_unit,index_unit,studied_as,index,index_ci_low,index_ci_high,mean_square_share,"
-      "index_change,equal_effect,limit_equal_effect,limit_equal_tolerance,"
-      "equal_effect_display,limit_equal_effect_display,limit_equal_tolerance_display\n"
-      "epsilon_1,angular,1,rad,deg,rad/rad,uniform,0,6000,7000,0,-0.25,inf,0.25,0.25,inf," +
+      "index_change,limit_equal_effect,limit_equal_tolerance,equal_effect,"
+      "limit_equal_effect_display,limit_equal_tolerance_display,equal_effect_display\n"
+      "epsilon_1,angular,1,rad,deg,rad/rad,uniform,0,6000,7000,0,-0.25,0.25,0.25,inf," +
           shortest(0.25 / kDegree) + "," + shortest(0.25 / kDegree) +
-          "\n"
-          "delta_1,linear,1,m,mm,rad/m,normal,2,6010,7010,1,0.125,0.002,0.004,1e-05,2,4,0.01\n");
+          ",inf\n"
+          "delta_1,linear,1,m,mm,rad/m,normal,2,6010,7010,1,0.125,0.004,1e-05,0.002,4,0.01,2\n");
 }
 
 TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
