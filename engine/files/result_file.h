@@ -81,6 +81,7 @@ struct StoredResult {
   std::vector<NamedUnit> responses;          ///< [R]
   std::vector<std::size_t> headline;  ///< positions of the responses that a summary shows: all, unless the model chose
   std::vector<std::size_t> signed_headline;  ///< that a summary of coupled sources shows
+  std::vector<std::size_t> constant;         ///< positions of responses that do not vary (stats/indices.h)
   RunFacts facts;                            ///< of the run, no part of the content
 
   std::vector<double> factor_sigma;              ///< [P] standard deviations of errors that were drawn, SI

@@ -122,6 +122,14 @@ CsvTable sigma_table(const StoredResult& result) {
   return table;
 }
 
+std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies) {
+  std::vector<std::size_t> list;
+  for (std::size_t r = 0; r < varies.size(); ++r) {
+    if (varies[r] == 0) list.push_back(r);
+  }
+  return list;
+}
+
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves) {
   SolverColumns columns;
   for (const SolveCounts& cell : solves) {

@@ -69,6 +69,9 @@ void add_sigma(ResultBuilder& result, const Study& study);
 void read_sigma(const h5::File& file, StoredResult& result);  ///< Fills in `factor_sigma` and `factor_distribution`.
 CsvTable sigma_table(const StoredResult& result);             ///< factors.csv: the standard deviation of each error.
 
+/// Positions of the responses that do not vary. varies: [R] 0 or 1, or empty where all do.
+std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies);
+
 /// How the solves ended, with the counts of each cell along these axes: /solver.
 void add_solver(ResultBuilder& result, const Axes& axes, const std::vector<SolveCounts>& solves);
 /// /solver: how the solves of each cell ended.

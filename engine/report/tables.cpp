@@ -126,11 +126,30 @@ std::string summary_text(const StoredResult& result, const SolveTally& tally, st
   return text;
 }
 
+bool varies(const StoredResult& result, std::size_t response) {
+  return std::ranges::find(result.constant, response) == result.constant.end();
+}
+
+std::string constant_text(const NamedUnit& response) {
+  return response.name +
+         " does not vary: what its samples scatter, if they do, is the rounding of their solves, so no error has "
+         "a share of it";
+}
+
+std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses) {
+  std::ranges::stable_partition(responses, [&](std::size_t r) { return varies(result, r); });
+  return responses;
+}
+
 std::string default_ranking(const StoredResult& result) {
-  for (const std::size_t r : result.headline) {
-    if (dimension_of(result.responses[r].unit) == Dimension::length) return result.responses[r].name;
-  }
-  return result.headline.empty() ? std::string() : result.responses[result.headline.front()].name;
+  const std::vector<std::size_t> order = varying_first(result, result.headline);
+  if (order.empty()) return {};
+  const bool some_vary = varies(result, order.front());
+  const auto is_varying_length = [&](std::size_t r) {
+    return varies(result, r) == some_vary && dimension_of(result.responses[r].unit) == Dimension::length;
+  };
+  const auto first = std::ranges::find_if(order, is_varying_length);
+  return result.responses[first == order.end() ? order.front() : *first].name;
 }
 
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {

@@ -18,7 +18,17 @@ namespace poesy {
 /// What was run and how long it took, a few lines, broken at `width` as by prose_of. tally: of the result.
 std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width);
 
-/// The response a result is ranked by unless asked otherwise: the first length of the headline, else its first.
+/// Whether a response varies, or the result does not say.
+bool varies(const StoredResult& result, std::size_t response);
+
+/// That this response does not vary, and what follows: a sentence without its stop.
+std::string constant_text(const NamedUnit& response);
+
+/// The same responses, with those that do not vary at the end.
+std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses);
+
+/// The response a result is ranked by unless asked otherwise: of those of the headline that vary, or of all where none
+/// does, the first length, else the first.
 std::string default_ranking(const StoredResult& result);
 
 /// In which order tables show ranked errors; the largest first.

@@ -16,6 +16,7 @@ constexpr std::size_t kGridInBin = 128;
 constexpr std::size_t kFewestBins = 4;
 constexpr double kSamplesForBin = 16.0;  ///< on average; with fewer of them bins are merged
 constexpr double kFewestInBin = 4.0;     ///< in each
+static_assert(kFewestBins * kSamplesForBin == kFewestIndexSamples);
 
 constexpr int kMostBins = static_cast<int>(kEffectBins);
 static_assert(kMostBins <= 32, "Strata::ends has a bit for each");

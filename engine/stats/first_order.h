@@ -15,6 +15,9 @@ namespace poesy {
 /// Bins of equal probability.
 inline constexpr std::size_t kEffectBins = 32;
 
+/// With fewer samples that count no index is formed, because each of at least four bins holds sixteen on average.
+inline constexpr std::uint64_t kFewestIndexSamples = 64;
+
 /// Sums over the samples of a response in one bin.
 struct BinSums {
   double count = 0.0;   ///< samples
@@ -47,10 +50,10 @@ struct BinnedVariance {
 };
 
 /// The variance from the sums of a response in the bins of an error. all: the moments of the same samples.
-/// Takes 16, 8 or 4 bins where there are fewer than 16 samples for each, or a bin has fewer than four; NaN below 64
-/// samples. The part of an effect that happens within bins is estimated too, as that of a straight line over the error
-/// (spread) in each bin, whose slope is that between the neighbouring bins; bins between which the error goes down, as
-/// in the middle of a shifted distribution, are no neighbours. Without a spread it is left out.
+/// Takes 16, 8 or 4 bins where there are fewer than 16 samples for each, or a bin has fewer than four; NaN below
+/// kFewestIndexSamples. The part of an effect that happens within bins is estimated too, as that of a straight line
+/// over the error (spread) in each bin, whose slope is that between the neighbouring bins; bins between which the error
+/// goes down, as in the middle of a shifted distribution, are no neighbours. Without a spread it is left out.
 ///
 /// Bias of between with 32 bins, of its true value, without and with a spread: a straight line over a normal error
 /// -0.92 %, 0; over a uniform error -0.10 %, 0; |z| -2.5 %, -0.007 %; the Ishigami function's first two errors -0.32 %,

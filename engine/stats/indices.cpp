@@ -186,8 +186,20 @@ double index_rounding(double response_rounding, double sigma) {
   return std::max(kIndexRounding, response_rounding / sigma);
 }
 
-double size_rounding(double linear, double angular) {
-  return kIndexRounding * std::fmax(linear, angular);  // passes over NaN
+double size_rounding(double response_rounding, double linear, double angular) {
+  return std::max(response_rounding, kIndexRounding * std::fmax(linear, angular));  // fmax passes over NaN
+}
+
+double joint_rounding(double response_rounding, std::span<const double> sigma) {
+  double squares = 0.0;
+  for (const double one : sigma) squares += square(index_rounding(response_rounding, one) * one);
+  return std::sqrt(squares);
+}
+
+bool is_constant(std::span<const double> deviations, double rounding) {
+  const auto is_unknown = [](double deviation) { return std::isnan(deviation); };
+  return !std::ranges::all_of(deviations, is_unknown) &&
+         std::ranges::none_of(deviations, [&](double deviation) { return has_effect(deviation, rounding); });
 }
 
 bool has_effect(double index, double rounding) { return index >= rounding; }

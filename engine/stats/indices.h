@@ -65,9 +65,19 @@ inline constexpr double kIndexOfInterest = 1e-6;
 /// least kIndexRounding. response_rounding: as Model::rounding gives it.
 double index_rounding(double response_rounding, double sigma);
 
-/// Up to this the response to errors of this size, lengths and angles, is rounding: kIndexRounding times the larger one
-/// of both, SI. NaN for a size that there is none of.
-double size_rounding(double linear, double angular);
+/// Up to this the response to errors of this size, lengths and angles, is rounding: response_rounding, but at least
+/// kIndexRounding times the larger one of both, SI. NaN for a size that there is none of.
+double size_rounding(double response_rounding, double linear, double angular);
+
+/// Up to this standard deviation a response is rounding while errors vary together: the root sum square over them of
+/// index_rounding x sigma, because independent effects add up like that. So a response on which no error has an effect
+/// alone does not vary with all of them. sigma: [P]; all SI.
+double joint_rounding(double response_rounding, std::span<const double> sigma);
+
+/// Whether a response does not vary: none of its standard deviations, at poses for instance, is more than rounding,
+/// though one of them is known. Such a response has nothing to be shared, so this is asked before any share of its
+/// variance is formed. rounding: as joint_rounding gives it.
+bool is_constant(std::span<const double> deviations, double rounding);
 
 /// Whether an index is more than rounding. NaN is not. rounding: as index_rounding gives it.
 bool has_effect(double index, double rounding = kIndexRounding);

@@ -29,7 +29,8 @@ poesy_test(tolerance_search_test LABELS statistical
            SOURCES engine/kinds/allocation/near_limit_test.cpp engine/kinds/allocation/search_test.cpp
                    engine/kinds/allocation/variations_test.cpp
            LINKS poesy_kinds)
-poesy_test(sobol_test LABELS unit SOURCES engine/kinds/sobol/groups_test.cpp LINKS poesy_kinds)
+poesy_test(sobol_test LABELS unit SOURCES engine/kinds/sobol/groups_test.cpp engine/kinds/sobol/constant_test.cpp
+           LINKS poesy_kinds)
 poesy_test(sobol_statistical_test LABELS statistical
            SOURCES engine/kinds/sobol/reference_test.cpp engine/kinds/sobol/shapley_statistical_test.cpp
            LINKS poesy_kinds)

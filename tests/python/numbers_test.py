@@ -32,6 +32,35 @@ class Numbers(FolderTest):
                 else:
                     self.assertLessEqual(abs(value - expected), 1e-14 * abs(expected), (own.name, field, value, expected))
 
+    def test_what_does_not_vary_has_no_ranking(self):
+        """Errors in the plane of a planar mechanism: its gap is rounding, and no default."""
+        planar = Path(__file__).resolve().parents[2] / "results/gallery/3-rrr/3-rrr.toml"
+        errors = {"linear": {"distribution": "normal", "sigma": "0.05 mm"},
+                  "angular": {"distribution": "normal", "sigma": "0.05 deg"}}  # fmt: skip
+        for kind, value in (("sobol", "ST"), ("monte-carlo", "S1"), ("sensitivity", "effect")):
+            with self.subTest(kind):
+                found = poesy.run({"mechanism": {"file": str(planar)}, "poses": {"count": 3}, "errors": errors,
+                                   "analysis": {"kind": kind, "factors": "in-plane", "samples": 128}})  # fmt: skip
+                self.assertEqual(found.response(), "position")
+                self.assertTrue({"gap", "z", "theta_x", "theta_y"} <= found.constant)
+                self.assertFalse({"x", "y", "position", "theta_z", "rotation"} & found.constant)
+                self.assertGreater(getattr(found.ranking()[0], value), 0.0)
+                ranked = found.ranking("gap")
+                self.assertIn("gap does not vary", ranked.title)
+                self.assertIn("gap does not vary", repr(ranked))
+                if kind == "sensitivity":
+                    self.assertEqual({row.effect for row in ranked}, {0.0})
+                    continue
+                self.assertEqual(len(ranked), 0)
+                with self.assertRaisesRegex(poesy.NotInResult, "gap does not vary"):
+                    found.plot.ranking("gap")
+                self.assertIn("position", found.plot.ranking().get_xlabel())
+
+    def test_too_few_samples_are_named(self):
+        found = poesy.run(study({"kind": "monte-carlo", "samples": 50}))
+        self.assertTrue(all(math.isnan(row.S1) for row in found.ranking()))
+        self.assertIn("none is formed below 64 samples", found.ranking().title)
+
     def test_sensitivity(self):
         for name in ("sensitivity", "sensitivity of the 3-prs"):
             found = result(name)

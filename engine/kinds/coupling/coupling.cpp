@@ -12,6 +12,7 @@
 #include "engine/base/nan.h"
 #include "engine/kinds/coupling/kind.h"
 #include "engine/run/evaluation.h"
+#include "engine/run/response_rounding.h"
 #include "engine/run/result.h"
 #include "engine/stats/indices.h"
 
@@ -100,13 +101,16 @@ std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::
 /// Fills a result: for each response, size and subset, in this order, its poses and then their summary.
 class Composer {
  public:
-  Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy)
+  Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy,
+           std::vector<double> rounding)
       : evaluation_(std::move(evaluation)), study_(&study), rows_(coupling_rows(study, model)), policy_(policy) {
     POESY_EXPECTS(evaluation_.samples == study.sizes() * rows_.errors.size());
     found_.responses = evaluation_.responses;
     found_.sizes = study.sizes();
     found_.subsets = rows_.subsets.size();
     found_.poses = evaluation_.poses;
+    found_.rounding = std::move(rounding);
+    POESY_EXPECTS(found_.rounding.size() == found_.responses * found_.sizes);
     // A list that grows has all its numbers twice while it is copied.
     const std::size_t numbers = found_.responses * found_.sizes * found_.subsets * found_.poses;
     for (std::vector<double>* curve :
@@ -119,7 +123,9 @@ class Composer {
     for (std::size_t r = 0; r < found_.responses; ++r) {
       for (std::size_t z = 0; z < found_.sizes; ++z) {
         const std::vector<double> effects = effects_of(r, z);
-        for (std::size_t k = 0; k < found_.subsets; ++k) add_subset(k, effects, rounding_at(z));
+        for (std::size_t k = 0; k < found_.subsets; ++k) {
+          add_subset(k, effects, found_.rounding[r * found_.sizes + z]);
+        }
       }
     }
     for (std::size_t z = 0; z < found_.sizes; ++z) {
@@ -136,12 +142,6 @@ class Composer {
   std::size_t rows() const { return rows_.errors.size(); }
   std::size_t solve(std::size_t z, std::size_t m, std::size_t n) const {
     return m * evaluation_.samples + z * rows() + n;
-  }
-
-  double rounding_at(std::size_t z) const {
-    const double linear = study_->linear.empty() ? 0.0 : study_->linear[z];
-    const double angular = study_->angular.empty() ? 0.0 : study_->angular[z];
-    return size_rounding(linear, angular);
   }
 
   /// [M x N]; NaN where the solve does not count.
@@ -212,8 +212,10 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
                                    Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
   if (!evaluation || !run.makes_result()) return std::nullopt;
-  return StudyResult{
-      coupling_result(*std::move(evaluation), coupling, model, run.study.not_converged), std::nullopt, {}};
+  return StudyResult{coupling_result(*std::move(evaluation), coupling, model, run.study.not_converged,
+                                     coupling_rounding(coupling, run.model)),
+                     std::nullopt,
+                     {}};
 }
 
 Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
@@ -310,8 +312,33 @@ ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& mo
 }
 
 CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
-                               NotConverged policy) {
-  return Composer(std::move(evaluation), study, model, policy)();
+                               NotConverged policy, std::vector<double> rounding) {
+  return Composer(std::move(evaluation), study, model, policy, std::move(rounding))();
+}
+
+std::vector<double> coupling_rounding(const CouplingStudy& study, const Model& model) {
+  std::vector<double> list;
+  for (const double rounding : response_rounding(model)) {
+    for (std::size_t z = 0; z < study.sizes(); ++z) {
+      list.push_back(size_rounding(rounding, study.linear.empty() ? kNaN : study.linear[z],
+                                   study.angular.empty() ? kNaN : study.angular[z]));
+    }
+  }
+  return list;
+}
+
+std::vector<std::size_t> responses_without_effect(const CouplingResult& found) {
+  std::vector<std::size_t> list;
+  for (std::size_t r = 0; r < found.responses; ++r) {
+    bool is_constant_at_all = true;
+    for (std::size_t z = 0; z < found.sizes; ++z) {
+      const std::size_t at = r * found.sizes + z;
+      const auto effects = std::span(found.effect_max).subspan(at * found.subsets, found.subsets);
+      is_constant_at_all = is_constant_at_all && is_constant(effects, found.rounding[at]);
+    }
+    if (is_constant_at_all) list.push_back(r);
+  }
+  return list;
 }
 
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources) {

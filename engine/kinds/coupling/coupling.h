@@ -99,6 +99,7 @@ struct CouplingResult {
   std::vector<double> worst_case;       ///< [R x Z x K x M]
   std::vector<double> root_sum_square;  ///< [R x Z x K x M]
   std::vector<double> cancellation;     ///< [R x Z x K x M] from 0 to 1
+  std::vector<double> rounding;         ///< [R x Z] up to this a response to errors of the size is rounding
 
   // Over the poses where all of these are known; where there is none, NaN and pose -1.
   std::vector<std::uint64_t> count;                 ///< [R x Z x K] such poses
@@ -135,12 +136,15 @@ struct CouplingResult {
 ///
 /// Summaries are over the poses where all of this is known. Sources oppose each other (opposed_share) where |sum| is
 /// below the largest |effect of a source in S| by more than rounding: together they do less than one of them.
-/// Rounding is size_rounding (stats/indices.h) of the size of the errors.
 ///
 /// evaluation: what run_evaluation found for the study's coupling_table. A solve that does not count (see counts())
-/// makes NaN of everything that rests on it, and is counted in `solves`.
+/// makes NaN of everything that rests on it, and is counted in `solves`. rounding: [R x Z] as coupling_rounding gives
+/// it.
 CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
-                               NotConverged policy);
+                               NotConverged policy, std::vector<double> rounding);
+
+/// Up to which each response to errors of each size is rounding (stats/indices.h), [R x Z].
+std::vector<double> coupling_rounding(const CouplingStudy& study, const Model& model);
 
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
@@ -154,6 +158,10 @@ struct StoredCoupling {
   std::vector<std::string> sources;     ///< [S] names
   std::vector<std::string> subsets;     ///< [K] "FS+T"
 };
+
+/// Positions of the responses that no source moves by more than rounding at any size and pose, though it is known of
+/// one.
+std::vector<std::size_t> responses_without_effect(const CouplingResult& found);
 
 /// Precondition: a coupling result.
 inline const StoredCoupling& coupling_of(const StoredResult& result) { return found_of<StoredCoupling>(result); }

@@ -7,6 +7,7 @@
 #include "engine/files/result_parts.h"
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/coupling/kind.h"
+#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {
@@ -31,6 +32,12 @@ const Group<CouplingResult> kCoupling{
       "Root of the sum of the squares of these"},
      {"cancellation", &CouplingResult::cancellation, kCurveAxes, "1",
       "1 - |sum| / sum of |effect of a source|: 0 no source opposes another, 1 they cancel"},
+     {"rounding",
+      &CouplingResult::rounding,
+      {"response", "size"},
+      kResponseUnit,
+      "Up to this an effect of errors of the size cannot be told from the rounding of solves",
+      Presence::where_computed},
      {"count", &CouplingResult::count, kSummaryAxes, "1",
       "Poses that count: those where all that the subset rests on is solved"},
      {"effect_max", &CouplingResult::effect_max, kSummaryAxes, kResponseUnit,
@@ -172,6 +179,17 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_solver(result, {"size", "pose"}, found.solves);
 }
 
+/// In files of version 0.2.0 rounding is that of digits alone.
+void read_older(StoredCoupling& stored) {
+  CouplingResult& found = stored.found;
+  if (!found.rounding.empty()) return;
+  for (std::size_t r = 0; r < found.responses; ++r) {
+    for (std::size_t z = 0; z < found.sizes; ++z) {
+      found.rounding.push_back(size_rounding(0.0, stored.linear[z], stored.angular[z]));
+    }
+  }
+}
+
 void read(const h5::File& file, StoredResult& result) {
   StoredCoupling stored;
   stored.size_names = file.read<std::string>("/size");
@@ -179,7 +197,9 @@ void read(const h5::File& file, StoredResult& result) {
   stored.subsets = file.read<std::string>("/subset");
   read_fields(file, "/coupling", kSizes, stored);
   read_group(file, kCoupling, stored.found);
+  read_older(stored);
   stored.found.solves = read_solver(file, {"size", "pose"});
+  result.constant = responses_without_effect(stored.found);
   result.found = std::move(stored);
 }
 

@@ -2,20 +2,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <span>
 
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/coupling/kind.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
-#include "engine/stats/indices.h"
 
 namespace poesy {
 namespace {
-
-double rounding_at(const StoredCoupling& stored, std::size_t z) {
-  return size_rounding(stored.linear[z], stored.angular[z]);
-}
 
 Cell place_cell(const StoredResult& result, bool known, std::int64_t pose) {
   return text_cell(known ? coordinates_text(result, static_cast<std::size_t>(pose)) : std::string());
@@ -28,7 +24,7 @@ Cell pose_cell(bool known, std::int64_t pose) {
 std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::size_t at) {
   const StoredCoupling& stored = coupling_of(result);
   const CouplingResult& found = stored.found;
-  const double rounding = rounding_at(stored, at / found.subsets % found.sizes);
+  const double rounding = found.rounding[at / found.subsets];
   const auto cell = [&](double value) {
     Cell shown = number_cell(value / display(result.responses[r]).si, 5);
     if (value <= rounding) shown.text = "0";
@@ -67,6 +63,9 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   for (std::size_t k = 0; k < found.subsets; ++k) {
     table.rows.push_back(subset_row(result, r, (r * found.sizes + z) * found.subsets + k));
   }
+  if (!varies(result, r)) {
+    table.notes.push_back(response.name + " does not vary: no source moves it by more than the rounding of solves");
+  }
   return table;
 }
 
@@ -78,7 +77,8 @@ bool does_nothing(const StoredResult& result, const std::string& source) {
   if (k == found.subsets) return false;
   return std::ranges::any_of(result.signed_headline, [&](std::size_t r) {
     for (std::size_t z = 0; z < found.sizes; ++z) {
-      if (!(found.effect_max[(r * found.sizes + z) * found.subsets + k] <= rounding_at(stored, z))) return false;
+      const std::size_t at = r * found.sizes + z;
+      if (!(found.effect_max[at * found.subsets + k] <= found.rounding[at])) return false;
     }
     return true;
   });
@@ -279,7 +279,7 @@ Answer answer(const StoredResult& result) {
   const StoredCoupling& stored = coupling_of(result);
   const CouplingResult& found = stored.found;
   if (found.subsets == 0 || found.sizes == 0 || result.signed_headline.empty()) return {};
-  const std::size_t r = result.signed_headline.front();
+  const std::size_t r = varying_first(result, result.signed_headline).front();
   const std::size_t first = (r * found.sizes + found.sizes - 1) * found.subsets;
   const std::size_t all = found.subsets - 1;
   const std::size_t sources = std::min(stored.sources.size(), found.subsets);
@@ -323,9 +323,11 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions&) {
   std::vector<Table> tables;
   for (std::size_t z = 0; z < coupling_of(result).found.sizes; ++z) {
-    for (const std::size_t r : result.signed_headline) tables.push_back(response_table(result, z, r));
+    for (const std::size_t r : varying_first(result, result.signed_headline)) {
+      tables.push_back(response_table(result, z, r));
+    }
   }
-  if (!tables.empty()) tables.back().notes = notes(result);
+  if (!tables.empty()) std::ranges::move(notes(result), std::back_inserter(tables.back().notes));
   return tables;
 }
 

@@ -74,6 +74,10 @@ const Group<MonteCarlo> kMonteCarlo{
      {"share_magnitude", &MonteCarlo::share_magnitude, kByResponsePose, kResponseUnit,
       "Within this magnitude stays the share of all draws that [analysis] share asks for; draws that do not count are "
       "outside; infinite where they are too many",
+      Presence::where_computed},
+     {"varies", &MonteCarlo::varies, kByResponse, "1",
+      "0 where the response does not vary: what its samples scatter at any pose is rounding, so it has no indices "
+      "and no main effects; left out where all vary",
       Presence::where_computed}}};
 
 const FieldRow<MonteCarlo>& row(std::string_view name) {
@@ -177,6 +181,7 @@ void read(const h5::File& file, StoredResult& result) {
   found.levels = file.read<double>("/quantile");
   found.quantile_relative_error = file.attribute<double>("/monte_carlo/quantiles", "quantile_relative_error").at(0);
   read_group(file, kMonteCarlo, found);
+  result.constant = constant_responses(found.varies);
   const std::size_t bins = axis_length(file, "bin");
   if (bins == 0 || axis_length(file, "edge") != bins + 1) {
     throw h5::Error("/edge does not have one position more than /bin, or there is no bin");

@@ -10,6 +10,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/report/display.h"
+#include "engine/stats/first_order.h"
 #include "engine/stats/main_effects.h"
 
 namespace poesy {
@@ -123,6 +124,29 @@ Table rejects_table(const StoredResult& result) {
   return table;
 }
 
+/// Of errors that have no index of their own.
+bool has_correlated(const StoredResult& result) {
+  return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
+}
+
+/// Whether at one of the poses over which indices add up too few samples of the response count.
+bool has_too_few_samples(const StoredResult& result, std::size_t r) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  return std::ranges::any_of(found.effects.s1_poses,
+                             [&](std::uint64_t m) { return found.count[r * found.poses + m] < kFewestIndexSamples; });
+}
+
+/// Why no error has an index on a response.
+std::string no_index_text(const StoredResult& result, std::size_t r) {
+  const std::string& response = result.responses[r].name;
+  if (!varies(result, r)) return constant_text(result.responses[r]);
+  if (has_too_few_samples(result, r)) {
+    return fmt::format("{}: no S1 is formed below {} samples at a pose that count", response, kFewestIndexSamples);
+  }
+  if (has_correlated(result)) return response + ": no error has an index, because each is correlated with others";
+  return response + ": no error has an index, because it does not vary at the poses over which indices add up";
+}
+
 std::string indices_note(const StoredResult& result, std::size_t r) {
   const std::size_t factors = result.factors.size();
   double sum = 0.0;
@@ -131,19 +155,12 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
     sum += std::isnan(s1) ? 0.0 : s1;
     without += std::isnan(s1) ? 1 : 0;
   }
-  if (without == factors) {
-    return result.responses[r].name + ": no error has an index, because it does not vary or errors are correlated";
-  }
+  if (without == factors) return no_index_text(result, r);
   return fmt::format(
       "{}: the indices sum to {}; what is missing from 1 is what errors do together. A response without sign makes "
       "such "
       "interaction of its own, so an error with a small index is not one without effect",
       result.responses[r].name, number_text(sum, 3));
-}
-
-/// Of errors that have no index of their own.
-bool has_correlated(const StoredResult& result) {
-  return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
 }
 
 /// Values [R x P] of the responses in this order.
@@ -199,6 +216,7 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
               .panels = {},
               .most = kAtFirst};
   for (const std::size_t r : headline_order(result)) {
+    if (!varies(result, r)) continue;
     const NamedUnit& response = result.responses[r];
     Panel panel{"mean of " + response.name, unit_text(response), {}};
     const auto s1 = [&](std::size_t p) { return effects.s1[r * factors + p]; };
@@ -262,8 +280,10 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
         quantity("the same of a machine's largest magnitude", "S1_largest", machines->effects_on_largest));
   }
   add_figure(page, section, "first-order", std::move(bars), "First-order indices with their intervals.");
-  add_figure(page, section, "main-effects", effect_curves(result, pool),
-             "The mean of a response over poses while one error is known and all others vary, with its interval.");
+  if (Lines curves = effect_curves(result, pool); !curves.panels.empty()) {
+    add_figure(page, section, "main-effects", std::move(curves),
+               "The mean of a response over poses while one error is known and all others vary, with its interval.");
+  }
   section.table(tables, "first_order");
 }
 
@@ -291,6 +311,9 @@ Table effect_table(const StoredResult& result) {
                                     percent_text(monte_carlo_of(result).conf_level)),
                         indices_note(result, ranking)},
               .ranked = true};
+  for (const std::size_t r : headline_order(result)) {
+    if (r != ranking && !varies(result, r)) table.notes.push_back(constant_text(result.responses[r]));
+  }
   if (has_correlated(result)) {
     table.notes.emplace_back(
         "- for an error that is correlated with others: nothing is its effect alone; indices of groups and Shapley "

@@ -423,6 +423,7 @@ ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses == 0) return {};
   const std::size_t r = response_named(result, default_ranking(result));
+  if (!varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
   return {.what = "first-order index S1 of " + response,
           .values = of_row(found.effects.effects.s1, r, result.factors.size()),

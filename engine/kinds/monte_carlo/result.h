@@ -136,7 +136,8 @@ struct MonteCarloResult {
   /// Where it states limits.
   std::optional<LimitVerdicts> verdicts;
 
-  EffectResult effects;  ///< first-order indices
+  std::vector<std::uint8_t> varies;  ///< [R] whether it is more than rounding: 0 or 1; empty where all are
+  EffectResult effects;              ///< first-order indices
   /// Where errors are drawn per machine.
   std::optional<MachineResult> machines;
 

@@ -7,9 +7,11 @@
 #include "engine/kinds/monte_carlo/machine_table.h"
 #include "engine/kinds/monte_carlo/machine_unit.h"
 #include "engine/kinds/monte_carlo/result.h"
+#include "engine/kinds/monte_carlo/yield.h"
 #include "engine/run/effect_poses.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
+#include "engine/run/response_rounding.h"
 #include "engine/run/rounds.h"
 #include "engine/stats/merge_tree.h"
 #include "engine/stats/moments.h"
@@ -277,7 +279,9 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
                                                 const RunOptions& options) {
   const auto run = [&](auto work) -> std::optional<MonteCarloResult> {
     if (!fold(work, options) || options.shard) return std::nullopt;
-    return std::move(work).result();
+    MonteCarloResult found = std::move(work).result();
+    leave_out_constant(joint_rounding(plan, model), found);
+    return found;
   };
   if (plan.draws() == Draws::per_machine) return run(MachineWork(plan, model, analysis, options));
   return run(PoseWork(plan, model, analysis, options));

@@ -6,6 +6,7 @@
 #include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/columns.h"
 #include "engine/stats/buckets.h"
+#include "engine/stats/indices.h"
 #include "engine/stats/proportion.h"
 
 namespace poesy {
@@ -25,6 +26,14 @@ void append_quantiles(const QuantileSketch& sketch, std::span<const double> leve
   for (const double level : levels) {
     append({sketch.quantile(level), quantile_interval(buckets, quantile_ranks(sketch.count(), level, conf_level))},
            values.quantiles, values.quantiles_ci_low, values.quantiles_ci_high);
+  }
+}
+
+/// At this position of [R x P].
+void leave_out(std::size_t at, MainEffects& effects) {
+  for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) (*list)[at] = kNaN;
+  for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) {
+    std::ranges::fill(std::span(*list).subspan(at * kEffectBins, kEffectBins), kNaN);
   }
 }
 
@@ -99,12 +108,27 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
 void leave_out_correlated(const Plan& plan, MainEffects& effects) {
   const std::size_t errors = plan.factors().size();
   for (std::size_t at = 0; at < effects.s1.size(); ++at) {
-    if (!plan.is_correlated(at % errors)) continue;
-    for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) (*list)[at] = kNaN;
-    for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) {
-      std::ranges::fill(std::span(*list).subspan(at * kEffectBins, kEffectBins), kNaN);
+    if (plan.is_correlated(at % errors)) leave_out(at, effects);
+  }
+}
+
+void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found) {
+  const auto leave_out_all = [&](std::size_t r, MainEffects& effects) {
+    const std::size_t errors = effects.s1.size() / found.responses;
+    for (std::size_t p = 0; p < errors; ++p) leave_out(r * errors + p, effects);
+  };
+  for (std::size_t r = 0; r < found.responses; ++r) {
+    const std::span at_poses = std::span(found.std).subspan(r * found.poses, found.poses);
+    std::vector<double> at_some;
+    for (const std::uint64_t m : found.effects.s1_poses) at_some.push_back(at_poses[m]);
+    found.varies.push_back(is_constant(at_poses, rounding[r]) ? 0 : 1);
+    if (is_constant(at_some, rounding[r])) leave_out_all(r, found.effects.effects);
+    if (!found.machines) continue;
+    if (is_constant({&found.machines->largest.std[r], 1}, rounding[r])) {
+      leave_out_all(r, found.machines->effects_on_largest);
     }
   }
+  if (std::ranges::find(found.varies, 0) == found.varies.end()) found.varies.clear();
 }
 
 std::vector<BinSpread> bin_spreads(const Plan& plan) {

@@ -33,6 +33,11 @@ MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence de
 /// does, and others go with it.
 void leave_out_correlated(const Plan& plan, MainEffects& effects);
 
+/// Makes indices and curves of responses NaN that do not vary (stats/indices.h), at the poses over which indices add up
+/// or from machine to machine. Says which do not vary at any pose, where there are such. rounding: [R] as
+/// joint_rounding (run/response_rounding.h) gives it.
+void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found);
+
 /// How the errors of a study lie in their bins, [P].
 std::vector<BinSpread> bin_spreads(const Plan& plan);
 

@@ -237,7 +237,7 @@ Table fidelity_table(const StoredResult& result, const RankedErrors& ranked) {
               .columns = {},
               .notes = fidelity_notes(result, found),
               .ranked = true};
-  std::vector<FilledColumn> columns{rank_column(ranked, 3), name_column(result.factors, "error")};
+  std::vector<FilledColumn> columns{rank_column(result, ranked, 3), name_column(result.factors, "error")};
   add_largest(columns, result, found.relative_discrepancy, "discrepancy", 1);
   add_largest(columns, result, found.nonlinearity, "nonlinearity", 2);
   columns.push_back({text_column("verdict", "verdict"), [&](std::size_t p) { return text_cell(verdict(found, p)); }});

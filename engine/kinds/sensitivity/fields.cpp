@@ -4,6 +4,7 @@
 #include "engine/kinds/sensitivity/fidelity.h"
 #include "engine/kinds/sensitivity/kind.h"
 #include "engine/kinds/sensitivity/points_radius.h"
+#include "engine/kinds/sensitivity/ranking.h"
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/separation.h"
 #include "engine/kinds/sensitivity/tolerances.h"
@@ -191,6 +192,7 @@ void read(const h5::File& file, StoredResult& result) {
   read_separation(file, found);
   read_fidelity(file, found);
   result.found = std::move(found);
+  result.constant = responses_without_effect(result);
 }
 
 void append_tables(CsvTables& tables, const StoredResult& result) {

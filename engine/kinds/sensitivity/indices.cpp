@@ -75,12 +75,6 @@ std::vector<double> background_responses(const Plan& plan, const Model& model) {
   return background;
 }
 
-std::vector<double> response_rounding(const Model& model) {
-  std::vector<double> list;
-  for (std::size_t r = 0; r < model.description().responses.size(); ++r) list.push_back(model.rounding(r));
-  return list;
-}
-
 std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, double conf_level) {
   POESY_EXPECTS(at_poses.size() > 0);
   std::vector<Estimate> indices;

@@ -16,16 +16,13 @@ namespace poesy {
 /// solved.
 std::vector<double> background_responses(const Plan& plan, const Model& model);
 
-/// Model::rounding of each response, [R].
-std::vector<double> response_rounding(const Model& model);
-
 /// The global index of one factor for each response, [R]. at_poses: [M], its cells. sigma: standard deviation of the
 /// error.
 std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, double conf_level);
 
 /// The indices of a study from what its cells hold. cells: [P x M], merged over the units of each (factor, pose); moved
 /// here they take no memory beside the result's, because each response gives its own back.
-/// background, rounding: as background_responses and response_rounding give them.
+/// background, rounding: as background_responses and response_rounding (run/response_rounding.h) give them.
 SensitivityResult sensitivity_result(const Plan& plan, CellStats cells, std::vector<double> background,
                                      std::vector<double> rounding, double conf_level);
 

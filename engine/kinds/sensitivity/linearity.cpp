@@ -15,6 +15,7 @@
 #include "engine/report/display.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
+#include "engine/run/response_rounding.h"
 #include "engine/run/result.h"
 #include "engine/stats/indices.h"
 

@@ -250,6 +250,7 @@ void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>
 ErrorShares error_shares(const StoredResult& result) {
   if (result.factors.empty() || result.poses.size() == 0) return {};
   const std::size_t r = response_named(result, default_ranking(result));
+  if (!varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
   const MeanSquare found = mean_square(response_study(sensitivity_of(result), result.factor_sigma, r));
   return {.what = "share of the mean square of " + response,

@@ -132,7 +132,7 @@ enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstO
 /// The responses of the headline beside the one that ranks, those that have a dimension.
 std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
   std::vector<std::size_t> others;
-  for (const std::size_t r : result.headline) {
+  for (const std::size_t r : varying_first(result, result.headline)) {
     if (r != ranking && dimension_of(result.responses[r].unit) != Dimension::number) others.push_back(r);
   }
   return others;
@@ -153,7 +153,7 @@ void add_index(Columns& columns, const StoredResult& result, std::size_t r, cons
 Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
   const std::size_t response = ranked.response;
   const Unit& unit = display(result.responses[response]);
-  Columns list{rank_column(ranked, kRank), name_column(result.factors, "error")};
+  Columns list{rank_column(result, ranked, kRank), name_column(result.factors, "error")};
   list.push_back({number_column("effect", "effect", unit.name), [&result, &unit, response](std::size_t p) {
                     return index_cell(shown_indices(result).value[response * result.factors.size() + p],
                                       result.factor_sigma[p] / unit.si, index_rounding(result, response, p));
@@ -223,8 +223,12 @@ Table ranked_table(const StoredResult& result, const RankedErrors& ranked) {
               .notes = ranked_notes(result, ranked),
               .ranked = true};
   fill(table, ranked.rows, ranked_columns(result, ranked));
-  for (std::string note : {radius_note(result, ranked.response), rounding_note(table)}) {
-    if (!note.empty()) table.notes.push_back(std::move(note));
+  const std::string too_small = rounding_note(table);
+  if (!varies(result, ranked.response) && too_small.empty()) {
+    table.caption = constant_text(result.responses[ranked.response]);
+  }
+  for (const std::string& note : {radius_note(result, ranked.response), too_small}) {
+    if (!note.empty()) table.notes.push_back(note);
   }
   return table;
 }
@@ -301,9 +305,24 @@ TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder 
   return {std::move(table), tau, remarks(a, b, tau, known_in_both(first, second))};
 }
 
-FilledColumn rank_column(const RankedErrors& ranked, int dispensable) {
+FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked, int dispensable) {
   return {number_column("rank", "rank", "", dispensable),
-          [&ranked](std::size_t p) { return count_cell(ranked.ranks[p]); }};
+          [&](std::size_t p) { return varies(result, ranked.response) ? count_cell(ranked.ranks[p]) : text_cell(""); }};
+}
+
+std::vector<std::size_t> responses_without_effect(const StoredResult& result) {
+  const SensitivityResult& found = sensitivity_of(result);
+  std::vector<std::size_t> list;
+  for (std::size_t r = 0; r < found.responses; ++r) {
+    bool is_known = false;
+    bool any = false;
+    for (std::size_t p = 0; p < found.factors; ++p) {
+      is_known = is_known || !std::isnan(found.global[r * found.factors + p]);
+      any = any || has_effect(result, r, p);
+    }
+    if (is_known && !any) list.push_back(r);
+  }
+  return list;
 }
 
 std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options) {

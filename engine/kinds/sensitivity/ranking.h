@@ -43,6 +43,9 @@ double without_rounding(const StoredResult& result, double index, std::size_t re
 /// Whether the index shown is more than rounding.
 bool has_effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
+/// Positions of the responses on which no error has an effect, though one of its indices is known.
+std::vector<std::size_t> responses_without_effect(const StoredResult& result);
+
 /// index x sigma(error), SI: indices alone do not compare, for some are per m and some per rad.
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
@@ -51,8 +54,8 @@ double effect(const StoredResult& result, std::size_t response, std::size_t fact
 FilledColumn index_column(const StoredResult& result, const std::vector<double>& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 
-/// The rank of each error. Refers to the ranking.
-FilledColumn rank_column(const RankedErrors& ranked, int dispensable);
+/// The rank of each error; none where the response does not vary. Refers to both.
+FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked, int dispensable);
 
 /// With the errors in the order asked for:
 /// - ranked: the errors with the effect on the response that ranks (global index x sigma), its index and interval,

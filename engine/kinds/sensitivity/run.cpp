@@ -14,6 +14,7 @@
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
+#include "engine/run/response_rounding.h"
 #include "engine/run/rounds.h"
 
 namespace poesy {

@@ -168,7 +168,7 @@ Table separation_table(const StoredResult& result, const RankedErrors& ranked) {
                                     percent_text(found.removable_together))},
               .ranked = true};
   const std::vector<std::string>& of_errors = sensitivity_of(result).published_class;
-  std::vector<FilledColumn> columns{rank_column(ranked, 2), name_column(result.factors, "error")};
+  std::vector<FilledColumn> columns{rank_column(result, ranked, 2), name_column(result.factors, "error")};
   if (!classes_of(of_errors).empty()) {
     columns.push_back({text_column("published_class", "published class", 1),
                        [&of_errors](std::size_t p) { return text_cell(of_errors[p]); }});

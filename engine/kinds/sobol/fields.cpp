@@ -29,6 +29,10 @@ Group<SobolIndices> indices_group(std::string path, std::string description, con
 /// The axis of what the indices belong to: the errors, or the groups to which the study joins them.
 std::string axis_of(bool joined) { return joined ? "group" : "factor"; }
 
+const std::string kVaries =
+    "0 where it does not vary: what its samples scatter at any pose is rounding, so nothing has a share of it; "
+    "left out where all vary";
+
 /// The datasets of a result whose errors are joined, or not.
 struct Layout {
   explicit Layout(bool joined)
@@ -49,7 +53,9 @@ struct Layout {
              "Variance of the response that S1 and ST share"},
             {"without_sign", &SobolResult::without_sign, kByResponse, "1",
              "1 where no sample was below zero: such a response, the length of a vector for instance, is not "
-             "additive even where the vector is linear"}},
+             "additive even where the vector is linear"},
+            {"varies", &SobolResult::varies, kByResponse, "1", kVaries, Presence::where_computed}},
+        beside_vectors{{"varies", &SobolResult::vector_varies, {"vector"}, "1", kVaries, Presence::where_computed}},
         pairs{
             {"S2",
              &SobolResult::S2,
@@ -76,6 +82,7 @@ struct Layout {
   Group<SobolIndices> aggregated;
   Group<SobolIndices> of_vectors;
   Fields<SobolResult> beside;
+  Fields<SobolResult> beside_vectors;
   Fields<SobolResult> pairs;
   Fields<SobolResult> effects;
 };
@@ -117,7 +124,10 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
     result.show_axes(rows.aggregated.path, rows.pairs.front().axes);
   }
   if (!found.Sh.empty()) write_fields(result, rows.aggregated.path, rows.effects, found);
-  if (!found.vectors.empty()) write_group(result, rows.of_vectors, found.of_vectors);
+  if (!found.vectors.empty()) {
+    write_group(result, rows.of_vectors, found.of_vectors);
+    write_fields(result, rows.of_vectors.path, rows.beside_vectors, found);
+  }
   if (found.joined) {
     result.add("/sobol/members", {"group"}, found.group_members, {"1", "Errors of the group, with blanks between"});
   }
@@ -148,7 +158,11 @@ void read(const h5::File& file, StoredResult& result) {
   };
   read_if_computed(rows.pairs);
   read_if_computed(rows.effects);
-  if (!found.vectors.empty()) read_group(file, rows.of_vectors, found.of_vectors);
+  if (!found.vectors.empty()) {
+    read_group(file, rows.of_vectors, found.of_vectors);
+    read_fields(file, rows.of_vectors.path, rows.beside_vectors, found);
+  }
+  result.constant = constant_responses(found.varies);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);
   // Only random draws have addresses by which a sample can be solved again.

@@ -85,14 +85,12 @@ std::string stem_of(const std::string& component) { return component.substr(0, c
 
 /// A vector for each run of components that have one unit. first: position of the detail's first component.
 void append_parts(const Detail& detail, std::size_t first, std::vector<SignedVector>& vectors) {
-  const std::vector<std::string> units = split(detail.unit);
-  std::string unit;
+  const std::vector<std::string> units = component_units(detail);
+  const bool alone = units == std::vector(units.size(), detail.unit);
   for (std::size_t c = 0; c < detail.components.size(); ++c) {
-    const std::string& own = units.size() == 1 ? units.front() : units[c];
-    if (c == 0 || own != unit) {
-      vectors.push_back({units.size() == 1 ? detail.name : detail.name + "_" + stem_of(detail.components[c]), {}});
+    if (c == 0 || units[c] != units[c - 1]) {
+      vectors.push_back({alone ? detail.name : detail.name + "_" + stem_of(detail.components[c]), {}});
     }
-    unit = own;
     vectors.back().components.push_back(first + c);
   }
 }
@@ -130,6 +128,11 @@ std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const
     for (const std::size_t g : holders) split[g] = 1;
   }
   return split;
+}
+
+std::vector<std::string> component_units(const Detail& detail) {
+  const std::vector<std::string> units = split(detail.unit);
+  return units.size() == 1 ? std::vector(detail.components.size(), detail.unit) : units;
 }
 
 std::vector<SignedVector> signed_vectors(const ModelDescription& model) {

@@ -34,6 +34,9 @@ struct SignedVector {
   std::vector<std::size_t> components;  ///< positions: r of a response, R + d of a detail's component
 };
 
+/// The SI unit of each component of a detail.
+std::vector<std::string> component_units(const Detail& detail);
+
 /// The signed vectors of a model: responses NAME_x, NAME_y and NAME_z (x, y and z alone are "displacement", theta_x and
 /// so on "theta"), and the parts of each detail that have one unit.
 std::vector<SignedVector> signed_vectors(const ModelDescription& model);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/run/response_rounding.h"
 
 namespace poesy {
 namespace {
@@ -91,7 +92,7 @@ PanelSums::PanelSums(const IndexPanel& panel)
       aggregated(panel.quantities() * panel.groups.size()),
       pairs(panel.responses * panel.pairs.size()),
       shapley(panel.shapley ? panel.responses * panel.groups.size() : 0),
-      moments(panel.responses * panel.poses),
+      moments(panel.rows() * panel.poses),
       least(panel.responses, std::numeric_limits<double>::infinity()),
       solves(panel.poses),
       failed(panel.poses),
@@ -174,13 +175,17 @@ SplitDraws::SplitDraws(SplitBlock split, std::size_t subsets) : block(std::move(
 }
 
 PanelEvaluator::PanelEvaluator(const Plan& plan, const Model& model, const IndexPanel& panel, const PanelDesign& design)
-    : plan_(&plan), panel_(&panel), design_(&design), evaluator_(model.evaluator(plan.solver())) {
+    : plan_(&plan),
+      panel_(&panel),
+      design_(&design),
+      evaluator_(model.evaluator(plan.solver())),
+      rounding_(response_rounding(model)) {
   constexpr std::size_t kB = PanelDesign::kUnitSamples;
   const std::size_t quantities = panel.quantities();
   const std::size_t groups = panel.groups.size();
   for (Rows* rows : {&a_, &b_, &mixed_}) rows->resize(plan.factors().size() * kB);
   for (Outcomes* outcomes : {&of_a_, &of_b_, &of_mixed_}) {
-    outcomes->values.resize((panel.responses + panel.details) * kB);
+    outcomes->values.resize(panel.rows() * kB);
     outcomes->counts.resize(kB);
   }
   between_.resize(quantities * kB);
@@ -197,7 +202,6 @@ PanelEvaluator::PanelEvaluator(const Plan& plan, const Model& model, const Index
     shapley_between_.resize(panel.responses * kB);
   }
   group_counts_.resize(groups * kB);
-  for (std::size_t r = 0; r < panel.responses; ++r) rounding_.push_back(model.rounding(r));
   status_.resize(kB);
   iterations_.resize(kB);
 }
@@ -291,7 +295,7 @@ void PanelEvaluator::draw_given(std::span<const std::size_t> groups) {
 }
 
 void PanelEvaluator::absorb() {
-  const std::size_t rows = panel_->responses + panel_->details;
+  const std::size_t rows = panel_->rows();
   for (std::size_t b = 0; b < unit_.count; ++b) {
     bool same = true;
     for (std::size_t r = 0; r < panel_->responses; ++r) {
@@ -325,15 +329,16 @@ void PanelEvaluator::add_pose(PoseIndex pose) {
   add_samples(pose);
   solve(pose, b_, of_b_);
   std::vector<double> kept;
-  for (std::size_t r = 0; r < panel_->responses; ++r) {
-    Moments& moments = sums_.moments[r * panel_->poses + pose.value];
+  for (std::size_t row = 0; row < panel_->rows(); ++row) {
+    Moments& moments = sums_.moments[row * panel_->poses + pose.value];
     for (const Outcomes* outcomes : {&of_a_, &of_b_}) {
       kept.clear();
       for (std::size_t b = 0; b < unit_.count; ++b) {
-        if (outcomes->counts[b] != 0) kept.push_back(outcomes->values[r * unit_.count + b]);
+        if (outcomes->counts[b] != 0) kept.push_back(outcomes->values[row * unit_.count + b]);
       }
       moments.merge(Moments::of(kept));
-      for (const double value : kept) sums_.least[r] = std::min(sums_.least[r], value);
+      if (row >= panel_->responses) continue;
+      for (const double value : kept) sums_.least[row] = std::min(sums_.least[row], value);
     }
   }
   std::ranges::fill(between_, 0.0);

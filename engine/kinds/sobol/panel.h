@@ -33,6 +33,7 @@ struct IndexPanel {
   bool shapley;                                            ///< whether Shapley effects are asked for
 
   std::size_t quantities() const { return responses + vectors.size(); }  ///< R + V, in this order.
+  std::size_t rows() const { return responses + details; }               ///< R + D, in this order.
   std::span<const std::size_t> components(std::size_t quantity) const;   ///< Rows of [(R + D) x B].
   /// At each pose.
   std::size_t solves_of_sample() const { return (shapley ? subsets() : 2 + groups.size()) + pairs.size(); }
@@ -58,7 +59,7 @@ struct PanelSums {
   std::vector<IndexSums> aggregated;    ///< [(R + V) x P]
   std::vector<RatioSums> pairs;         ///< [R x pairs] second-order indices
   std::vector<RatioSums> shapley;       ///< [R x P] Shapley effects; or empty
-  std::vector<Moments> moments;         ///< [R x M] of the samples A and B
+  std::vector<Moments> moments;         ///< [(R + D) x M] of the samples A and B
   std::vector<double> least;            ///< [R] smallest of these; infinite without samples
   std::vector<SolveCounts> solves;      ///< [M]
   std::vector<FailedSamples> failed;    ///< [M] the first samples of A that were not solved

@@ -117,14 +117,36 @@ Table response_table(const StoredResult& result, std::size_t r, RowOrder order) 
         "Sh: Shapley effect, in which what is made together is divided evenly; they add up to 1, also where errors are "
         "correlated");
   }
+  if (!varies(result, r)) {
+    table.caption = constant_text(result.responses[r]);
+    table.notes.clear();
+  }
   fill(table, ordered(found, first, order), columns);
   return table;
 }
 
-/// The total index of every vector: one column each.
+bool vector_varies(const SobolResult& found, std::size_t v) {
+  return found.vector_varies.empty() || found.vector_varies[v] != 0;
+}
+
+/// "displacement and delta_mu_21_omega do not vary, so no error has a share of them"; empty where all vary.
+std::string constant_vectors_text(const SobolResult& found) {
+  std::vector<std::string> names;
+  for (std::size_t v = 0; v < found.vectors.size(); ++v) {
+    if (!vector_varies(found, v)) names.push_back(found.vectors[v]);
+  }
+  if (names.empty()) return {};
+  const bool one = names.size() == 1;
+  return fmt::format("{} {} not vary, so no {} has a share of {}", some_names(names), one ? "does" : "do", word(found),
+                     one ? "it" : "them");
+}
+
+/// The total index of every vector: one column each, ordered by the first one that varies.
 Table vectors_table(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   const std::size_t groups = found.groups();
+  const std::vector<std::size_t> vectors = positions(found.vectors.size());
+  const auto first = std::ranges::find_if(vectors, [&](std::size_t v) { return vector_varies(found, v); });
   std::vector<FilledColumn> columns{
       {text_column(word(found), word(found)), [&](std::size_t g) { return text_cell(found.group_names[g]); }}};
   for (std::size_t v = 0; v < found.vectors.size(); ++v) {
@@ -137,7 +159,8 @@ Table vectors_table(const StoredResult& result) {
               .columns = {},
               .notes = {"a vector of a linear mechanism is additive: its indices are then shares of its mean square"},
               .ranked = true};
-  fill(table, by_total_index(found, found.of_vectors, 0), columns);
+  if (std::string text = constant_vectors_text(found); !text.empty()) table.notes.push_back(std::move(text));
+  fill(table, by_total_index(found, found.of_vectors, first == vectors.end() ? 0 : *first * groups), columns);
   return table;
 }
 
@@ -259,13 +282,16 @@ void add_pairs(const StoredResult& result, std::span<const Table> tables, Page& 
   Section& section = page.add_section("pairs", "Which errors interact");
   HeatMap map{{}, found.group_names, word(found) + ", in the order of the rows", {}};
   for (const std::size_t r : headline_order(result)) {
+    if (!varies(result, r)) continue;
     const std::size_t cells = found.groups() * found.groups();
     const auto values = std::span(found.S2).subspan(r * cells, cells);
     map.layers.push_back(
         {"S2 of " + result.responses[r].name, "", page.figures.pool.add(fmt::format("pairs/{}", r), values), true});
   }
-  add_figure(page, section, "pairs", std::move(map),
-             "The share of the variance that two make together and neither makes alone.");
+  if (!map.layers.empty()) {
+    add_figure(page, section, "pairs", std::move(map),
+               "The share of the variance that two make together and neither makes alone.");
+  }
   for (const Table& table : tables) {
     if (table.name.starts_with("pairs_")) section.table(table);
   }
@@ -287,6 +313,7 @@ void add_where(const StoredResult& result, Page& page) {
   std::vector<HeatLayer> layers;
   std::vector<Field> fields;
   for (const std::size_t r : figures.responses()) {
+    if (!varies(result, r)) continue;
     const NamedUnit& response = result.responses[r];
     const auto at_poses = [&](const std::vector<double>& values) {
       return std::span(values).subspan(r * groups * found.poses, groups * found.poses);
@@ -295,8 +322,10 @@ void add_where(const StoredResult& result, Page& page) {
     layers.push_back({"S1 of " + response.name, "", figures.add(fmt::format("S1/{}", r), at_poses(found.at_poses.S1))});
     fields.push_back({"ST of " + response.name, "", layers[layers.size() - 2].value, found.group_names});
   }
-  add_figure(page, section, "poses", figures.heat_map(std::move(layers), found.group_names, ""),
-             fmt::format("The index of each {} at each pose.", word(found)));
+  if (!layers.empty()) {
+    add_figure(page, section, "poses", figures.heat_map(std::move(layers), found.group_names, ""),
+               fmt::format("The index of each {} at each pose.", word(found)));
+  }
   fields.push_back(figures.not_converged(tally(result).shares_by_pose()));
   figures.add_condition(fields);
   figures.add_workspace(section, std::move(fields));
@@ -315,7 +344,7 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
   std::vector<std::string> names;
   for (const std::size_t r : result.headline) {
-    if (sobol_of(result).without_sign[r] != 0) names.push_back(result.responses[r].name);
+    if (sobol_of(result).without_sign[r] != 0 && varies(result, r)) names.push_back(result.responses[r].name);
   }
   if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
@@ -325,6 +354,7 @@ ErrorShares error_shares(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   if (found.groups() == 0 || found.poses == 0) return {};
   const std::size_t r = response_named(result, default_ranking(result));
+  if (!varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
   const bool shapley = !found.Sh.empty();
   const std::vector<double>& all = shapley ? found.Sh : found.aggregated.ST;
@@ -356,6 +386,7 @@ Answer answer(const StoredResult& result) {
   const std::size_t r = response_named(result, default_ranking(result));
   const std::size_t first = r * groups;
   const std::string& response = result.responses[r].name;
+  if (!varies(result, r)) return {{"Answer", constant_text(result.responses[r]) + "."}};
   const SobolIndices& indices = found.aggregated;
   const std::vector<std::size_t> order = by_total_index(found, indices, first);
   const std::size_t top = order.front();
@@ -411,10 +442,11 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
 std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& options) {
   const SobolResult& found = sobol_of(result);
   std::vector<Table> tables;
-  for (const std::size_t r : result.headline) tables.push_back(response_table(result, r, options.order));
+  const std::vector<std::size_t> order = varying_first(result, result.headline);
+  for (const std::size_t r : order) tables.push_back(response_table(result, r, options.order));
   if (!found.vectors.empty()) tables.push_back(vectors_table(result));
-  for (const std::size_t r : result.headline) {
-    if (!found.S2.empty()) tables.push_back(pairs_table(result, r));
+  for (const std::size_t r : order) {
+    if (!found.S2.empty() && varies(result, r)) tables.push_back(pairs_table(result, r));
   }
   return tables;
 }

@@ -54,8 +54,8 @@ std::string_view name(Design design);  ///< As a study file has it.
 /// The kind of study that divides the variance of each response among the errors.
 extern const StudyKind kSobolStudy;
 
-/// Indices of some quantities to P groups, with their intervals: shares of a variance, NaN where there is none, and for
-/// a group with errors that are correlated with errors of other groups.
+/// Indices of some quantities to P groups, with their intervals: shares of a variance, NaN where a quantity does not
+/// vary (stats/indices.h), and for a group with errors that are correlated with errors of other groups.
 struct SobolIndices {
   double conf_level = 0.95;        ///< of the intervals
   std::vector<double> S1;          ///< first-order index; of several errors their closed index
@@ -92,6 +92,10 @@ struct SobolResult {
   std::vector<Failure> failures;           ///< the first, in the order of poses and samples
   std::uint64_t failed_samples = 0;        ///< how many there are of them; other solves have no addresses
   std::optional<ConvergenceResult> convergence = std::nullopt;  ///< where the study has adaptive samples
+
+  // Whether a quantity varies, 0 or 1; empty where all do.
+  std::vector<std::uint8_t> varies;         ///< [R]
+  std::vector<std::uint8_t> vector_varies;  ///< [V]
 
   std::size_t groups() const { return group_names.size(); }  ///< P
   SolveCounts total() const { return total_of(solves); }     ///< over all poses

@@ -10,6 +10,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/kinds/sobol/constant.h"
 #include "engine/kinds/sobol/kind.h"
 #include "engine/kinds/sobol/panel.h"
 #include "engine/run/fold.h"
@@ -28,11 +29,18 @@ Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::siz
   return (split ? sums.shapley[place] : sums.aggregated[place].total).estimate(conf_level);
 }
 
-/// How sure the indices of a panel are: of each response the largest ST, and the largest half-width of any.
-std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums, double conf_level) {
+/// How sure the indices of a panel are: of each response the largest ST, and the largest half-width of any; zero where
+/// it does not vary, so that no sample is taken for it. rounding: [R + D].
+std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums,
+                                           std::span<const double> rounding, double conf_level) {
   const std::size_t groups = panel.groups.size();
+  const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
   std::vector<Estimate> list;
   for (std::size_t r = 0; r < panel.responses; ++r) {
+    if (varies[r] == 0) {
+      list.push_back({0.0, {0.0, 0.0}});
+      continue;
+    }
     double value = 0.0;
     double half_width = 0.0;
     for (std::size_t g = 0; g < groups; ++g) {
@@ -55,6 +63,7 @@ class PanelWork {
       : plan_(plan),
         model_(model),
         panel_(study, plan.poses().size()),
+        rounding_(row_rounding(panel_, plan, model)),
         design_(plan, asked_of<SobolOptions>(study.analysis)),
         units_per_leaf_(design_.independent() ? 1 : design_.units_per_replicate()),
         leaves_(options.shard.value_or(Shard()).of(design_.units() / units_per_leaf_)),
@@ -113,10 +122,11 @@ class PanelWork {
     while (from.left() > 0) restore_one(from);
   }
   bool next_round() {
-    return rounds_.go_on([&](std::size_t) { return largest_of_responses(panel_, sums(), conf_level_); });
+    return rounds_.go_on([&](std::size_t) { return largest_of_responses(panel_, sums(), rounding_, conf_level_); });
   }
 
   const IndexPanel& panel() const { return panel_; }
+  std::span<const double> rounding() const { return rounding_; }
   std::optional<ConvergenceResult> convergence() const { return rounds_.result(); }
   /// Everything merged so far. Precondition: a leaf was.
   PanelSums sums() const {
@@ -170,6 +180,7 @@ class PanelWork {
   const Plan& plan_;
   const Model& model_;
   IndexPanel panel_;
+  std::vector<double> rounding_;  ///< [R + D] as row_rounding gives it
   PanelDesign design_;
   std::size_t units_per_leaf_;
   NumberRange leaves_;  ///< of this shard
@@ -225,7 +236,8 @@ std::string members_text(const ErrorGroup& group, const Study& study) {
   return text;
 }
 
-SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSums& sums) {
+SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSums& sums,
+                      std::span<const double> rounding) {
   const double level = study.analysis.conf_level;
   const std::size_t shared = panel.responses * panel.groups.size();
   SobolResult found;
@@ -241,7 +253,7 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   found.aggregated = indices_of(std::span(sums.aggregated).first(shared), level);
   found.of_vectors = indices_of(std::span(sums.aggregated).subspan(shared), level);
   for (const IndexSums& cell : sums.at_poses) found.n.push_back(cell.total.count());
-  for (const Moments& moments : sums.moments) {
+  for (const Moments& moments : std::span(sums.moments).first(panel.responses * panel.poses)) {
     found.mean.push_back(moments.count() == 0 ? kNaN : moments.mean());
     found.variance.push_back(moments.variance());
   }
@@ -252,6 +264,7 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   for (const RatioSums& effect : sums.shapley) {
     append(effect.estimate(level), found.Sh, found.Sh_ci_low, found.Sh_ci_high);
   }
+  leave_out_constant(panel, sums, rounding, found);
   found.solves = sums.solves;
   if (asked_of<SobolOptions>(study.analysis).design != Design::random) return found;  // others have no addresses
   for (std::size_t m = 0; m < panel.poses; ++m) {
@@ -265,7 +278,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const Plan plan(run.study, run.poses);
   PanelWork work(plan, run.model, run.study, run.options);
   if (!fold(work, run.options) || run.options.shard || !run.makes_result()) return std::nullopt;
-  SobolResult found = result_of(run.study, work.panel(), work.sums());
+  SobolResult found = result_of(run.study, work.panel(), work.sums(), work.rounding());
   found.convergence = work.convergence();
   return StudyResult{std::move(found), std::nullopt, {}};
 }

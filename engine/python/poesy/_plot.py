@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _ranking
+from ._constant import constant_text
 from ._errors import NotInResult
 from ._units import Unit, labelled, shown
 
@@ -58,6 +59,8 @@ class Plots:
             How many rows at the most.
         """
         ranked = self._result.ranking(response)[:top]
+        if not ranked.rows:
+            raise NotInResult(f"{self._result.path}: {ranked.title}")
         low, high, words = _INTERVALS[ranked.value]
         values = np.array([getattr(row, ranked.value) for row in ranked])
         at = np.arange(len(values))
@@ -140,6 +143,7 @@ class Plots:
             lacks = f"this result of kind {result.kind} has no main effects"
             raise NotInResult(f"{result.path}: {lacks}; results of kind monte-carlo have them")
         response = result.response(response)
+        _expect_shares(result, response)
         group = result.to_xarray("monte_carlo/main_effect").sel(response=response)
         factors = result.to_xarray("factors")
         names = [str(name) for name in factors["name"].values]
@@ -250,7 +254,13 @@ def _sensitivity_field(result: Result, response: str, of: str | None) -> _Field:
     return _Field(np.array(local) * sigma / unit.si, f"effect of {error} on {response}", unit.name)
 
 
+def _expect_shares(result: Result, response: str) -> None:
+    if response in result.constant:
+        raise NotInResult(f"{result.path}: {constant_text(response)}; ranking() begins with a response that varies")
+
+
 def _sobol_field(result: Result, response: str, of: str | None) -> _Field:
+    _expect_shares(result, response)
     name = of or result.ranking(response)[0].name
     group = result.to_xarray("sobol").sel(response=response)
     found = _selected(result, group, "group" if "group" in group.dims else "factor", name)

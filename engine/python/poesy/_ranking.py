@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from ._constant import INDEX_ROUNDING, constant_text
 from ._errors import NotInResult
 from ._units import shown
 
@@ -18,10 +19,10 @@ if TYPE_CHECKING:
 
     from ._result import Result
 
-# As the program has them (engine/stats/indices.h): an index below the first is rounding; rounding above the second hides
-# indices of interest.
-_INDEX_ROUNDING = 1e-10
+# As the program has them: rounding above the first hides indices of interest (engine/stats/indices.h); with fewer samples
+# at a pose no first-order index is formed (engine/stats/first_order.h).
 _INDEX_OF_INTEREST = 1e-6
+_FEWEST_INDEX_SAMPLES = 64
 _ROWS_SHOWN = 20
 
 
@@ -203,7 +204,7 @@ def ranking(result: Result, response: str | None) -> Ranking:
 def told_from_rounding(index: float, rounding: float) -> float:
     """The index in SI, 0 where it is no more than rounding, NaN where the error is too small to tell. rounding: of the
     response, divided by the error's sigma; both SI."""
-    rounding = max(_INDEX_ROUNDING, rounding)
+    rounding = max(INDEX_ROUNDING, rounding)
     if math.isnan(index) or index >= rounding:
         return index
     return math.nan if rounding > _INDEX_OF_INTEREST else 0.0
@@ -245,6 +246,8 @@ def _sensitivity(result: Result, response: str | None) -> Ranking:
     if len(set(units)) == 1:
         in_units |= dict.fromkeys(("index", "index_low", "index_high"), f"{effect_unit.name}/{shown(str(units[0])).name}")
     title = f"Effect of each error on {response} at the size the study gives it"
+    if response in result.constant and not any(math.isnan(row.index) for row in rows if isinstance(row, SensitivityRow)):
+        title = constant_text(response)
     return Ranking(title, "effect", "error", tuple(rows), in_units)
 
 
@@ -252,6 +255,9 @@ def _sobol(result: Result, response: str | None) -> Ranking:
     response = result.response(response)
     found = result.to_xarray("sobol/aggregated").sel(response=response)
     axis = "group" if "group" in found.dims else "factor"
+    what = "group" if axis == "group" else "error"
+    if response in result.constant:
+        return Ranking(constant_text(response), "ST", what, ())
     names = [str(name) for name in found[axis].values]
     total, alone = (_with_ends(found, name) for name in ("ST", "S1"))
     if axis == "group":
@@ -262,13 +268,14 @@ def _sobol(result: Result, response: str | None) -> Ranking:
         SobolRow(rank, names[g], *total[g], *alone[g], in_words[names[g]])
         for rank, g in enumerate(_in_order([value for value, _, _ in total]), start=1)
     )
-    what = "group" if axis == "group" else "error"
     return Ranking(f"Shares of the variance of {response}, over the poses together", "ST", what, rows)
 
 
 def _monte_carlo(result: Result, response: str | None) -> Ranking:
     response = result.response(response)
     found = result.to_xarray("monte_carlo").sel(response=response)
+    if response in result.constant:
+        return Ranking(constant_text(response), "S1", "error", ())
     alone = _with_ends(found, "S1")
     names = [str(name) for name in found["factor"].values]
     rows = tuple(
@@ -276,6 +283,8 @@ def _monte_carlo(result: Result, response: str | None) -> Ranking:
         for rank, p in enumerate(_in_order([value for value, _, _ in alone]), start=1)
     )
     title = f"First-order indices: the part of the variance of {response} that an error makes alone"
+    if (found["count"].values[found["effect_pose"].values] < _FEWEST_INDEX_SAMPLES).any():
+        title += f"; none is formed below {_FEWEST_INDEX_SAMPLES} samples at a pose that count"
     return Ranking(title, "S1", "error", rows)
 
 

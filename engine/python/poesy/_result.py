@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from . import _h5, _program
+from ._constant import constant_responses
 from ._errors import DamagedFile, FileError, NotInResult
 from ._plot import Plots
 from ._ranking import Ranking, ranking, to_salib
@@ -56,6 +57,7 @@ class Result:
         self.path = Path(path)
         self.messages = messages
         self._groups: dict[str, xarray.Dataset] = {}
+        self._constant: frozenset[str] | None = None
         with _h5.opened(self.path) as file:
             self.attrs = _h5.attributes(file)
             self.kind, self.model, self.title = (str(self.attrs[name]) for name in ("kind", "model", "title"))
@@ -126,13 +128,23 @@ class Result:
         """A response or an error in words: which limb, joint and axis. axis: "response" or "factor"."""
         return self._descriptions.get(axis, {}).get(name, "")
 
+    @property
+    def constant(self) -> frozenset[str]:
+        """Names of the responses that do not vary: what their samples scatter, if they do, is rounding. No error has a share
+        of them. Of kinds sensitivity, sobol, monte-carlo and coupling; of others none is said not to vary."""
+        if self._constant is None:
+            with _h5.opened(self.path) as file:
+                self._constant = constant_responses(self.kind, file)
+        return self._constant
+
     def response(self, name: str | None = None) -> str:
-        """The response of this name, or the one that the program ranks by: of those that the mechanism puts first, the
-        first that is a length, else the first. Raises `NotInResult` for a name that it does not have."""
+        """The response of this name, or the one that the program ranks by: of those that the mechanism puts first and that
+        vary, the first that is a length, else the first. Raises `NotInResult` for a name that it does not have."""
         units = self._units["response"]
         if name is None:
             listed = self.to_xarray("responses").attrs.get("headline", list(units))
             first = [listed] if isinstance(listed, str) else list(listed)
+            first = [one for one in first if one not in self.constant] or first
             return next((one for one in first if units[one] == "m"), first[0])
         if name not in units:
             raise NotInResult(f"{self.path}: there is no response '{name}'; it has {', '.join(units)}")
@@ -154,6 +166,8 @@ class Result:
         allocation      parts by cost, else by share of the mean square (`AllocationRow`)
         identification  errors by whether they deform the mechanism (`IdentificationRow`)
         ==============  ===================================================================
+
+        By a response that does not vary (`Result.constant`) shares have no rows, and the title says why.
 
         Parameters
         ----------

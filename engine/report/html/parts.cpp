@@ -16,7 +16,7 @@ std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::spa
 }
 
 std::vector<std::size_t> headline_order(const StoredResult& result) {
-  std::vector<std::size_t> order = result.headline;
+  std::vector<std::size_t> order = varying_first(result, result.headline);
   const auto first = std::ranges::find(order, response_named(result, default_ranking(result)));
   if (first != order.end()) std::rotate(order.begin(), first, first + 1);
   return order;
@@ -27,7 +27,7 @@ std::vector<std::size_t> response_order(const StoredResult& result) {
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     if (std::ranges::find(result.headline, r) == result.headline.end()) order.push_back(r);
   }
-  return order;
+  return varying_first(result, std::move(order));
 }
 
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,

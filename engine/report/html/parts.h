@@ -28,9 +28,10 @@ struct ReportedResult {
 
 /// The names at these positions.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
-/// The headline's responses, the one that ranks errors first (default_ranking).
+/// The headline's responses, the one that ranks errors first (default_ranking), those that do not vary last.
 std::vector<std::size_t> headline_order(const StoredResult& result);
-std::vector<std::size_t> response_order(const StoredResult& result);  ///< The same, then all others.
+/// All responses: those of the headline first, in that order, but whatever does not vary last.
+std::vector<std::size_t> response_order(const StoredResult& result);
 
 /// "mm", for each of these responses.
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,

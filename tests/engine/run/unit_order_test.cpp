@@ -9,6 +9,7 @@
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/sensitivity/indices.h"
 #include "engine/run/evaluate_unit.h"
+#include "engine/run/response_rounding.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace poesy {
 namespace {
@@ -41,6 +42,30 @@ TEST(IsTooSmallToTell, WhereAnIndexOfInterestWouldBeRounding) {
   EXPECT_FALSE(is_too_small_to_tell(0.0, index_rounding(kSolver, 1.01e-9)));
   EXPECT_TRUE(is_too_small_to_tell(0.0, index_rounding(kSolver, 0.99e-9)));
   EXPECT_FALSE(is_too_small_to_tell(0.5, index_rounding(kSolver, 0.99e-9)));
+}
+
+TEST(SizeRounding, IsThatOfSolvesOrOfDigits) {
+  EXPECT_EQ(size_rounding(kSolver, 1e-3, 1e-2), 1e-12);
+  EXPECT_EQ(size_rounding(kSolver, 1e-6, kNaN), kSolver);
+  EXPECT_EQ(size_rounding(0.0, kNaN, 1e-3), 1e-13);
+}
+
+/// Effects a_p sigma_p of errors that vary together add up as root sum square: where each alone is rounding, all are.
+TEST(JointRounding, IsAboveWhatErrorsWithoutEffectDoTogether) {
+  const std::vector<double> sigma{1e-3, 2e-3, 1e-9};
+  const double rounding = joint_rounding(kSolver, sigma);
+  EXPECT_DOUBLE_EQ(rounding, std::sqrt(1e-26 + 4e-26 + 1e-30));
+  double squares = 0.0;
+  for (const double one : sigma) squares += std::pow(0.999 * index_rounding(kSolver, one) * one, 2);
+  EXPECT_FALSE(has_effect(std::sqrt(squares), rounding));
+  EXPECT_TRUE(has_effect(1e-6 * sigma[0], rounding));
+}
+
+TEST(IsConstant, AsksOfAllPosesWhatIsKnown) {
+  EXPECT_TRUE(is_constant(std::vector{0.0, 1e-20, 9e-13}, 1e-12));
+  EXPECT_FALSE(is_constant(std::vector{0.0, 1.1e-12}, 1e-12));
+  EXPECT_TRUE(is_constant(std::vector{kNaN, 0.0}, 1e-12));
+  EXPECT_FALSE(is_constant(std::vector{kNaN, kNaN}, 1e-12)) << "nothing is known";
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ CouplingStudy study(const ErrorPattern& pattern, std::vector<double> sizes) {
 CouplingResult solve(const Model& model, const CouplingStudy& some) {
   const auto evaluation = run_evaluation(model, {}, kPoses, coupling_table(some, kModel),
                                          Pairing::every_pose_with_every_row, {1, {}, {}}, Outcomes::responses);
-  return coupling_result(*evaluation, some, kModel, NotConverged::exclude);
+  return coupling_result(*evaluation, some, kModel, NotConverged::exclude, coupling_rounding(some, model));
 }
 
 TEST(LiteratureSources, AreFactorSetsThatDoNotOverlap) {

@@ -1,5 +1,6 @@
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/run/evaluation.h"
+#include "engine/stats/indices.h"
 
 #include <gtest/gtest.h>
 
@@ -41,6 +42,15 @@ EvaluationResult evaluation_of(const ErrorTable& table, std::size_t factors, std
   return result;
 }
 
+/// Of responses that solves do not round, [R x Z].
+std::vector<double> rounding_of(const CouplingStudy& study, std::size_t responses) {
+  std::vector<double> list;
+  for (std::size_t r = 0; r < responses; ++r) {
+    for (const double size : study.linear) list.push_back(size_rounding(0.0, size, 0.0));
+  }
+  return list;
+}
+
 /// Two limbs with three lengths each, x, y and a scalar; the sources are limb by limb a (x and y) and q.
 class CouplingOfSixErrors : public testing::Test {
  protected:
@@ -66,7 +76,7 @@ class CouplingOfSixErrors : public testing::Test {
 
   CouplingResult solve(const std::vector<Effect>& responses) const {
     return coupling_result(evaluation_of(coupling_table(study_, model_), 6, kPoses, responses), study_, model_,
-                           NotConverged::exclude);
+                           NotConverged::exclude, rounding_of(study_, responses.size()));
   }
 
   ModelDescription model_;
@@ -160,7 +170,9 @@ TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
   some.status[0 * table.rows + 0] = SolveStatus::singular;       // pose 0: A
   some.status[1 * table.rows + 6] = SolveStatus::iteration_cap;  // pose 1: a block of Q
   some.status[2 * table.rows + rows] = SolveStatus::non_finite;  // pose 2, second size: A
-  const auto found_with = [&](NotConverged policy) { return coupling_result(some, study_, model_, policy); };
+  const auto found_with = [&](NotConverged policy) {
+    return coupling_result(some, study_, model_, policy, rounding_of(study_, 1));
+  };
   const CouplingResult exclude = found_with(NotConverged::exclude);
   EXPECT_EQ(exclude.count, (std::vector<std::uint64_t>{2, 2, 1, 2, 3, 2}));
   EXPECT_TRUE(std::isnan(exclude.effect[cell(0, 0, 0, 0)]));
@@ -191,7 +203,8 @@ TEST(CouplingOfAMechanism, IsThatOfItsAbsoluteValues) {
   const PoseSet poses(3, {-0.2, 0.1, 0.2, -0.25, 0.3, -0.1});
   const auto evaluation = run_evaluation(fake, {}, poses, coupling_table(study, model),
                                          Pairing::every_pose_with_every_row, {1, {}, {}}, Outcomes::responses);
-  const CouplingResult found = coupling_result(*evaluation, study, model, NotConverged::exclude);
+  const CouplingResult found =
+      coupling_result(*evaluation, study, model, NotConverged::exclude, coupling_rounding(study, fake));
   ASSERT_EQ(found.subsets, 7u);
   for (std::size_t r = 0; r < 2; ++r) {
     for (std::size_t m = 0; m < 2; ++m) {

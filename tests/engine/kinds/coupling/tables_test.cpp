@@ -30,6 +30,7 @@ StoredResult example() {
   found.subsets = 3;
   found.poses = 4;
   found.count.assign(6, 4);
+  found.rounding = {1e-14, 1e-14};
   found.effect_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 3.5e-5};
   found.effect_max_pose = {0, 0, 0, 3, 0, 3};
   found.interaction_max = {0.0, 0.0, 0.0, 0.0, 0.0, 1e-8};

@@ -213,5 +213,40 @@ TEST(FailuresText, CountsTheSolvesOfAllPosesOnce) {
             "replay it: poesy replay 'my r.h5' all 2 7\n");
 }
 
+/// A length is first, but one that does not vary comes after a number that does.
+TEST(DefaultRanking, IsByWhatVaries) {
+  StoredResult result = example();
+  EXPECT_EQ(default_ranking(result), "linear_deformation");
+  result.constant = {0};
+  EXPECT_EQ(default_ranking(result), "ratio");
+  EXPECT_EQ(varying_first(result, {0, 1}), (std::vector<std::size_t>{1, 0}));
+  result.constant = {0, 1};
+  EXPECT_EQ(default_ranking(result), "linear_deformation") << "none varies";
+}
+
+/// The notes below the table of first-order indices.
+std::string notes_of_indices(const StoredResult& result) {
+  std::string text;
+  for (const Table& table : result_tables(result, default_ranking(result))) {
+    if (table.name != "first_order") continue;
+    for (const std::string& note : table.notes) text += note + "\n";
+  }
+  return text;
+}
+
+TEST(NoIndices, HaveTheirTrueReason) {
+  StoredResult result = example();
+  result.headline = {0};
+  MonteCarloResult& found = monte_carlo_in(result);
+  found.count = {63, 100, 100, 100, 100, 100};
+  found.effects.effects.s1.assign(4, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_NE(notes_of_indices(result).find("no S1 is formed below 64 samples"), std::string::npos);
+  found.count[0] = 100;
+  result.study_text = "[analysis]\n\n[[errors.correlated]]\n";
+  EXPECT_NE(notes_of_indices(result).find("each is correlated with others"), std::string::npos);
+  result.constant = {0};
+  EXPECT_NE(notes_of_indices(result).find("linear_deformation does not vary"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace poesy

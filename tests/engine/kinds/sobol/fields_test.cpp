@@ -56,6 +56,23 @@ TEST(SobolFields, AreReadAsTheyWereWritten) {
   EXPECT_EQ(found.total().not_converged(), 1u);
 }
 
+TEST(SobolFields, SayWhatDoesNotVaryWhereSomethingDoesNot) {
+  const TempFolder folder;
+  const std::string path = folder.path() + "/sobol.h5";
+  Example example;
+  example.write_sobol(path);
+  EXPECT_TRUE(sobol_of(read_result(path)).varies.empty());
+  EXPECT_TRUE(read_result(path).constant.empty());
+  SobolResult result = example.sobol();
+  result.varies = {0, 1};
+  result.vector_varies = {1, 0};
+  write_result(path, example.study, example.poses, result, example.facts);
+  const StoredResult stored = read_result(path);
+  EXPECT_EQ(sobol_of(stored).varies, result.varies);
+  EXPECT_EQ(sobol_of(stored).vector_varies, result.vector_varies);
+  EXPECT_EQ(stored.constant, std::vector<std::size_t>{0});
+}
+
 TEST(SobolFields, GroupsAreAnAxisOfTheirOwn) {
   const TempFolder folder;
   const std::string path = folder.path() + "/sobol.h5";

@@ -1,0 +1,161 @@
+// What does not vary has nothing to be shared: a function whose parts move, stand still but for rounding, or move at
+// one pose alone.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "engine/kinds/monte_carlo/kind.h"
+#include "engine/kinds/sobol/kind.h"
+#include "engine/kinds/study_run.h"
+#include "engine/stats/first_order.h"
+#include "tests/support/function_model.h"
+
+namespace poesy::test {
+namespace {
+
+constexpr double kSigma = 1e-3;
+constexpr std::size_t kMoving = 0;
+constexpr std::size_t kStill = 1;
+constexpr std::size_t kAtOnePose = 2;
+
+/// As solves leave it: about one unit in the last place of five millimetres.
+double noise(double x) { return 1e-18 * std::sin(1e7 * x); }
+
+/// moving = x1 + 2 x2, still = 5 mm, at_one_pose = x1 where the pose is above a half; both but for rounding.
+void parts(std::span<const double> x, double pose, std::span<double> y) {
+  y[kMoving] = x[0] + 2.0 * x[1];
+  y[kStill] = 5e-3 + noise(x[0]);
+  y[kAtOnePose] = pose > 0.5 ? x[0] : noise(x[1]);
+}
+
+/// The same with two vectors as details: (x1 + 2 x2, rounding), and (rounding, rounding).
+class PartsModel final : public FunctionModel {
+ public:
+  PartsModel() : FunctionModel(2, {"moving", "still", "at_one_pose"}, parts), described_(FunctionModel::description()) {
+    for (Response& response : described_.responses) response.dimension = Dimension::length;
+    described_.details = {{"some", {"v_x", "v_y"}, "m,m", "one component moves"},
+                          {"none", {"v_x", "v_y"}, "m,m", "no component moves"}};
+  }
+
+  const ModelDescription& description() const override { return described_; }
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
+    class WithDetails final : public Evaluator {
+     public:
+      explicit WithDetails(std::unique_ptr<Evaluator> responses) : responses_(std::move(responses)) {}
+
+      void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+        responses_->evaluate(samples, outcomes);
+        for (std::size_t b = 0; b < samples.count && !outcomes.details.empty(); ++b) {
+          const double last_place = noise(samples.values[b]);
+          const double details[]{outcomes.responses[b], last_place, 2.0 * last_place, last_place};
+          for (std::size_t d = 0; d < 4; ++d) outcomes.details[d * samples.count + b] = details[d];
+        }
+      }
+
+     private:
+      std::unique_ptr<Evaluator> responses_;
+    };
+    return std::make_unique<WithDetails>(FunctionModel::evaluator(options));
+  }
+
+ private:
+  ModelDescription described_;
+};
+
+struct Found {
+  explicit Found(const StudyKind& kind, std::size_t samples = 4096) : Found(kind, samples, std::nullopt) {}
+  Found(const StudyKind& kind, std::size_t samples, std::optional<AdaptiveSamples> adaptive) {
+    entry.description = model.description();
+    study = function_study(entry, kind, Distribution::normal(kSigma), samples);
+    study.analysis.adaptive = adaptive;
+  }
+
+  StudyResult run() { return run_study(study, model, poses, {1, {}, {}}).value(); }
+
+  PartsModel model;
+  CatalogEntry entry;
+  Study study;
+  PoseSet poses{1, {0.25, 0.75}};
+};
+
+bool all_nan(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isnan(value); });
+}
+
+TEST(SobolOfConstants, HaveNoShares) {
+  Found study(kSobolStudy);
+  asked_of<SobolOptions>(study.study.analysis).second_order = true;
+  asked_of<SobolOptions>(study.study.analysis).shapley = true;
+  const StudyResult result = study.run();
+  const auto& found = result.as<SobolResult>();
+  EXPECT_EQ(found.varies, (std::vector<std::uint8_t>{1, 0, 1}));
+  for (const auto* list : {&found.aggregated.S1, &found.aggregated.ST, &found.aggregated.ST_ci_low, &found.Sh}) {
+    EXPECT_TRUE(all_nan(std::span(*list).subspan(2 * kStill, 2)));
+    EXPECT_FALSE(all_nan(std::span(*list).subspan(2 * kMoving, 2)));
+    EXPECT_FALSE(all_nan(std::span(*list).subspan(2 * kAtOnePose, 2)));
+  }
+  EXPECT_TRUE(all_nan(std::span(found.S2).subspan(4 * kStill, 4)));
+  EXPECT_NEAR(found.aggregated.ST[2 * kMoving], 0.2, 0.05);
+  EXPECT_NEAR(found.aggregated.ST[2 * kMoving + 1], 0.8, 0.05);
+  EXPECT_NEAR(found.aggregated.ST[2 * kAtOnePose], 1.0, 1e-12) << "the other pose adds nothing";
+}
+
+/// [R x P x M]: at the pose where it stands still nothing is shared, at the other one x1 has all.
+TEST(SobolOfConstants, AreJudgedPoseByPose) {
+  const StudyResult result = Found(kSobolStudy).run();
+  const SobolIndices& at = result.as<SobolResult>().at_poses;
+  const auto cell = [](std::size_t response, std::size_t error, std::size_t pose) {
+    return (response * 2 + error) * 2 + pose;
+  };
+  for (std::size_t p = 0; p < 2; ++p) {
+    for (std::size_t m = 0; m < 2; ++m) EXPECT_TRUE(std::isnan(at.S1[cell(kStill, p, m)]));
+    EXPECT_TRUE(std::isnan(at.ST[cell(kAtOnePose, p, 0)]));
+  }
+  EXPECT_EQ(at.ST[cell(kAtOnePose, 0, 1)], 1.0);
+  EXPECT_EQ(at.ST[cell(kAtOnePose, 1, 1)], 0.0);
+}
+
+TEST(SobolOfConstants, VectorsAreJudgedByTheirComponents) {
+  const StudyResult result = Found(kSobolStudy).run();
+  const auto& found = result.as<SobolResult>();
+  ASSERT_EQ(found.vectors, (std::vector<std::string>{"some_v", "none_v"}));
+  EXPECT_EQ(found.vector_varies, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_TRUE(all_nan(std::span(found.of_vectors.ST).subspan(2, 2)));
+  for (std::size_t p = 0; p < 2; ++p) {
+    EXPECT_EQ(found.of_vectors.ST[p], found.aggregated.ST[2 * kMoving + p]) << "rounding adds no bit";
+  }
+}
+
+/// ST of what does not vary would be asked for ever more samples.
+TEST(SobolOfConstants, NeedNoSamples) {
+  Found study(kSobolStudy, 100'000, AdaptiveSamples{1000, 0.2});
+  const StudyResult result = study.run();
+  const auto& found = result.as<SobolResult>();
+  ASSERT_TRUE(found.convergence);
+  EXPECT_EQ(found.convergence->samples.front(), 1000u);
+  EXPECT_EQ(found.convergence->reached[kStill], 1);
+}
+
+TEST(MonteCarloOfConstants, HasNoIndicesAndNoMainEffects) {
+  for (const Draws draws : {Draws::per_pose, Draws::per_machine}) {
+    Found study(kMonteCarloStudy);
+    study.study.analysis.draws = draws;
+    const StudyResult result = study.run();
+    const auto& found = result.as<MonteCarloResult>();
+    EXPECT_EQ(found.varies, (std::vector<std::uint8_t>{1, 0, 1}));
+    const MainEffects& effects = found.effects.effects;
+    EXPECT_TRUE(all_nan(std::span(effects.s1).subspan(2 * kStill, 2)));
+    EXPECT_TRUE(all_nan(std::span(effects.mean).subspan(2 * kStill * kEffectBins, 2 * kEffectBins)));
+    EXPECT_NEAR(effects.s1[2 * kMoving + 1], 0.8, 0.05);
+    EXPECT_NEAR(effects.s1[2 * kAtOnePose], 1.0, 0.05);
+    if (draws == Draws::per_machine) {
+      EXPECT_TRUE(all_nan(std::span(found.machines->effects_on_largest.s1).subspan(2 * kStill, 2)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace poesy::test
