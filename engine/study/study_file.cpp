@@ -64,6 +64,28 @@ void check_fidelities(const Study& study, const Reading& reading) {
   }
 }
 
+/// A background does nothing to an error that varies, so one that names such an error by itself, or a set of nothing
+/// else, says what will not happen.
+void check_background(const Study& study, const Reading& reading) {
+  if (!study.analysis.background || study.analysis.kind->varies == Varies::none) return;
+  const auto varies = [&](FactorIndex factor) {
+    return std::ranges::find(study.analysis.factors, factor) != study.analysis.factors.end();
+  };
+  const std::vector<FactorIndex>& held = study.analysis.background->factors;
+  const StudyValue factors = reading.root.section("analysis").section("background").require("factors");
+  const std::string remedy = "leave it out here, or out of the errors that vary";
+  if (factors.is_text() && std::ranges::all_of(held, varies)) {
+    factors.fail("holds errors constant that all vary in this study, so it would do nothing", remedy);
+  }
+  if (factors.is_text()) return;
+  const std::vector<StudyValue> named = factors.list();
+  for (std::size_t n = 0; n < named.size(); ++n) {
+    if (!varies(held[n])) continue;
+    named[n].fail("holds '" + study.model().factors[held[n].value].name + "' constant, which varies in this study",
+                  remedy);
+  }
+}
+
 Study study_from(const Reading& reading) {
   const StudySection& root = reading.root;
   Study study;
@@ -80,6 +102,7 @@ Study study_from(const Reading& reading) {
   if (reading.use == StudyUse::run) {
     check_fidelities(study, reading);
     check_correlated(study, reading);
+    check_background(study, reading);
   }
   check_size(root, study);
   return study;

@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         shortest_study("[poses]\nselect = \"file\"\nfile = \"poses.csv\"\n"),
         shortest_study("[poses]\ncount = 3\n[errors.override]\ndelta_1 = { distribution = \"triangular\", "
                        "half_width = \"0.123456789012345678 mm\" }\n"),
-        shortest_study("[poses]\ncount = 3\n[analysis]\nfactors = [\"delta_2\", \"epsilon_1\", \"delta_1\"]\n"
+        shortest_study("[poses]\ncount = 3\n[analysis]\nfactors = [\"epsilon_1\"]\n"
                        "background = { factors = [\"delta_2\", \"delta_1\"], linear = \"-1 um\" }\n"),
         shortest_study("[poses]\ncount = 3\n[analysis]\nkind = \"monte-carlo\"\njudge = \"share\"\nshare = 0.9973\n"
                        "[analysis.limits]\nangular_deformation = \"0.1 deg\"\n"),

@@ -350,7 +350,7 @@ TEST(ResolvedTextOfTolerances, ReadsBackToTheSameStudy) {
   expect_reads_back(with_analysis(kLimits + kSigmas + kOnePart + "tolerance = \"0.3 mm\"\n"));
   expect_reads_back(
       with_analysis(kLimits + kSigmas +
-                    "background = { factors = \"benign\" }\n[[analysis.parts]]\nfactors = \"linear\"\n"
+                    "[[analysis.parts]]\nfactors = \"linear\"\n"
                     "each = true\nidentical_limbs = [2, 1]\n[[analysis.parts]]\nfactors = \"angular\"\n"));
 }
 
