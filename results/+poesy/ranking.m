@@ -8,14 +8,16 @@ function ranked = ranking(result, response)
 %
 % result is what POESY.READ or POESY.RUN gave, or a file or folder that POESY.READ takes. See there for what is ranked. Rows
 % without a number come last, and rows with the same number in the order of the result. Where no response is a length, the
-% first is taken; shares and Sobol' indices have no unit, so name the response to be sure which one is meant.
+% first that has a number is taken: one that does not vary has no shares. Shares and Sobol' indices have no unit, so name the
+% response to be sure which one is meant.
   if ~isstruct(result)
     result = poesy.read(result);
   end
   all = result.ranked;
   if nargin < 2 || isempty(response)
-    lengths = [find(strcmp(all.units, 'mm')); 1];
-    response = all.responses{lengths(1)};
+    known = reshape(any(~isnan(all.value), 1), [], 1);  % a response that does not vary has no share
+    first = [find(strcmp(all.units(:), 'mm') & known); find(known); 1];
+    response = all.responses{first(1)};
   end
   r = find(strcmp(all.responses, response));
   if isempty(r)
