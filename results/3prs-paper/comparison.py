@@ -52,7 +52,7 @@ INDEPENDENT = (MAIN_TOOL, '"independent"', '"independent"')
 
 SHOWN = {"all limbs": (ALL, "effect"), "limb 1": (ONE, "effect"),
          "independent, root sum square": (INDEPENDENT, "root_sum_square"),
-         "independent, worst case": (INDEPENDENT, "worst_case")}
+         "independent, first-order sum": (INDEPENDENT, "first_order_sum")}
 
 
 @functools.lru_cache(maxsize=None)
@@ -99,7 +99,7 @@ def maxima(folder):
     ways = {}
     for reading in READINGS:
         curves = Curves(folder, name_of("helix", *reading, "exact"))
-        for quantity in ("effect", "root_sum_square", "worst_case"):
+        for quantity in ("effect", "root_sum_square", "first_order_sum"):
             if quantity != "effect" and "independent" not in reading[1] + reading[2]:
                 continue
             ways[f"{words_of(*reading)}, {quantity.replace('_', ' ')}"] = {

@@ -1,6 +1,6 @@
 poesy_test(run_test LABELS determinism SOURCES engine/run/pose_unit_test.cpp engine/run/runner_test.cpp LINKS poesy_kinds)
 poesy_test(analysis_test LABELS unit SOURCES engine/kinds/evaluate/cases_test.cpp engine/kinds/coupling/rows_test.cpp
-           engine/kinds/coupling/coupling_test.cpp engine/kinds/sensitivity/fidelity_test.cpp engine/kinds/identification/identification_test.cpp
+           engine/kinds/coupling/coupling_test.cpp engine/kinds/coupling/corners_test.cpp engine/kinds/sensitivity/fidelity_test.cpp engine/kinds/identification/identification_test.cpp
            engine/kinds/sensitivity/points_radius_test.cpp engine/kinds/sensitivity/separation_test.cpp engine/run/verdict_test.cpp LINKS poesy_kinds)
 # It counts by an operator new of its own, where a sanitizer has one.
 if(NOT POESY_SANITIZE)

@@ -36,6 +36,21 @@ class Coupling(ProgramTest):
         with open(self.folder / "tables" / "coupling.csv") as file:
             self.assertEqual(len(file.readlines()), 1 + 3 * 15 * 18)
 
+    def test_the_sum_alone_takes_no_solves(self):
+        self.write("sum.toml", self.study.replace('worst_case = "search"', 'worst_case = "sum"'))
+        self.assertIn("15 sets of errors x 18 poses = 810 solves\n", self.succeeds("check", "sum.toml"))
+        self.assertIn("sum.h5: 810 solves in", self.succeeds("run", "sum.toml", "--quiet"))
+        self.succeeds("run", "study.toml", "--quiet")
+        with h5py.File(self.folder / "sum.h5") as alone, h5py.File(self.folder / "study.h5") as both:
+            for name in ("effect", "first_order_sum", "first_order_sum_max", "cancellation"):
+                self.assertEqual(alone["coupling"][name][:].tobytes(), both["coupling"][name][:].tobytes())
+            self.assertNotIn("worst_case", alone["coupling"])
+            self.assertIn("worst_case", both["coupling"])
+        self.assertNotIn("worst case:", self.succeeds("show", "sum.h5"))
+        self.succeeds("report", "sum.h5")
+        self.succeeds("export", "sum.h5", "-d", "sums")
+        self.assertFalse((self.folder / "sums/coupling_corners.csv").exists())
+
     def test_result_has_the_study_again(self):
         self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
         with h5py.File(self.folder / "out.h5") as result:

@@ -32,14 +32,17 @@ STUDIES = {
     "two fidelities": HEAD.format(model="3-prs", fidelity='fidelity = "both"', poses=5000, kind="sensitivity")
     + 'factors = "all"\nsamples = 2\n',
     "cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=24000, kind="evaluate") + CASES,
-    "coupling": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=900, kind="coupling") + BLOCKS + SIZES,
+    "coupling": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=900, kind="coupling") + BLOCKS + SIZES
+    + 'worst_case = "sum"\n',
+    "worst cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=600, kind="coupling") + SIZES,
     "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=25000, kind="monte-carlo")
     + 'factors = "all"\nsamples = 2\n',
     "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1000, kind="monte-carlo")
     + 'draws = "per machine"\nfactors = "all"\nsamples = 8000\nlimits.position = "0.1 mm"\n',
 }
 # A smaller last unit is kept apart from whole ones, with numbers of its own, and the file has the sum of both.
-MOST_TIMES_THE_FILE = {"sensitivity": 1.5, "a smaller last unit": 3.0, "two fidelities": 2.2, "cases": 1.5, "coupling": 1.5}
+MOST_TIMES_THE_FILE = {"sensitivity": 1.5, "a smaller last unit": 3.0, "two fidelities": 2.2, "cases": 1.5, "coupling": 1.5,
+                        "worst cases": 1.5}
 # Accumulators are made of the states of all shards, which stay until the last is taken up.
 MOST_TIMES_THE_FILE_MERGED = {"sensitivity": 1.5, "a smaller last unit": 3.0}
 

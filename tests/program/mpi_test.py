@@ -31,7 +31,7 @@ SMALLER = {
     "allocation": ALLOCATION,
     "evaluate": CASES.replace("count = 4000", "count = 300"),
     "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
-    "coupling": COUPLING.replace("count = 20000", "count = 2000"),
+    "coupling": COUPLING.replace("count = 5000", "count = 500"),
     "fidelities": FIDELITIES,
     **ADAPTIVE_STUDIES,
 }

@@ -88,7 +88,7 @@ COUPLING = """\
 format = "poesy-study"
 version = 1
 mechanism = { model = "3-prs" }
-poses = { count = 20000 }
+poses = { count = 5000 }
 [analysis]
 kind = "coupling"
 linear = ["0.1 mm", "0.3 mm", "0.5 mm"]

@@ -1,16 +1,21 @@
 #include "engine/kinds/coupling/coupling.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
 #include <map>
+#include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 #include "engine/kinds/coupling/kind.h"
+#include "engine/kinds/coupling/worst_case.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/response_rounding.h"
 #include "engine/run/result.h"
@@ -61,14 +66,14 @@ struct Combination {
   double sum = 0.0;
   double magnitudes = 0.0;  ///< sum over the sources of |effect of the source|
   double largest = 0.0;     ///< |effect of a source|
-  double worst_case = 0.0;
+  double first_order_sum = 0.0;
   double squares = 0.0;
 
   double cancellation(double rounding) const {
     const double cancelled = magnitudes - std::abs(sum);
     return cancelled <= rounding ? 0.0 : cancelled / magnitudes;
   }
-  bool is_known() const { return !std::isnan(effect) && !std::isnan(sum) && !std::isnan(worst_case); }
+  bool is_known() const { return !std::isnan(effect) && !std::isnan(sum) && !std::isnan(first_order_sum); }
   bool is_opposed(double rounding) const { return largest - std::abs(sum) > rounding; }
 };
 
@@ -81,7 +86,7 @@ Combination combination(const CouplingRows& rows, std::size_t subset, std::span<
     found.magnitudes += std::abs(effects[source]);
     found.largest = std::max(found.largest, std::abs(effects[source]));
     for (const std::size_t row : rows.block_rows[source]) {
-      found.worst_case += std::abs(effects[row]);
+      found.first_order_sum += std::abs(effects[row]);
       found.squares += effects[row] * effects[row];
     }
   }
@@ -114,7 +119,7 @@ class Composer {
     // A list that grows has all its numbers twice while it is copied.
     const std::size_t numbers = found_.responses * found_.sizes * found_.subsets * found_.poses;
     for (std::vector<double>* curve :
-         {&found_.effect, &found_.sum, &found_.worst_case, &found_.root_sum_square, &found_.cancellation}) {
+         {&found_.effect, &found_.sum, &found_.first_order_sum, &found_.root_sum_square, &found_.cancellation}) {
       curve->reserve(numbers);
     }
   }
@@ -167,7 +172,7 @@ class Composer {
       found_.effect.push_back(at.effect);
       found_.sum.push_back(at.sum);
       interaction.push_back(at.effect - at.sum);
-      found_.worst_case.push_back(at.worst_case);
+      found_.first_order_sum.push_back(at.first_order_sum);
       found_.root_sum_square.push_back(std::sqrt(at.squares));
       found_.cancellation.push_back(at.cancellation(rounding));
       if (!at.is_known()) continue;
@@ -183,7 +188,7 @@ class Composer {
     found_.effect_max.push_back(effect);
     found_.effect_max_pose.push_back(effect_pose);
     found_.interaction_max.push_back(largest_at(interaction, known).first);
-    found_.worst_case_max.push_back(largest(found_.worst_case).first);
+    found_.first_order_sum_max.push_back(largest(found_.first_order_sum).first);
     found_.root_sum_square_max.push_back(largest(found_.root_sum_square).first);
     found_.opposed_share.push_back(known.empty() ? kNaN
                                                  : static_cast<double>(opposed) / static_cast<double>(known.size()));
@@ -206,16 +211,81 @@ class Composer {
   CouplingResult found_;
 };
 
+/// The solves of both stages as those of one run: the first is the table of errors, the second the corners.
+class TwoStages {
+ public:
+  TwoStages(const StudyRun& run, double expected_corners) : run_(run), expected_(expected_corners) {}
+
+  RunOptions of_table() {
+    RunOptions options = run_.options;
+    options.progress = [this](const Progress& table) {
+      before_ = table.before;
+      report({table.solves, table.total + static_cast<std::uint64_t>(expected_), table.not_converged, table.before});
+    };
+    return options;
+  }
+  /// A first stage that reports nothing was done by the run that is continued.
+  RunOptions of_corners() {
+    RunOptions options = run_.options;
+    const SolveCounts done = run_.checkpoints().solves();
+    options.progress = [this, all = done.total(), failed = done.not_converged()](const Progress& corners) {
+      report({all + corners.solves, all + corners.total, failed + corners.not_converged,
+              before_.value_or(all) + corners.before});
+    };
+    return options;
+  }
+
+ private:
+  void report(const Progress& progress) const {
+    if (run_.options.progress) run_.options.progress(progress);
+  }
+
+  const StudyRun& run_;
+  double expected_;
+  std::optional<std::uint64_t> before_;
+};
+
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(run.study.analysis);
   const ModelDescription& model = run.model.description();
+  const CornerTable corners(coupling, model);
+  std::vector<double> rounding = coupling_rounding(coupling, run.model);
+  const bool searches = coupling.worst_case == UnknownSigns::search;
+  const NumberRange cells = run.options.shard.value_or(Shard()).of(coupling.sizes() * run.poses.size());
+  const double at_each = searches ? expected_corners(corners, model.responses.size()) : 0.0;
+  TwoStages stages(run, static_cast<double>(cells.end - cells.first) * at_each);
   auto evaluation = run_evaluation(run.model, run.study.solver, run.poses, coupling_table(coupling, model),
-                                   Pairing::every_pose_with_every_row, run.options, Outcomes::responses);
-  if (!evaluation || !run.makes_result()) return std::nullopt;
-  return StudyResult{coupling_result(*std::move(evaluation), coupling, model, run.study.not_converged,
-                                     coupling_rounding(coupling, run.model)),
-                     std::nullopt,
-                     {}};
+                                   Pairing::every_pose_with_every_row, stages.of_table(), Outcomes::responses);
+  if (!run.checkpoints().complete()) return std::nullopt;
+  std::optional<WorstCases> worst;
+  if (searches) worst = run_worst_cases(run, corners, rounding, stages.of_corners());
+  if (!evaluation || worst.has_value() != searches || !run.makes_result()) return std::nullopt;
+  CouplingResult found =
+      coupling_result(*std::move(evaluation), coupling, model, run.study.not_converged, std::move(rounding));
+  if (worst) add_worst_cases(*std::move(worst), corners, found);
+  return StudyResult{std::move(found), std::nullopt, {}};
+}
+
+/// Corners at one size and pose after the other.
+WorkOutlook corner_work(const Study& study, const Model& model, const PoseSet& poses) {
+  struct Trial {
+    Trial(const Study& study, const Model& model, const PoseSet& poses)
+        : table(asked_of<CouplingStudy>(study.analysis), model.description()),
+          rounding(coupling_rounding(asked_of<CouplingStudy>(study.analysis), model)),
+          search(model, study.solver, poses, table, rounding) {}
+
+    CornerTable table;
+    std::vector<double> rounding;
+    CornerSearch search;
+  };
+  const auto trial = std::make_shared<Trial>(study, model, poses);
+  const std::size_t sizes = trial->table.size_of_error.size();
+  const std::size_t cells = sizes * poses.size();
+  return {[trial, sizes, cells](double at) {
+    const auto cell = static_cast<std::size_t>(at * static_cast<double>(cells));
+    static_cast<void>(trial->search(cell / sizes, cell % sizes));
+    return 1.0 / static_cast<double>(cells);
+  }};
 }
 
 Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
@@ -225,19 +295,28 @@ Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& 
   const std::size_t solves = table.rows * poses.size();
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
   const std::size_t cells = coupling.sizes() * poses.size();
-  const std::size_t curves = 6 * sizeof(double) * cells * rows.subsets.size() * study.model().responses.size();
+  const std::size_t curve = sizeof(double) * cells * rows.subsets.size() * study.model().responses.size();
+  const bool searches = coupling.worst_case == UnknownSigns::search;
+  const std::size_t of_corners = searches ? curve + 2 * sizeof(std::uint64_t) * cells * rows.subsets.size() : 0;
+  const std::size_t result = 6 * curve + of_corners + cells * sizeof(SolveCounts);
   // While the result is composed, the outcomes are there besides all curves but one. While it is written, its lists go
   // one by one.
-  const std::size_t composing = outcomes + curves / 6 * 5;
-  return {.solves = counted_things(coupling.sizes(), "sizes x ") +
-                    counted_things(rows.errors.size(), "sets of errors x ") + counted_things(poses.size(), "poses = ") +
-                    counted_things(solves, "solves"),
-          .memory = {.accumulators = composing - std::min(composing, curves),
-                     .state = outcomes,
-                     .result = curves + cells * sizeof(SolveCounts),
-                     .file = curves + cells * kSolverColumns},
-          .shared = {table_work(study, model, poses, table, Outcomes::responses)},
-          .by_one = {}};
+  const std::size_t composing = outcomes + 5 * curve + of_corners;
+  Outlook expected{.solves = counted_things(coupling.sizes(), "sizes x ") +
+                             counted_things(rows.errors.size(), "sets of errors x ") +
+                             counted_things(poses.size(), "poses = ") + counted_things(solves, "solves"),
+                   .memory = {.accumulators = composing - std::min(composing, result),
+                              .state = outcomes + of_corners,
+                              .result = result,
+                              .file = 6 * curve + of_corners + cells * kSolverColumns},
+                   .shared = {table_work(study, model, poses, table, Outcomes::responses)},
+                   .by_one = {}};
+  if (!searches) return expected;
+  const double corners = static_cast<double>(cells) *
+                         expected_corners(CornerTable(coupling, study.model()), study.model().responses.size());
+  expected.solves += fmt::format(", and about {:.2g} for the worst cases", corners);
+  expected.shared.push_back(corner_work(study, model, poses));
+  return expected;
 }
 
 }  // namespace
@@ -257,6 +336,8 @@ std::vector<ErrorBlock> error_blocks(const ErrorSource& source, const ErrorPatte
   }
   return blocks;
 }
+
+std::string_view name(UnknownSigns signs) { return signs == UnknownSigns::search ? "search" : "sum"; }
 
 std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources) {
   std::vector<std::vector<std::size_t>> subsets;

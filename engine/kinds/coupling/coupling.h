@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/files/result_file.h"
@@ -36,12 +37,21 @@ struct ErrorPattern {
   std::vector<std::string> axes;    ///< for some: "x", "y", "z"; scalars are kept besides
 };
 
+/// What a study finds where the signs of errors are not known.
+enum class UnknownSigns {
+  search,  ///< the worst case (coupling/corners.h), and the first-order sum
+  sum      ///< the first-order sum alone, which takes no solve of its own
+};
+
+std::string_view name(UnknownSigns signs);  ///< As a study file has it.
+
 /// What a coupling study asks for.
 struct CouplingStudy {
-  std::vector<double> linear;        ///< [Z] m, sizes of the runs; empty where no error is a length
-  std::vector<double> angular;       ///< [Z] rad; empty where no error is an angle
-  ErrorPattern pattern;              ///< of every source
-  std::vector<ErrorSource> sources;  ///< no factor in two of them
+  std::vector<double> linear;                      ///< [Z] m, sizes of the runs; empty where no error is a length
+  std::vector<double> angular;                     ///< [Z] rad; empty where no error is an angle
+  ErrorPattern pattern;                            ///< of every source
+  std::vector<ErrorSource> sources;                ///< no factor in two of them
+  UnknownSigns worst_case = UnknownSigns::search;  ///< whether worst cases are looked for
 
   /// Of errors of this dimension, a length or an angle.
   const std::vector<double>& sizes_of(Dimension dimension) const {
@@ -96,7 +106,8 @@ struct CouplingResult {
   std::vector<double> effect;           ///< [R x Z x K x M]
   std::vector<double> sum;              ///< [R x Z x K x M]
   std::vector<double> interaction;      ///< [R x Z x K x M]
-  std::vector<double> worst_case;       ///< [R x Z x K x M]
+  std::vector<double> first_order_sum;  ///< [R x Z x K x M]
+  std::vector<double> worst_case;       ///< [R x Z x K x M] NaN where no corner is solved
   std::vector<double> root_sum_square;  ///< [R x Z x K x M]
   std::vector<double> cancellation;     ///< [R x Z x K x M] from 0 to 1
   std::vector<double> rounding;         ///< [R x Z] up to this a response to errors of the size is rounding
@@ -106,16 +117,28 @@ struct CouplingResult {
   std::vector<double> effect_max;                   ///< [R x Z x K] largest |effect|
   std::vector<std::int64_t> effect_max_pose;        ///< [R x Z x K] the first pose that has it
   std::vector<double> interaction_max;              ///< [R x Z x K] largest |interaction|
-  std::vector<double> worst_case_max;               ///< [R x Z x K]
+  std::vector<double> first_order_sum_max;          ///< [R x Z x K]
   std::vector<double> root_sum_square_max;          ///< [R x Z x K]
   std::vector<double> opposed_share;                ///< [R x Z x K] share of the poses where sources oppose each other
   std::vector<double> cancellation_max;             ///< [R x Z x K]
   std::vector<std::int64_t> cancellation_max_pose;  ///< [R x Z x K]
-  std::vector<SolveCounts> solves;                  ///< [Z x M] of all sets of errors that were solved
+
+  // The search for worst cases; P errors. Maxima are over all poses: where there is none, NaN, pose -1, and signs 0.
+  std::vector<std::uint64_t> corners;             ///< [Z x K x M] corners behind the worst cases
+  std::vector<std::uint64_t> unsolved_corners;    ///< [Z x K x M] of these, corners that have no solution
+  std::vector<double> worst_case_max;             ///< [R x Z x K] largest worst case
+  std::vector<std::int64_t> worst_case_max_pose;  ///< [R x Z x K] the first pose that has it
+  std::vector<std::int64_t> worst_case_signs;     ///< [R x Z x K x P] there: 1, -1, or 0 where an error is zero
+  std::vector<std::int64_t> unsolved_pose;        ///< [Z x K] the first pose with a corner that is not solved
+  std::vector<std::int64_t> unsolved_signs;       ///< [Z x K x P] such a corner, likewise
+  std::vector<SolveCounts> solves;                ///< [Z x M] of all sets of errors and all corners that were solved
 
   /// Over all sizes and poses.
   SolveCounts total() const { return total_of(solves); }
 };
+
+/// Whether worst cases were looked for. Results of version 0.2.0 have first-order sums alone, too.
+inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_case.empty(); }
 
 /// What sources of errors do one by one and together (San et al. 2023, Sections 5.2.1 and 5.2.2), at each size and
 /// pose, for each subset S of the sources. A response is the effect of the errors that it is solved with: it has to be
@@ -124,22 +147,24 @@ struct CouplingResult {
 ///     effect           all errors of S at once: the curve of a single source, or the coupled one
 ///     sum              sum over the sources in S of the effect of each alone
 ///     interaction      effect - sum; 0 for a single source
-///     worst_case       sum over the blocks of S of |effect of the block alone| (see error_blocks)
+///     first_order_sum  sum over the blocks of S of |effect of the block alone| (see error_blocks)
+///     worst_case       the largest |response| that was found with either sign of each block (coupling/corners.h)
 ///     root_sum_square  root of the sum of the squares of these
 ///     cancellation     1 - |sum| / (sum over the sources of |effect of each|): 0 where no source opposes another or
 ///                      where no more than rounding is cancelled, 1 where they cancel
 ///
-/// To first order, worst_case is the most that the blocks do together where their signs are not known, and
-/// root_sum_square the root mean square if either sign of each is as likely. Where a response is a norm, which has no
-/// sign, no source can be seen to oppose another: sum and worst_case then are upper bounds on what the sources do
-/// together, interaction is never above zero but by second order, and cancellation is 0.
+/// To first order, first_order_sum is the most that the blocks do together where their signs are not known, and
+/// root_sum_square the root mean square if either sign of each is as likely. Neither first_order_sum nor worst_case is
+/// a bound. Where a response is a norm, which has no sign, no source can be seen to oppose another: sum and
+/// first_order_sum then are upper bounds to first order, interaction is never above zero but by second order, and
+/// cancellation is 0.
 ///
 /// Summaries are over the poses where all of this is known. Sources oppose each other (opposed_share) where |sum| is
 /// below the largest |effect of a source in S| by more than rounding: together they do less than one of them.
 ///
 /// evaluation: what run_evaluation found for the study's coupling_table. A solve that does not count (see counts())
 /// makes NaN of everything that rests on it, and is counted in `solves`. rounding: [R x Z] as coupling_rounding gives
-/// it.
+/// it. What the search for worst cases finds is left out: add_worst_cases fills it in.
 CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
                                NotConverged policy, std::vector<double> rounding);
 
@@ -168,9 +193,9 @@ inline const StoredCoupling& coupling_of(const StoredResult& result) { return fo
 
 /// For each size and each response that a summary shows: a table with a row for each subset of
 /// the sources. Columns: the largest |effect| over the poses and the pose where it is, by number and coordinates, the
-/// largest root sum square, worst case and |interaction|, and where sources oppose each other: at which share of the
-/// poses, and the pose where they cancel most, with the cancellation there. What the words mean is below the last
-/// one.
+/// largest root sum square, first-order sum, worst case and |interaction|, and where sources oppose each other: at
+/// which share of the poses, and the pose where they cancel most, with the cancellation there. What the words mean is
+/// below the last one.
 std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

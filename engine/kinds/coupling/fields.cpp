@@ -14,6 +14,7 @@ namespace {
 
 const Axes kCurveAxes{"response", "size", "subset", "pose"};
 const Axes kSummaryAxes{"response", "size", "subset"};
+const Axes kCornerAxes{"size", "subset", "pose"};
 
 const Group<CouplingResult> kCoupling{
     "/coupling",
@@ -26,8 +27,13 @@ const Group<CouplingResult> kCoupling{
     {{"effect", &CouplingResult::effect, kCurveAxes, kResponseUnit, "All errors of the subset's sources at once"},
      {"sum", &CouplingResult::sum, kCurveAxes, kResponseUnit, "Sum over the sources of the effect of each alone"},
      {"interaction", &CouplingResult::interaction, kCurveAxes, kResponseUnit, "effect - sum"},
+     {"first_order_sum", &CouplingResult::first_order_sum, kCurveAxes, kResponseUnit,
+      "Sum over the sources' blocks of |effect of the block alone|; errors of a block move together",
+      Presence::where_computed},
      {"worst_case", &CouplingResult::worst_case, kCurveAxes, kResponseUnit,
-      "Sum over the sources' blocks of |effect of the block alone|; errors of a block move together"},
+      "Largest |response| that was found with either sign of each block: the signs of the first-order sum solved, then "
+      "block by block until no flip is worse; no bound. NaN where no combination of signs is solved",
+      Presence::where_computed},
      {"root_sum_square", &CouplingResult::root_sum_square, kCurveAxes, kResponseUnit,
       "Root of the sum of the squares of these"},
      {"cancellation", &CouplingResult::cancellation, kCurveAxes, "1",
@@ -38,6 +44,10 @@ const Group<CouplingResult> kCoupling{
       kResponseUnit,
       "Up to this an effect of errors of the size cannot be told from the rounding of solves",
       Presence::where_computed},
+     {"corners", &CouplingResult::corners, kCornerAxes, "1", "Combinations of signs that were tried for worst_case",
+      Presence::where_computed},
+     {"unsolved_corners", &CouplingResult::unsolved_corners, kCornerAxes, "1",
+      "Of these, those that have no solution: machines that cannot be assembled", Presence::where_computed},
      {"count", &CouplingResult::count, kSummaryAxes, "1",
       "Poses that count: those where all that the subset rests on is solved"},
      {"effect_max", &CouplingResult::effect_max, kSummaryAxes, kResponseUnit,
@@ -46,8 +56,12 @@ const Group<CouplingResult> kCoupling{
       "First pose of the largest |effect|; -1: there is none"},
      {"interaction_max", &CouplingResult::interaction_max, kSummaryAxes, kResponseUnit,
       "Largest |interaction| over the poses that count"},
+     {"first_order_sum_max", &CouplingResult::first_order_sum_max, kSummaryAxes, kResponseUnit,
+      "Largest first-order sum over the poses that count", Presence::where_computed},
      {"worst_case_max", &CouplingResult::worst_case_max, kSummaryAxes, kResponseUnit,
-      "Largest worst case over the poses that count"},
+      "Largest worst case over all poses", Presence::where_computed},
+     {"worst_case_max_pose", &CouplingResult::worst_case_max_pose, kSummaryAxes, "1",
+      "First pose of the largest worst case; -1: there is none", Presence::where_computed},
      {"root_sum_square_max", &CouplingResult::root_sum_square_max, kSummaryAxes, kResponseUnit,
       "Largest root sum square over the poses that count"},
      {"opposed_share", &CouplingResult::opposed_share, kSummaryAxes, "1",
@@ -55,7 +69,25 @@ const Group<CouplingResult> kCoupling{
      {"cancellation_max", &CouplingResult::cancellation_max, kSummaryAxes, "1",
       "Largest cancellation over the poses that count"},
      {"cancellation_max_pose", &CouplingResult::cancellation_max_pose, kSummaryAxes, "1",
-      "First pose of the largest cancellation; -1: there is none"}}};
+      "First pose of the largest cancellation; -1: there is none"},
+     {"worst_case_signs",
+      &CouplingResult::worst_case_signs,
+      {"response", "size", "subset", "factor"},
+      "1",
+      "Sign of each error at the largest worst case; 0 where the error is zero",
+      Presence::where_computed},
+     {"unsolved_pose",
+      &CouplingResult::unsolved_pose,
+      {"size", "subset"},
+      "1",
+      "First pose with a combination of signs that has no solution; -1: there is none",
+      Presence::where_computed},
+     {"unsolved_signs",
+      &CouplingResult::unsolved_signs,
+      {"size", "subset", "factor"},
+      "1",
+      "Sign of each error of the first such combination; 0 where the error is zero",
+      Presence::where_computed}}};
 
 const Fields<StoredCoupling> kSizes{
     {"size_linear", &StoredCoupling::linear, {"size"}, "m", "Size of errors that are lengths; NaN where there is none"},
@@ -152,6 +184,7 @@ void append_response_columns(CsvTable& table, const StoredResult& result, const 
     const NamedUnit& response = result.responses[r];
     for (const FieldRow<CouplingResult>& field : kCoupling.fields) {
       if (field.axes != axes || field.name == "sum") continue;
+      if (field.name.starts_with("worst_case") && !has_worst_cases(coupling_of(result).found)) continue;
       const std::string name = response.name + "_" + (field.name == "count" ? "poses" : field.name);
       table.columns.push_back(field_column(with_unit(name, csv_unit(field.unit, result, &response)), field,
                                            coupling_of(result).found, r * table.lines));
@@ -166,7 +199,24 @@ CsvTable curve_table(const StoredResult& result) {
   if (!result.time.empty()) {
     table.columns.push_back({"time [s]", [&, poses](std::size_t line) { return result.time[line % poses]; }});
   }
+  for (const FieldRow<CouplingResult>& field : kCoupling.fields) {
+    if (field.axes == kCornerAxes && has_worst_cases(coupling_of(result).found))
+      table.columns.push_back(field_column(field.name, field, coupling_of(result).found));
+  }
   append_response_columns(table, result, kCurveAxes);
+  return table;
+}
+
+/// The signs of each error at the worst cases, and at the first corner that is not solved.
+CsvTable corner_table(const StoredResult& result) {
+  const std::size_t errors = result.factors.size();
+  CsvTable table = subset_table(result, "coupling_corners", errors);
+  table.columns.push_back({"error", [errors](std::size_t line) { return static_cast<double>(line % errors); }});
+  const CouplingResult& found = coupling_of(result).found;
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    table.columns.push_back(list_column(result.responses[r].name, found.worst_case_signs, r * table.lines));
+  }
+  table.columns.push_back(list_column("unsolved", found.unsolved_signs));
   return table;
 }
 
@@ -179,10 +229,25 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_solver(result, {"size", "pose"}, found.solves);
 }
 
-/// In files of version 0.2.0 rounding is that of digits alone.
+/// In files of version 0.2.0 `worst_case` is the first-order sum, there are no corners, and rounding is that of digits.
 void read_older(StoredCoupling& stored) {
   CouplingResult& found = stored.found;
-  if (!found.rounding.empty()) return;
+  if (!found.first_order_sum.empty()) {
+    const bool searched = has_worst_cases(found);
+    for (const bool lacks : {found.worst_case_max.empty(), found.corners.empty(), found.unsolved_corners.empty(),
+                             found.worst_case_max_pose.empty(), found.worst_case_signs.empty(),
+                             found.unsolved_pose.empty(), found.unsolved_signs.empty()}) {
+      if (lacks == searched) throw h5::Error("/coupling lacks a part of what worst cases have");
+    }
+    if (found.first_order_sum_max.empty() || found.rounding.empty()) {
+      throw h5::Error("/coupling lacks first_order_sum_max or rounding");
+    }
+    return;
+  }
+  if (!has_worst_cases(found) || found.worst_case_max.empty()) throw h5::Error("/coupling lacks first_order_sum");
+  found.rounding.clear();
+  found.first_order_sum = std::exchange(found.worst_case, {});
+  found.first_order_sum_max = std::exchange(found.worst_case_max, {});
   for (std::size_t r = 0; r < found.responses; ++r) {
     for (std::size_t z = 0; z < found.sizes; ++z) {
       found.rounding.push_back(size_rounding(0.0, stored.linear[z], stored.angular[z]));
@@ -208,6 +273,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   CsvTable summary = subset_table(result, "coupling_summary", 1);
   append_response_columns(summary, result, kSummaryAxes);
   tables.push_back(std::move(summary));
+  if (has_worst_cases(coupling_of(result).found)) tables.push_back(corner_table(result));
   const StoredCoupling& stored = coupling_of(result);
   const std::size_t poses = result.poses.size();
   CsvTable solves{"not_converged",

@@ -12,7 +12,8 @@
 namespace poesy {
 namespace {
 
-constexpr std::array<std::string_view, 5> kCouplingKeys{"linear", "angular", "limbs", "components", "sources"};
+constexpr std::array<std::string_view, 6> kCouplingKeys{"linear",     "angular",    "limbs",
+                                                        "components", "worst_case", "sources"};
 
 using PatternChoice = ErrorPattern::Choice;
 
@@ -276,38 +277,48 @@ void complete_coupling(Study& whole, const Reading& reading) {
 }
 
 std::vector<StudyRow> coupling_key_rows() {
-  return {StudyRow{.name = "linear",
-                   .value = sizes_at(Dimension::length, &CouplingStudy::linear),
-                   .meaning =
-                       "Sizes of lengths: each is a run of its own, in which every error is at once as large as that. "
-                       "Required where a source has lengths; as many as of angular, if there are both.",
-                   .lines = sizes_line<Dimension::length>,
-                   .shown = shown_sizes<Dimension::length>},
-          StudyRow{.name = "angular",
-                   .value = sizes_at(Dimension::angle, &CouplingStudy::angular),
-                   .meaning = "Sizes of angles, in the same way.",
-                   .lines = sizes_line<Dimension::angle>,
-                   .shown = shown_sizes<Dimension::angle>},
-          StudyRow{.name = "limbs",
-                   .value = {.type = "text or integer", .text = limbs_text},
-                   .meaning =
-                       "all: errors of every limb, together; a number: of that limb alone; independent: each limb on "
-                       "its own, in the worst case and the root sum square.",
-                   .reader = read_limbs},
-          StudyRow{.name = "components",
-                   .value = {.type = "text or list of texts", .text = components_text},
-                   .meaning =
-                       "all: every component of an error, together; a list such as [\"x\", \"z\"]: those and scalars; "
-                       "independent: each component of each error on its own, as for limbs.",
-                   .reader = read_components},
-          StudyRow{.name = "sources",
-                   .value = {.type = "list of tables"},
-                   .usual = "those of the literature, where the model has them",
-                   .meaning = "2 to 8 sources of errors: each alone, and every combination of them at once.",
-                   .reader = read_sources,
-                   .lines = sources_lines,
-                   .late = 2,
-                   .shown = shown_sources}};
+  return {
+      StudyRow{.name = "linear",
+               .value = sizes_at(Dimension::length, &CouplingStudy::linear),
+               .meaning =
+                   "Sizes of lengths: each is a run of its own, in which every error is at once as large as that. "
+                   "Required where a source has lengths; as many as of angular, if there are both.",
+               .lines = sizes_line<Dimension::length>,
+               .shown = shown_sizes<Dimension::length>},
+      StudyRow{.name = "angular",
+               .value = sizes_at(Dimension::angle, &CouplingStudy::angular),
+               .meaning = "Sizes of angles, in the same way.",
+               .lines = sizes_line<Dimension::angle>,
+               .shown = shown_sizes<Dimension::angle>},
+      StudyRow{.name = "limbs",
+               .value = {.type = "text or integer", .text = limbs_text},
+               .meaning =
+                   "all: errors of every limb, together; a number: of that limb alone; independent: each limb on "
+                   "its own, in the worst case and the root sum square.",
+               .reader = read_limbs},
+      StudyRow{.name = "components",
+               .value = {.type = "text or list of texts", .text = components_text},
+               .meaning =
+                   "all: every component of an error, together; a list such as [\"x\", \"z\"]: those and scalars; "
+                   "independent: each component of each error on its own, as for limbs.",
+               .reader = read_components},
+      StudyRow{.name = "worst_case",
+               .value = asked_value(word_at<UnknownSigns>(
+                   {{UnknownSigns::search,
+                     "the largest value that is found: the signs of the first-order sum solved, then flipped one by "
+                     "one until no flip is worse; for each pose, size and subset some solves for each error and "
+                     "response"},
+                    {UnknownSigns::sum, "none, only the sum of what each error does alone, which takes no solves"}},
+                   &CouplingStudy::worst_case)),
+               .meaning = "What is found where signs are not known."},
+      StudyRow{.name = "sources",
+               .value = {.type = "list of tables"},
+               .usual = "those of the literature, where the model has them",
+               .meaning = "2 to 8 sources of errors: each alone, and every combination of them at once.",
+               .reader = read_sources,
+               .lines = sources_lines,
+               .late = 2,
+               .shown = shown_sources}};
 }
 
 StudyTables source_tables() {

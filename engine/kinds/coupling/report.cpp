@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <numeric>
 #include <span>
 
 #include "engine/kinds/coupling/coupling.h"
@@ -36,12 +37,53 @@ std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::siz
           pose_cell(found.effect_max[at] > rounding, found.effect_max_pose[at]),
           place_cell(result, found.effect_max[at] > rounding, found.effect_max_pose[at]),
           cell(found.root_sum_square_max[at]),
-          cell(found.worst_case_max[at]),
+          cell(found.first_order_sum_max[at]),
+          has_worst_cases(found) ? cell(found.worst_case_max[at]) : text_cell(""),
           cell(found.interaction_max[at]),
           opposed ? percent_cell(found.opposed_share[at]) : text_cell(""),
           opposed ? percent_cell(found.cancellation_max[at]) : text_cell(""),
           pose_cell(opposed, found.cancellation_max_pose[at]),
           place_cell(result, opposed, found.cancellation_max_pose[at])};
+}
+
+/// "+leg_1 -leg_2", of the errors that are not zero. signs: [P] from this position on.
+std::string corner_text(const StoredResult& result, const std::vector<std::int64_t>& signs, std::size_t first) {
+  constexpr std::size_t kMost = 12;
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    const std::int64_t sign = signs[first + p];
+    if (sign != 0) names.push_back((sign > 0 ? "+" : "-") + result.factors[p].name);
+  }
+  return some_names(names, kMost);
+}
+
+/// Where the worst case of all sources is, and with which signs; empty where it is rounding, or there is none.
+std::string worst_corner_text(const StoredResult& result, std::size_t z, std::size_t r) {
+  const StoredCoupling& stored = coupling_of(result);
+  const CouplingResult& found = stored.found;
+  const std::size_t at = (r * found.sizes + z + 1) * found.subsets - 1;
+  if (!has_worst_cases(found) || !(found.worst_case_max[at] > found.rounding[r * found.sizes + z])) return {};
+  return fmt::format("worst case of {}: {}, with {}", stored.subsets.back(),
+                     place_text(result, static_cast<std::size_t>(found.worst_case_max_pose[at])),
+                     corner_text(result, found.worst_case_signs, at * result.factors.size()));
+}
+
+/// How many corners have no solution, and the first of them; empty where all have one.
+std::string unsolved_text(const StoredResult& result) {
+  const StoredCoupling& stored = coupling_of(result);
+  const CouplingResult& found = stored.found;
+  const auto sum = [](const std::vector<std::uint64_t>& counts) {
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  };
+  const auto first = std::ranges::find_if(found.unsolved_pose, [](std::int64_t pose) { return pose >= 0; });
+  if (first == found.unsolved_pose.end()) return {};
+  const auto at = static_cast<std::size_t>(first - found.unsolved_pose.begin());
+  return fmt::format(
+      "{} of the {} combinations of signs that were tried cannot be assembled, so worst cases are of the others; the "
+      "first: {} of {}, {}, with {}",
+      count_text(sum(found.unsolved_corners)), count_text(sum(found.corners)), stored.size_names[at / found.subsets],
+      stored.subsets[at % found.subsets], place_text(result, static_cast<std::size_t>(*first)),
+      corner_text(result, found.unsolved_signs, at * result.factors.size()));
 }
 
 Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
@@ -56,6 +98,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
           text_column("subset", "subset"), number_column("effect_max", "largest effect", unit),
           number_column("effect_max_pose", "at pose", "", 1), text_column("effect_max_where", "largest where", 4),
           number_column("root_sum_square_max", "root sum square", unit),
+          number_column("first_order_sum_max", "first-order sum", unit, 1),
           number_column("worst_case_max", "worst case", unit), number_column("interaction_max", "interaction", unit),
           percent_column("opposed_share", "opposed", 3), percent_column("cancellation_max", "cancellation", 2),
           number_column("cancellation_max_pose", "at pose", "", 2),
@@ -66,6 +109,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   if (!varies(result, r)) {
     table.notes.push_back(response.name + " does not vary: no source moves it by more than the rounding of solves");
   }
+  if (std::string text = worst_corner_text(result, z, r); !text.empty()) table.notes.push_back(std::move(text));
   return table;
 }
 
@@ -89,14 +133,22 @@ bool same_in_all_limbs(const StoredResult& result) {
   return study_setting(result.study_text, "analysis", "limbs") == "\"all\"";
 }
 
+constexpr std::string_view kWorstCase =
+    "the largest value that was found with either sign of each error: the signs by which the magnitudes of each alone "
+    "add up (first-order sum), solved together, then flipped one by one until no flip is worse. No bound: other signs, "
+    "or sizes in between, may do more";
+
 std::vector<std::string> notes(const StoredResult& result) {
   const StoredCoupling& stored = coupling_of(result);
   std::vector<std::string> list{
       fmt::format("{} of errors, alone and together; largest values over {}",
                   counted(stored.sources.size(), "source", "sources"), counted(stored.found.poses, "pose", "poses")),
       "interaction: together minus the sum of each alone",
+      has_worst_cases(stored.found) ? fmt::format("worst case: {}", kWorstCase)
+                                    : "first-order sum: of the magnitudes of each alone; no bound",
       "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much at most; a "
       "norm, which has no sign, cannot tell"};
+  if (std::string text = unsolved_text(result); !text.empty()) list.push_back(std::move(text));
   const std::vector<std::uint64_t>& count = stored.found.count;
   if (std::ranges::any_of(count, [&](std::uint64_t poses) { return poses < stored.found.poses; })) {
     list.emplace_back("some subsets leave out poses that were not solved: see the export's coupling_summary.csv");
@@ -216,7 +268,8 @@ class Curves {
     if (has_subsets()) {
       add(subset(last()) + " together", "effect", found_.effect, "solid");
       add("interaction of all", "interaction", found_.interaction, "dotted");
-      add("worst case of all", "worst_case", found_.worst_case, "dashed");
+      if (has_worst_cases(found_)) add("worst case of all", "worst_case", found_.worst_case, "dashed");
+      add("first-order sum of all", "first_order_sum", found_.first_order_sum, "dashed");
       add("root sum square of all", "root_sum_square", found_.root_sum_square, "dashed");
     }
     add_subsets(list, "effect", found_.effect, r, z);
@@ -242,8 +295,9 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   Section& section = page.add_section("together", "What the sources do, alone and together");
   section.paragraph(
       "Each source of errors has its size alone, and with others. The interaction is what all do together less the sum "
-      "of what each does alone. Worst case: the sum of their magnitudes, where signs are not known. Root sum square: "
-      "what is to be expected where either sign is as likely.");
+      "of what each does alone. Root sum square: what is to be expected where either sign is as likely. First-order "
+      "sum: of the magnitudes of each alone. Worst case: " +
+      std::string(kWorstCase) + ".");
   figures.add_note(section);
   add_figure(page, section, "sources", curves.effects(),
              result.time.empty() ? "The effect at each pose." : "The effect along the trajectory.");
@@ -296,11 +350,15 @@ Answer answer(const StoredResult& result) {
                    response.name, text(found.effect_max[first + all]), place(found.effect_max_pose))},
       {"Largest source", fmt::format("{} alone, with up to {}.", stored.subsets[largest], text(effects[largest]))}};
   if (sources > 1) {
+    const std::string worst = has_worst_cases(found)
+                                  ? fmt::format(", and the worst case that was found is {}, which is no bound",
+                                                text(found.worst_case_max[first + all]))
+                                  : "";
     lines.emplace_back(
         "Together", fmt::format("Interaction is at most {}. Where signs are as likely as not, {} are to be expected at "
-                                "most; the worst case is {}.",
+                                "most; magnitudes add up to {}{}.",
                                 text(found.interaction_max[first + all]), text(found.root_sum_square_max[first + all]),
-                                text(found.worst_case_max[first + all])));
+                                text(found.first_order_sum_max[first + all]), worst));
   }
   lines.emplace_back("How sure", fmt::format("Solved, not sampled, at {}.", counted(found.poses, "pose", "poses")));
   lines.emplace_back("What to do",

@@ -268,6 +268,19 @@ class Example {
       result.effect_max_pose.push_back(static_cast<std::int64_t>(cell) - 1);
       result.cancellation_max_pose.push_back(static_cast<std::int64_t>(cell % 3));
     }
+    fill(result.first_order_sum, 12 * kPoses);
+    fill(result.first_order_sum_max, 12);
+    result.rounding = {1e-14, 2e-14, 3e-14, 4e-14};
+    for (std::size_t cell = 0; cell < 6 * kPoses; ++cell) {
+      result.corners.push_back(20 + cell);
+      result.unsolved_corners.push_back(cell % 2);
+    }
+    for (std::size_t cell = 0; cell < 12; ++cell) {
+      result.worst_case_max_pose.push_back(static_cast<std::int64_t>(cell % kPoses));
+      result.worst_case_signs.insert(result.worst_case_signs.end(), {cell % 2 == 0 ? 1 : -1, cell % 3 == 0 ? 0 : 1});
+    }
+    result.unsolved_pose = {-1, 1, 2, -1, 0, 3};
+    result.unsolved_signs = {0, 0, 1, 0, -1, 1, 0, 0, 1, -1, -1, -1};
     for (std::size_t cell = 0; cell < 2 * kPoses; ++cell) {
       result.solves.push_back({.by_status = {3, 0, cell, 1, 0}, .iterations = 8 + cell, .most_iterations = 5});
     }

@@ -137,7 +137,7 @@ void expect_by_hand(const Model& model, const ErrorPattern& pattern) {
       EXPECT_NEAR(found.effect[at(14)], all, kRounding);
       EXPECT_NEAR(found.sum[at(14)], fs + t + q + l, kRounding);
       EXPECT_NEAR(found.interaction[at(14)], all - (fs + t + q + l), 2 * kRounding);
-      EXPECT_NEAR(found.worst_case[at(14)], worst, 10 * kRounding);
+      EXPECT_NEAR(found.first_order_sum[at(14)], worst, 10 * kRounding);
       EXPECT_NEAR(found.root_sum_square[at(14)], std::sqrt(squares), 10 * kRounding);
     }
   }

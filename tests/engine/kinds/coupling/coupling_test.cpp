@@ -97,12 +97,12 @@ TEST_F(CouplingOfSixErrors, HasClosedFormsWhereBlocksAreSources) {
       EXPECT_NEAR(found.effect[cell(0, z, 1, m)], q[m] * e, 1e-17);
       EXPECT_EQ(found.interaction[cell(0, z, 0, m)], 0.0);
       EXPECT_EQ(found.cancellation[cell(0, z, 1, m)], 0.0);
-      EXPECT_EQ(found.worst_case[cell(0, z, 1, m)], std::abs(found.effect[cell(0, z, 1, m)]));
+      EXPECT_EQ(found.first_order_sum[cell(0, z, 1, m)], std::abs(found.effect[cell(0, z, 1, m)]));
       const std::size_t both = cell(0, z, 2, m);
       EXPECT_NEAR(found.sum[both], (4.0 + q[m]) * e, 1e-17);
       EXPECT_NEAR(found.effect[both], (4.0 + q[m]) * e + 7.0 * e * e, 1e-17);
       EXPECT_NEAR(found.interaction[both], 7.0 * e * e, 1e-17);
-      EXPECT_NEAR(found.worst_case[both], (4.0 + std::abs(q[m])) * e, 1e-17);
+      EXPECT_NEAR(found.first_order_sum[both], (4.0 + std::abs(q[m])) * e, 1e-17);
       EXPECT_NEAR(found.root_sum_square[both], std::hypot(4.0, q[m]) * e, 1e-17);
       EXPECT_NEAR(found.cancellation[both], 1.0 - std::abs(4.0 + q[m]) / (4.0 + std::abs(q[m])), 1e-14);
     }
@@ -117,7 +117,7 @@ TEST_F(CouplingOfSixErrors, SumsUpOverThePoses) {
   EXPECT_NEAR(found.effect_max[both], 5.0 * e + 7.0 * e * e, 1e-17);
   EXPECT_EQ(found.effect_max_pose[both], 2);
   EXPECT_NEAR(found.interaction_max[both], 7.0 * e * e, 1e-17);
-  EXPECT_NEAR(found.worst_case_max[both], 9.0 * e, 1e-17);
+  EXPECT_NEAR(found.first_order_sum_max[both], 9.0 * e, 1e-17);
   EXPECT_NEAR(found.root_sum_square_max[both], std::hypot(4.0, 5.0) * e, 1e-17);
   EXPECT_DOUBLE_EQ(found.opposed_share[both], 2.0 / 3.0);  // |4 - 5| < 5 and |4 - 2| < 4
   EXPECT_NEAR(found.cancellation_max[both], 8.0 / 9.0, 1e-14);
@@ -126,12 +126,12 @@ TEST_F(CouplingOfSixErrors, SumsUpOverThePoses) {
   EXPECT_EQ(found.opposed_share[0], 0.0);
 }
 
-TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheWorstCase) {
+TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheFirstOrderSum) {
   const auto worst_of_a = [&](Choice limbs, Choice components) {
     study_.pattern = {limbs, 0, components, {}};
     const CouplingResult found = solve({bilinear});
     EXPECT_NEAR(found.effect[cell(0, 0, 0, 1)], 4.0 * kSize, 1e-17);  // whatever moves with what
-    return std::pair(found.worst_case[cell(0, 0, 0, 1)] / kSize, found.root_sum_square[cell(0, 0, 0, 1)] / kSize);
+    return std::pair(found.first_order_sum[cell(0, 0, 0, 1)] / kSize, found.root_sum_square[cell(0, 0, 0, 1)] / kSize);
   };
   const auto near = [](std::pair<double, double> found, double worst, double squares) {
     EXPECT_NEAR(found.first, worst, 1e-13);
@@ -148,8 +148,8 @@ TEST_F(CouplingOfSixErrors, KnowsNoOppositionWhereAResponseIsANorm) {
   for (std::size_t m = 0; m < kPoses; ++m) {
     const std::size_t both = cell(0, 0, 2, m);
     EXPECT_EQ(found.cancellation[both], 0.0);
-    EXPECT_EQ(found.sum[both], found.worst_case[both]);
-    EXPECT_LE(found.effect[both], found.worst_case[both] + 7.0 * kSize * kSize);
+    EXPECT_EQ(found.sum[both], found.first_order_sum[both]);
+    EXPECT_LE(found.effect[both], found.first_order_sum[both] + 7.0 * kSize * kSize);
   }
   EXPECT_EQ(found.opposed_share[2], 0.0);
 }
@@ -179,7 +179,7 @@ TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
   EXPECT_FALSE(std::isnan(exclude.effect[cell(0, 0, 2, 0)]));
   EXPECT_TRUE(std::isnan(exclude.interaction[cell(0, 0, 2, 0)]));
   EXPECT_TRUE(std::isnan(exclude.cancellation[cell(0, 0, 2, 0)]));
-  EXPECT_TRUE(std::isnan(exclude.worst_case[cell(0, 0, 1, 1)]));
+  EXPECT_TRUE(std::isnan(exclude.first_order_sum[cell(0, 0, 1, 1)]));
   EXPECT_FALSE(std::isnan(exclude.interaction[cell(0, 0, 2, 1)]));
   EXPECT_EQ(exclude.effect_max_pose[2], 2);
   EXPECT_EQ(found_with(NotConverged::include).count, (std::vector<std::uint64_t>{2, 3, 2, 2, 3, 2}));

@@ -80,24 +80,49 @@ std::string first_lines(const std::string& text, std::size_t count) {
 
 TEST_F(CouplingFile, IsExportedByPoseAndInSum) {
   const std::string tables = folder_.file("tables");
-  EXPECT_EQ(export_tables(path_, tables).size(), 4u);
+  EXPECT_EQ(export_tables(path_, tables).size(), 5u);
   const std::string curves = test::read_bytes(tables + "/coupling.csv");
   EXPECT_EQ(first_lines(curves, 2),
-            "subset,size_linear [m],size_angular [rad],pose,angular_deformation_effect [rad],"
-            "angular_deformation_interaction [rad],angular_deformation_worst_case [rad],"
-            "angular_deformation_root_sum_square [rad],angular_deformation_cancellation,linear_deformation_effect [m],"
-            "linear_deformation_interaction [m],linear_deformation_worst_case [m],"
+            "subset,size_linear [m],size_angular [rad],pose,corners,unsolved_corners,angular_deformation_effect [rad],"
+            "angular_deformation_interaction [rad],angular_deformation_first_order_sum [rad],"
+            "angular_deformation_worst_case [rad],angular_deformation_root_sum_square [rad],"
+            "angular_deformation_cancellation,linear_deformation_effect [m],linear_deformation_interaction [m],"
+            "linear_deformation_first_order_sum [m],linear_deformation_worst_case [m],"
             "linear_deformation_root_sum_square [m],linear_deformation_cancellation\n"
-            "D,1e-04,NaN,0,0.125,12.125,18.125,24.125,30.125,3.125,15.125,21.125,27.125,33.125\n");
+            "D,1e-04,NaN,0,20,0,0.125,12.125,45.125,18.125,24.125,30.125,3.125,15.125,48.125,21.125,27.125,33.125\n");
   EXPECT_EQ(std::count(curves.begin(), curves.end(), '\n'), 1 + 2 * 3 * static_cast<std::ptrdiff_t>(kPoses));
   EXPECT_NE(curves.find("\nD+E,2e-04,NaN,3,"), std::string::npos);
   const std::string summary = test::read_bytes(tables + "/coupling_summary.csv");
   EXPECT_EQ(std::count(summary.begin(), summary.end(), '\n'), 1 + 2 * 3);
   EXPECT_NE(summary.find("\nE,1e-04,NaN,3,36.25,0,37.75,39.25,40.75,42.25,43.75,1,3,37,6,"), std::string::npos)
       << summary;
+  EXPECT_EQ(first_lines(test::read_bytes(tables + "/coupling_corners.csv"), 3),
+            "subset,size_linear [m],size_angular [rad],error,angular_deformation,linear_deformation,unsolved\n"
+            "D,1e-04,NaN,0,1,1,0\nD,1e-04,NaN,1,0,0,0\n");
   EXPECT_EQ(first_lines(test::read_bytes(tables + "/not_converged.csv"), 2),
             "pose,size_linear [m],size_angular [rad],not_converged,iterations_mean,iterations_max,solves_converged,"
             "solves_stagnated,solves_iteration_cap,solves_singular,solves_non_finite\n0,1e-04,NaN,1,2,5,3,0,0,1,0\n");
+}
+
+/// A file of version 0.2.0: what it calls worst case is the first-order sum, and corners are not in it.
+TEST_F(CouplingFile, OfVersion020HasTheFirstOrderSumAsWorstCase) {
+  CouplingResult older = example_.coupling();
+  const std::vector<double> sum = older.worst_case;
+  for (auto* list : {&older.first_order_sum, &older.first_order_sum_max, &older.rounding}) list->clear();
+  for (auto* list : {&older.corners, &older.unsolved_corners}) list->clear();
+  for (auto* list :
+       {&older.worst_case_max_pose, &older.worst_case_signs, &older.unsolved_pose, &older.unsolved_signs}) {
+    list->clear();
+  }
+  write_result(path_, example_.study, example_.poses, older, example_.facts);
+  const StoredResult stored = read_result(path_);
+  const CouplingResult& found = coupling_of(stored).found;
+  EXPECT_FALSE(has_worst_cases(found));
+  ASSERT_EQ(found.first_order_sum.size(), sum.size());
+  EXPECT_EQ(found.first_order_sum.front(), sum.front());
+  EXPECT_EQ(found.rounding, (std::vector{1e-14, 2e-14, 1e-14, 2e-14})) << "1e-10 of 0.1 and 0.2 mm";
+  EXPECT_EQ(export_tables(path_, folder_.file("tables")).size(), 4u);
+  EXPECT_FALSE(coupling_tables(stored).empty());
 }
 
 }  // namespace

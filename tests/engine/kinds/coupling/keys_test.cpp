@@ -40,6 +40,15 @@ CouplingStudy coupling_of(const std::string& analysis, StudyUse use = StudyUse::
 const std::string kSizes = "linear = [\"1 mm\"]\nangular = [\"1 deg\"]\n";
 const std::string kLengths = "sources = [{ factors = [\"delta_1\"] }, { factors = [\"delta_2\"] }]\n";
 
+TEST(StudyOfCoupling, LooksForWorstCasesUnlessToldOtherwise) {
+  EXPECT_EQ(coupling_of(kSizes).worst_case, UnknownSigns::search);
+  EXPECT_EQ(coupling_of(kSizes + "worst_case = \"sum\"\n").worst_case, UnknownSigns::sum);
+  const Study study =
+      study_of_text(with_analysis(kSizes + "worst_case = \"sum\"\n"), "study.toml", kCatalog, StudyUse::run);
+  const Study again = study_of_text(resolved_text(study), "resolved.toml", kCatalog, StudyUse::run);
+  EXPECT_EQ(asked_of<CouplingStudy>(again.analysis).worst_case, UnknownSigns::sum);
+}
+
 TEST(StudyOfCoupling, TakesTheModelsSourcesUnlessToldOtherwise) {
   const CouplingStudy coupling = coupling_of("linear = [\"0.1 mm\", \"0.3 mm\"]\nangular = [\"1 deg\", \"2 deg\"]\n");
   EXPECT_EQ(coupling.linear, (std::vector<double>{1e-4, 3e-4}));

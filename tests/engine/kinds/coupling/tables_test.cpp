@@ -16,6 +16,7 @@ StoredResult example() {
   result.kind = "coupling";
   result.pose_coordinates = {{"z", "m"}, {"gamma", "rad"}};
   result.poses = PoseSet(2, {-0.3, 0.0, -0.25, 0.0, -0.2, 0.0, -0.18, 0.1});
+  result.factors = {{"a", "m"}, {"b", "m"}};
   result.responses = {{"tilt", "rad"}, {"x", "m"}};
   result.signed_headline = {1};
   StoredCoupling& stored = coupling_in(result);
@@ -30,11 +31,19 @@ StoredResult example() {
   found.subsets = 3;
   found.poses = 4;
   found.count.assign(6, 4);
-  found.rounding = {1e-14, 1e-14};
   found.effect_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 3.5e-5};
   found.effect_max_pose = {0, 0, 0, 3, 0, 3};
   found.interaction_max = {0.0, 0.0, 0.0, 0.0, 0.0, 1e-8};
-  found.worst_case_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 4.5e-5};
+  found.rounding = {1e-14, 1e-14};
+  found.first_order_sum_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 4.5e-5};
+  found.worst_case = {0.0};  // of each pose; what tables show is the largest
+  found.worst_case_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 5.5e-5};
+  found.worst_case_max_pose = {0, 0, 0, 3, 0, 3};
+  found.worst_case_signs = {1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 1, -1};
+  found.corners.assign(12, 4);
+  found.unsolved_corners.assign(12, 0);
+  found.unsolved_pose = {-1, -1, -1};
+  found.unsolved_signs.assign(6, 0);
   found.root_sum_square_max = {0.0, 0.0, 0.0, 4e-5, 1e-5, 4.125e-5};
   found.opposed_share = {0.0, 0.0, 0.0, 0.0, 0.0, 0.75};
   found.cancellation_max = {0.0, 0.0, 0.0, 0.0, 0.0, 0.5};
@@ -43,21 +52,47 @@ StoredResult example() {
 }
 
 TEST(CouplingTable, ShowsEachHeadlineResponseAtEachSize) {
+  EXPECT_EQ(text_of(result_tables(example(), "x"), kUnlimitedWidth),
+            "0.1 mm: x [mm]\n"
+            "        largest    at                             root sum  first-order  worst                            "
+            "            "
+            "at\n"
+            "subset   effect  pose  largest where                square          sum   case  interaction  opposed  "
+            "cancellation  "
+            "pose  cancelled where\n"
+            "           [mm]                                       [mm]         [mm]   [mm]         [mm]      [%]      "
+            "     [%]\n"
+            "FS        0.04      3  z -180 mm, gamma 5.73 deg   0.04           0.04   0.04         0            -      "
+            "       -     "
+            "-  -\n"
+            "T         0.01      0  z -300 mm, gamma 0 deg      0.01           0.01   0.01         0            -      "
+            "       -     "
+            "-  -\n"
+            "FS+T      0.035     3  z -180 mm, gamma 5.73 deg   0.04125        0.045  0.055        1e-05       75      "
+            "      50     "
+            "2  z -200 mm, gamma 0 deg\n"
+            "worst case of FS+T: pose 3 (z -180 mm, gamma 5.73 deg), with +a, -b\n"
+            "2 sources of errors, alone and together; largest values over 4 poses\n"
+            "interaction: together minus the sum of each alone\n"
+            "worst case: the largest value that was found with either sign of each error: the signs by which the\n"
+            "magnitudes of each alone add up (first-order sum), solved together, then flipped one by one until no\n"
+            "flip is worse. No bound: other signs, or sizes in between, may do more\n"
+            "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much\n"
+            "at most; a norm, which has no sign, cannot tell\n");
+}
+
+TEST(CouplingTable, NamesCornersThatCannotBeAssembled) {
+  StoredResult result = example();
+  EXPECT_EQ(coupling_tables(result).back().notes.front(),
+            "worst case of FS+T: pose 3 (z -180 mm, gamma 5.73 deg), with +a, -b");
+  CouplingResult& found = coupling_in(result).found;
+  found.unsolved_corners = {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0};
+  found.unsolved_pose = {-1, -1, 0};
+  found.unsolved_signs = {0, 0, 0, 0, -1, -1};
   EXPECT_EQ(
-      text_of(result_tables(example(), "x"), kUnlimitedWidth),
-      "0.1 mm: x [mm]\n"
-      "        largest    at                             root sum  worst                                        at\n"
-      "subset   effect  pose  largest where                square   case  interaction  opposed  cancellation  pose  "
-      "cancelled where\n"
-      "           [mm]                                       [mm]   [mm]         [mm]      [%]           [%]\n"
-      "FS        0.04      3  z -180 mm, gamma 5.73 deg   0.04     0.04         0            -             -     -  -\n"
-      "T         0.01      0  z -300 mm, gamma 0 deg      0.01     0.01         0            -             -     -  -\n"
-      "FS+T      0.035     3  z -180 mm, gamma 5.73 deg   0.04125  0.045        1e-05       75            50     2  z "
-      "-200 mm, gamma 0 deg\n"
-      "2 sources of errors, alone and together; largest values over 4 poses\n"
-      "interaction: together minus the sum of each alone\n"
-      "opposed: share of the poses where the sum is less than its largest part, cancellation: by how much\n"
-      "at most; a norm, which has no sign, cannot tell\n");
+      coupling_tables(result).back().notes[5],
+      "3 of the 48 combinations of signs that were tried cannot be assembled, so worst cases are of the others; the "
+      "first: 0.1 mm of FS+T, pose 0 (z -300 mm, gamma 0 deg), with -a, -b");
 }
 
 TEST(CouplingTable, SaysWherePosesAreLeftOut) {
@@ -70,11 +105,11 @@ TEST(CouplingTable, SaysWherePosesAreLeftOut) {
 TEST(CouplingTable, SaysWhySymmetricSourcesCancel) {
   StoredResult result = example();
   result.study_text = "[analysis]\nlimbs = \"all\"\n";
-  EXPECT_EQ(coupling_tables(result).back().notes.size(), 3U) << "every source does something";
+  EXPECT_EQ(coupling_tables(result).back().notes.size(), 5U) << "every source does something";
   coupling_in(result).found.effect_max[4] = 0.0;
   EXPECT_TRUE(coupling_tables(result).back().notes.back().starts_with("all limbs have the same error here"));
   result.study_text = "[analysis]\nlimbs = \"independent\"\n";
-  EXPECT_EQ(coupling_tables(result).back().notes.size(), 3U);
+  EXPECT_EQ(coupling_tables(result).back().notes.size(), 5U);
 }
 
 TEST(CouplingTable, NamesNoPoseOfRounding) {

@@ -1,0 +1,242 @@
+#include "engine/kinds/coupling/worst_case.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
+#include "engine/run/fold.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::uint64_t kKind = 5;  ///< no other state begins with this number
+
+void write_place(const WorstCases::Place& place, ByteWriter& to) {
+  to.real(place.value);
+  to.number(static_cast<std::uint64_t>(place.pose + 1));
+  to.text(place.signs);
+}
+
+/// Of so many blocks. Throws BytesError for other signs.
+Signs read_signs(ByteReader& from, std::size_t blocks) {
+  Signs signs = from.text();
+  const auto is_sign = [](char sign) { return sign == '+' || sign == '-'; };
+  if (!std::ranges::all_of(signs, is_sign) || (!signs.empty() && signs.size() != blocks)) {
+    throw BytesError("has signs of other errors");
+  }
+  return signs;
+}
+
+WorstCases::Place read_place(ByteReader& from, std::size_t poses, std::size_t blocks) {
+  WorstCases::Place place;
+  place.value = from.real();
+  place.pose = static_cast<std::int64_t>(from.number_up_to(poses)) - 1;
+  place.signs = read_signs(from, blocks);
+  if ((place.pose < 0) != place.signs.empty()) throw BytesError("has a corner without a pose");
+  return place;
+}
+
+/// All sizes at all poses, pose by pose: the work of fold().
+class CornerWork {
+ public:
+  CornerWork(const StudyRun& run, const CornerTable& table, std::span<const double> rounding, const Shard& shard)
+      : run_(run),
+        table_(table),
+        rounding_(rounding),
+        poses_(run.poses.size()),
+        sizes_(table.size_of_error.size()),
+        subsets_(table.subsets.size()),
+        responses_(run.model.description().responses.size()),
+        cells_(shard.of(poses_ * sizes_)) {
+    clear();
+  }
+
+  std::size_t begin_round() {
+    begun_ = next_;
+    return cells_.end - next_;
+  }
+  CornerSearch worker() const { return {run_.model, run_.study.solver, run_.poses, table_, rounding_}; }
+  CornersAtPose solve(CornerSearch& search, std::size_t n) const {
+    return search((begun_ + n) / sizes_, (begun_ + n) % sizes_);
+  }
+  SolveCounts merge(std::size_t, CornersAtPose&& found) {
+    const std::size_t m = next_ / sizes_;
+    const std::size_t z = next_ % sizes_;
+    found_.solves[z * poses_ + m] = found.solves;
+    for (std::size_t k = 0; k < subsets_; ++k) add(m, z, k, std::move(found.subsets[k]));
+    ++next_;
+    return found.solves;
+  }
+  static void write(std::size_t, const CornersAtPose& found, ByteWriter& to) {
+    found.solves.write(to);
+    for (const WorstCorners& corners : found.subsets) {
+      to.reals(corners.value);
+      for (const Signs& signs : corners.signs) to.text(signs);
+      to.number(corners.tried);
+      to.number(corners.unsolved);
+      to.text(corners.first_unsolved);
+    }
+  }
+  CornersAtPose read(std::size_t, ByteReader& from) const {
+    CornersAtPose found;
+    found.solves = SolveCounts::read(from);
+    for (const std::vector<std::size_t>& blocks : table_.subsets) {
+      WorstCorners& corners = found.subsets.emplace_back();
+      corners.value = from.reals(responses_);
+      for (std::size_t r = 0; r < responses_; ++r) corners.signs.push_back(read_signs(from, blocks.size()));
+      corners.tried = from.number();
+      corners.unsolved = from.number_up_to(corners.tried);
+      corners.first_unsolved = read_signs(from, blocks.size());
+    }
+    return found;
+  }
+  SolveCounts solved() const { return total_of(found_.solves); }
+  std::uint64_t left() const {
+    const std::size_t done = next_ - cells_.first;
+    const double each = done == 0 ? expected_corners(table_, responses_)
+                                  : static_cast<double>(solved().total()) / static_cast<double>(done);
+    return static_cast<std::uint64_t>(each * static_cast<double>(cells_.end - next_));
+  }
+  void write_state(ByteWriter& to) const {
+    for (const std::uint64_t number : sizes()) to.number(number);
+    to.number(cells_.first);
+    to.number(next_);
+    for (std::size_t cell = cells_.first; cell < next_; ++cell) write_cell(cell, to);
+    for (const WorstCases::Place& place : found_.worst) write_place(place, to);
+    for (const WorstCases::Place& place : found_.first_unsolved) write_place(place, to);
+  }
+  void restore(std::span<const std::byte> state) {
+    clear();
+    ByteReader from(state);
+    while (from.left() > 0) restore_one(from);
+  }
+  static bool next_round() { return false; }
+
+  WorstCases result() && { return std::move(found_); }
+
+ private:
+  /// Forgets all that was merged.
+  void clear() {
+    next_ = cells_.first;
+    found_ = {};
+    found_.value.assign(responses_ * sizes_ * subsets_ * poses_, kNaN);
+    found_.tried.resize(sizes_ * subsets_ * poses_);
+    found_.unsolved.resize(found_.tried.size());
+    found_.solves.resize(sizes_ * poses_);
+    found_.worst.resize(responses_ * sizes_ * subsets_);
+    found_.first_unsolved.resize(sizes_ * subsets_);
+  }
+  std::array<std::uint64_t, 6> sizes() const {
+    return {kKind, poses_, sizes_, subsets_, responses_, table_.blocks.size()};
+  }
+  std::size_t at(std::size_t r, std::size_t z, std::size_t k) const { return (r * sizes_ + z) * subsets_ + k; }
+
+  void add(std::size_t m, std::size_t z, std::size_t k, WorstCorners&& corners) {
+    const std::size_t cell = at(0, z, k) * poses_ + m;
+    found_.tried[cell] = corners.tried;
+    found_.unsolved[cell] = corners.unsolved;
+    for (std::size_t r = 0; r < responses_; ++r) {
+      found_.value[at(r, z, k) * poses_ + m] = corners.value[r];
+      take_worse(found_.worst[at(r, z, k)], {corners.value[r], static_cast<std::int64_t>(m), corners.signs[r]});
+    }
+    take_first(found_.first_unsolved[at(0, z, k)], {0.0, static_cast<std::int64_t>(m), corners.first_unsolved});
+  }
+  /// Of an earlier pose and a later one.
+  static void take_worse(WorstCases::Place& worst, WorstCases::Place other) {
+    if (other.signs.empty() || (worst.pose >= 0 && !(other.value > worst.value))) return;
+    worst = std::move(other);
+  }
+  static void take_first(WorstCases::Place& first, WorstCases::Place other) {
+    if (first.pose < 0 && !other.signs.empty()) first = std::move(other);
+  }
+
+  void write_cell(std::size_t cell, ByteWriter& to) const {
+    const std::size_t m = cell / sizes_;
+    const std::size_t z = cell % sizes_;
+    found_.solves[z * poses_ + m].write(to);
+    for (std::size_t k = 0; k < subsets_; ++k) {
+      to.number(found_.tried[at(0, z, k) * poses_ + m]);
+      to.number(found_.unsolved[at(0, z, k) * poses_ + m]);
+      for (std::size_t r = 0; r < responses_; ++r) to.real(found_.value[at(r, z, k) * poses_ + m]);
+    }
+  }
+  void read_cell(std::size_t cell, ByteReader& from) {
+    const std::size_t m = cell / sizes_;
+    const std::size_t z = cell % sizes_;
+    found_.solves[z * poses_ + m] = SolveCounts::read(from);
+    for (std::size_t k = 0; k < subsets_; ++k) {
+      std::uint64_t& tried = found_.tried[at(0, z, k) * poses_ + m];
+      tried = from.number();
+      found_.unsolved[at(0, z, k) * poses_ + m] = from.number_up_to(tried);
+      for (std::size_t r = 0; r < responses_; ++r) found_.value[at(r, z, k) * poses_ + m] = from.real();
+    }
+  }
+  void restore_one(ByteReader& from) {
+    const auto expect = [&](std::uint64_t number) {
+      if (from.number() != number) throw BytesError("is the state of another kind, size or part of a study");
+    };
+    std::ranges::for_each(sizes(), expect);
+    expect(next_);
+    const auto end = static_cast<std::size_t>(from.number_up_to(cells_.end));
+    if (end < next_) throw BytesError("has poses that end before they begin");
+    for (; next_ < end; ++next_) read_cell(next_, from);
+    for (std::size_t n = 0; n < found_.worst.size(); ++n) {
+      take_worse(found_.worst[n], read_place(from, poses_, table_.subsets[n % subsets_].size()));
+    }
+    for (std::size_t n = 0; n < found_.first_unsolved.size(); ++n) {
+      take_first(found_.first_unsolved[n], read_place(from, poses_, table_.subsets[n % subsets_].size()));
+    }
+  }
+
+  const StudyRun& run_;
+  const CornerTable& table_;
+  std::span<const double> rounding_;
+  std::size_t poses_;
+  std::size_t sizes_;
+  std::size_t subsets_;
+  std::size_t responses_;
+  NumberRange cells_;      ///< the shard's: pose by pose, size by size
+  std::size_t next_ = 0;   ///< cell to be merged
+  std::size_t begun_ = 0;  ///< with which the round began
+  WorstCases found_;
+};
+
+/// The signs of the errors at these places, [places x P].
+std::vector<std::int64_t> signs_of(std::span<const WorstCases::Place> places, const CornerTable& table) {
+  std::vector<std::int64_t> list;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    for (const double sign : table.signs_of_errors(n % table.subsets.size(), places[n].signs)) {
+      list.push_back(static_cast<std::int64_t>(sign));
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+std::optional<WorstCases> run_worst_cases(const StudyRun& run, const CornerTable& table,
+                                          std::span<const double> rounding, const RunOptions& options) {
+  CornerWork work(run, table, rounding, options.shard.value_or(Shard()));
+  if (!fold(work, options) || options.shard) return std::nullopt;
+  return std::move(work).result();
+}
+
+void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult& result) {
+  POESY_EXPECTS(found.value.size() == result.first_order_sum.size());
+  result.worst_case = std::move(found.value);
+  result.corners = std::move(found.tried);
+  result.unsolved_corners = std::move(found.unsolved);
+  for (const WorstCases::Place& place : found.worst) {
+    result.worst_case_max.push_back(place.pose < 0 ? kNaN : place.value);
+    result.worst_case_max_pose.push_back(place.pose);
+  }
+  for (const WorstCases::Place& place : found.first_unsolved) result.unsolved_pose.push_back(place.pose);
+  result.worst_case_signs = signs_of(found.worst, table);
+  result.unsolved_signs = signs_of(found.first_unsolved, table);
+  for (std::size_t cell = 0; cell < found.solves.size(); ++cell) result.solves[cell].merge(found.solves[cell]);
+}
+
+}  // namespace poesy

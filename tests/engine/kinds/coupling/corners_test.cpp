@@ -1,0 +1,256 @@
+#include "engine/kinds/coupling/corners.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "engine/kinds/coupling/kind.h"
+#include "engine/kinds/coupling/worst_case.h"
+#include "engine/kinds/study_run.h"
+#include "tests/support/function_model.h"
+
+namespace poesy::test {
+namespace {
+
+constexpr double kSize = 1e-3;
+
+/// Solves no sample that lies beyond a plane: sum of weight x error above `most`. Such machines cannot be assembled.
+class PartlySolved final : public FunctionModel {
+ public:
+  PartlySolved(std::size_t errors, ErrorFunction function, std::vector<double> weight, double most)
+      : FunctionModel(errors, {"y"}, std::move(function)), weight_(std::move(weight)), most_(most) {}
+
+  std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
+    class Some final : public Evaluator {
+     public:
+      Some(std::unique_ptr<Evaluator> all, const PartlySolved& model) : all_(std::move(all)), model_(&model) {}
+
+      void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
+        all_->evaluate(samples, outcomes);
+        for (std::size_t b = 0; b < samples.count; ++b) {
+          double sum = 0.0;
+          for (std::size_t v = 0; v < samples.varied.size(); ++v) {
+            sum += model_->weight_[samples.varied[v].value] * samples.values[v * samples.count + b];
+          }
+          if (sum > model_->most_) outcomes.status[b] = SolveStatus::singular;
+        }
+      }
+
+     private:
+      std::unique_ptr<Evaluator> all_;
+      const PartlySolved* model_;
+    };
+    return std::make_unique<Some>(FunctionModel::evaluator(options), *this);
+  }
+
+ private:
+  std::vector<double> weight_;
+  double most_;
+};
+
+/// Two sources, of the first and the second half of the errors, each error a block of its own.
+CouplingStudy halves(const Model& model, std::vector<double> sizes = {kSize}) {
+  CouplingStudy study{std::move(sizes), {}, {}, {}};
+  study.pattern.limbs = ErrorPattern::Choice::independent;
+  study.pattern.components = ErrorPattern::Choice::independent;
+  study.sources = {{"A", {}}, {"B", {}}};
+  const std::size_t errors = model.description().factors.size();
+  for (std::size_t p = 0; p < errors; ++p) study.sources[p < errors / 2 ? 0 : 1].factors.emplace_back(p);
+  return study;
+}
+
+/// All corners of all errors, each solved by the function itself; the largest magnitude.
+double largest_of_all_corners(const FunctionModel& model, double pose, double size) {
+  const std::size_t errors = model.description().factors.size();
+  std::vector<double> x(errors), y(model.description().responses.size());
+  double largest = 0.0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << errors; ++corner) {
+    for (std::size_t p = 0; p < errors; ++p) x[p] = (corner >> p & 1U) != 0 ? size : -size;
+    model.function()(x, pose, y);
+    largest = std::max(largest, std::abs(y[0]));
+  }
+  return largest;
+}
+
+struct Search {
+  explicit Search(const Model& searched, const CouplingStudy& asked)
+      : study(asked),
+        table(study, searched.description()),
+        rounding(coupling_rounding(study, searched)),
+        search(searched, {}, poses, table, rounding) {}
+
+  WorstCorners all(std::size_t pose = 0, std::size_t size = 0) { return search(pose, size).subsets.back(); }
+
+  CouplingStudy study;
+  PoseSet poses{1, {0.25, 0.75}};
+  CornerTable table;
+  std::vector<double> rounding;
+  CornerSearch search;
+};
+
+/// y = sum a x + sum b x x of neighbours. With |a| >= 3 |b| size the signs of the first order are those of the worst.
+ErrorFunction bilinear(std::vector<double> a, std::vector<double> b) {
+  return [a = std::move(a), b = std::move(b)](std::span<const double> x, double pose, std::span<double> y) {
+    y[0] = 0.0;
+    for (std::size_t p = 0; p < a.size(); ++p) {
+      y[0] += (a[p] + pose) * x[p] + b[p] * x[p] * x[(p + 1) % a.size()];
+    }
+  };
+}
+
+TEST(CornerTable, HasTheBlocksOfEachSubsetAndTheirErrors) {
+  const FunctionModel model(4, {"y"}, bilinear({1, 1, 1, 1}, {0, 0, 0, 0}));
+  const CornerTable each(halves(model), model.description());
+  EXPECT_EQ(each.subsets, (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}, {0, 1, 2, 3}}));
+  EXPECT_EQ(each.signs_of_errors(1, "+-"), (std::vector{0.0, 0.0, 1.0, -1.0}));
+  CouplingStudy together = halves(model);
+  together.pattern = {};
+  const CornerTable sources(together, model.description());
+  EXPECT_EQ(sources.subsets, (std::vector<std::vector<std::size_t>>{{0}, {1}, {0, 1}}));
+  EXPECT_EQ(sources.signs_of_errors(2, "-+"), (std::vector{-1.0, -1.0, 1.0, 1.0}));
+}
+
+/// Of a linear response it is the first-order sum, sum of |a|, at the corner of the signs of a, or at the opposite one.
+TEST(CornerSearch, OfALinearResponseIsTheFirstOrderSum) {
+  const std::vector<double> a{3.0, -1.0, 4.0, -2.0, 0.5, -7.0};
+  const FunctionModel model(6, {"y"}, bilinear(a, std::vector(6, 0.0)));
+  Search search(model, halves(model, {kSize, 2.0 * kSize}));
+  for (const std::size_t pose : {0U, 1U}) {
+    for (const std::size_t size : {0U, 1U}) {
+      double sum = 0.0;
+      for (const double one : a) sum += std::abs(one + search.poses[PoseIndex(pose)][0]);
+      const WorstCorners found = search.all(pose, size);
+      EXPECT_NEAR(found.value[0], sum * (size == 0 ? kSize : 2.0 * kSize), 1e-16);
+      EXPECT_TRUE(found.signs[0] == "+-+-+-" || found.signs[0] == "-+-+-+") << found.signs[0];
+      EXPECT_EQ(found.unsolved, 0u);
+      EXPECT_LE(found.tried, 3u + 6u)
+          << "the corner, its opposite, the positive one, and what a flip makes of the first";
+    }
+  }
+}
+
+/// The second order decides which side is worse: y = x + 50 x^2 of one error is 1.05e-3 at +size, 0.95e-3 at -size.
+TEST(CornerSearch, TriesBothSigns) {
+  for (const double side : {50.0, -50.0}) {
+    const FunctionModel model(2, {"y"}, [side](auto x, double, auto y) { y[0] = x[0] + x[1] + side * x[0] * x[0]; });
+    EXPECT_NEAR(Search(model, halves(model)).all().value[0], 2.0e-3 + 50.0e-6, 1e-18);
+  }
+}
+
+/// Every corner solved is the oracle: 100 functions of eight errors whose second order is up to a third of the first.
+TEST(CornerSearch, FindsTheWorstOfAllCorners) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int n = 0; n < 100; ++n) {
+    std::vector<double> a, b;
+    for (int p = 0; p < 8; ++p) a.push_back(std::copysign(0.5 + std::abs(uniform(random)), uniform(random)));
+    for (int p = 0; p < 8; ++p) b.push_back(uniform(random) / (12.0 * kSize));
+    const FunctionModel model(8, {"y"}, bilinear(a, b));
+    EXPECT_NEAR(Search(model, halves(model)).all().value[0], largest_of_all_corners(model, 0.25, kSize), 1e-17) << n;
+  }
+}
+
+/// Where the second order rules, the first-order corner is not the worst; no flip of what is found is worse.
+TEST(CornerSearch, EndsWhereNoFlipIsWorse) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int improved = 0;
+  for (int n = 0; n < 100; ++n) {
+    std::vector<double> a, b;
+    for (int p = 0; p < 8; ++p) a.push_back(uniform(random));
+    for (int p = 0; p < 8; ++p) b.push_back(2.0 * uniform(random) / kSize);
+    const FunctionModel model(8, {"y"}, bilinear(a, b));
+    const WorstCorners found = Search(model, halves(model)).all();
+    const auto value = [&](const Signs& signs) {
+      std::vector<double> x, y(1);
+      for (const char sign : signs) x.push_back(sign == '+' ? kSize : -kSize);
+      model.function()(x, 0.25, y);
+      return std::abs(y[0]);
+    };
+    EXPECT_EQ(found.value[0], value(found.signs[0]));
+    Signs first;
+    for (std::size_t p = 0; p < 8; ++p) {
+      Signs flipped = found.signs[0];
+      flipped[p] = flipped[p] == '+' ? '-' : '+';
+      EXPECT_LE(value(flipped), found.value[0]);
+      first += a[p] + 0.25 < 0.0 ? '-' : '+';
+    }
+    EXPECT_GE(found.value[0], value(first));
+    improved += found.value[0] > value(first) ? 1 : 0;
+    EXPECT_LE(found.value[0], largest_of_all_corners(model, 0.25, kSize));
+  }
+  EXPECT_GT(improved, 50);
+}
+
+/// A norm has no signs to add up: the corner of a component is tried for it as well.
+TEST(CornerSearch, OfANormBeginsAtTheCornersOfOthers) {
+  const std::vector<double> a{1.0, -1.0, 1.0, -1.0};
+  const FunctionModel model(4, {"norm", "component"}, [&a](std::span<const double> x, double, std::span<double> y) {
+    y[1] = 0.0;
+    for (std::size_t p = 0; p < 4; ++p) y[1] += a[p] * x[p];
+    y[0] = std::abs(y[1]);
+  });
+  const WorstCorners found = Search(model, halves(model)).all();
+  EXPECT_NEAR(found.value[0], 4.0 * kSize, 1e-18);
+}
+
+/// What moves nothing but rounding is not searched.
+TEST(CornerSearch, DoesNotFollowRounding) {
+  const FunctionModel model(6, {"y"}, [](std::span<const double> x, double, std::span<double> y) {
+    y[0] = 1e-19 * std::sin(1e7 * (x[0] - 2.0 * x[3]));
+  });
+  const WorstCorners found = Search(model, halves(model)).all();
+  EXPECT_LE(found.tried, 3u);
+  EXPECT_LE(found.value[0], 1e-19);
+}
+
+/// y = sum x, and what is above 2.5 sizes in all cannot be assembled: of four errors the corner of the first-order sum,
+/// 4 sizes. Three positive ones are 2 sizes, as are three negative ones; four negative ones, 4 sizes, can be.
+TEST(CornerSearch, NamesCornersThatHaveNoSolution) {
+  const PartlySolved model(4, bilinear(std::vector(4, 0.75), std::vector(4, 0.0)), std::vector(4, 1.0), 2.5 * kSize);
+  const WorstCorners found = Search(model, halves(model)).all();
+  EXPECT_EQ(found.unsolved, 1u);
+  EXPECT_EQ(found.first_unsolved, "++++");
+  EXPECT_NEAR(found.value[0], 4.0 * kSize, 1e-18);
+  EXPECT_EQ(found.signs[0], "----");
+  const PartlySolved nothing(4, bilinear(std::vector(4, 1.0), std::vector(4, 0.0)), std::vector(4, 0.0), -1.0);
+  const WorstCorners none = Search(nothing, halves(nothing)).all();
+  EXPECT_EQ(none.unsolved, none.tried);
+  EXPECT_TRUE(std::isnan(none.value[0]));
+  EXPECT_EQ(none.signs[0], "");
+}
+
+/// A study has the worst over its poses, with signs and place, beside the sum.
+TEST(WorstCases, AreOfAllPosesInAStudy) {
+  const PartlySolved model(4, bilinear({1.0, -1.0, 2.0, -2.0}, std::vector(4, 0.0)), std::vector(4, 1.0), 3.5 * kSize);
+  CatalogEntry entry;
+  entry.description = model.description();
+  Study study;
+  study.mechanism.entry = &entry;
+  study.analysis.kind = &kCouplingStudy;
+  study.analysis.asked = halves(model);
+  study.analysis.factors = coupling_factors(halves(model), entry.description);
+  const PoseSet poses(1, {0.25, 0.75, 0.5});
+  const StudyResult result = run_study(study, model, poses, {1, {}, {}}).value();
+  const auto& found = result.as<CouplingResult>();
+  const auto sum_at = [](double pose) { return (1.0 + pose + 1.0 - pose + 2.0 + pose + 2.0 - pose) * kSize; };
+  for (std::size_t m = 0; m < 3; ++m) {
+    EXPECT_NEAR(found.first_order_sum[2 * 3 + m], sum_at(poses[PoseIndex(m)][0]), 1e-17);
+    EXPECT_NEAR(found.worst_case[2 * 3 + m], found.first_order_sum[2 * 3 + m], 1e-17) << "it is linear";
+    EXPECT_GT(found.corners[2 * 3 + m], 4u);
+  }
+  EXPECT_NEAR(found.worst_case_max[0], 2.0 * kSize, 1e-17) << "1 + pose and 1 - pose";
+  EXPECT_GE(found.worst_case_max_pose[2], 0);
+  const std::int64_t side = found.worst_case_signs[2 * 4];
+  EXPECT_EQ(std::vector(found.worst_case_signs.begin() + 8, found.worst_case_signs.end()),
+            (std::vector<std::int64_t>{side, -side, side, -side}));
+  EXPECT_EQ(found.unsolved_pose, (std::vector<std::int64_t>{-1, -1, 0}));
+  EXPECT_EQ(std::vector(found.unsolved_signs.begin() + 8, found.unsolved_signs.end()),
+            (std::vector<std::int64_t>{1, 1, 1, 1}));
+  EXPECT_EQ(found.total().not_converged(), found.solves[0].not_converged() * 3);
+}
+
+}  // namespace
+}  // namespace poesy::test
