@@ -33,6 +33,9 @@ class CalibratedModel final : public Model {
   std::string no_pose_because(std::size_t chart, std::span<const double> coordinates) const override {
     return model_->no_pose_because(chart, coordinates);
   }
+  std::vector<double> norm_of_details(std::size_t response, std::span<const double> pose) const override {
+    return model_->norm_of_details(response, pose);
+  }
   Separation separation(std::span<const double> pose) const override { return model_->separation(pose); }
   double rounding(std::size_t response) const override { return model_->rounding(response); }
   ErrorBound error_bound(FactorIndex factor) const override { return model_->error_bound(factor); }

@@ -45,6 +45,8 @@ struct Response {
   /// of the mean squares that each gives alone. 1 where the response is linear in the errors or the norm of something
   /// linear, because there the mean squares add; more where it is a mean or the largest of several norms.
   double mean_square_bound = 1.0;
+  /// Where it is the norm of a vector whose components are responses: their positions among the model's.
+  std::vector<std::size_t> components = {};
 };
 
 /// A vector behind the responses, given only where a caller asks for it.
@@ -272,6 +274,14 @@ class Model {
 
   /// Why no pose has these coordinates of a chart (SI), a clause; empty where it has one, or the model says no more.
   virtual std::string no_pose_because(std::size_t /*chart*/, std::span<const double> /*coordinates*/) const {
+    return {};
+  }
+
+  /// Where a response is the norm of a vector that is linear in the details (ModelDescription::details): the matrix
+  /// [K x D] that makes the vector of them, SI. For a mean or the largest of several norms, a vector whose mean square
+  /// is in proportion to the sum of theirs, and whose norm is about as large. Empty for other responses. Precondition:
+  /// the model reaches the pose.
+  virtual std::vector<double> norm_of_details(std::size_t /*response*/, std::span<const double> /*pose*/) const {
     return {};
   }
 

@@ -132,13 +132,14 @@ EffectBins UnitSolver::draw_in_bins(const WorkUnit& unit) {
   return bins;
 }
 
-UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range) {
+UnitOutcomes UnitSolver::solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
+                               std::span<double> details) {
   const std::span values = std::span(values_).first(varied.size() * count);
   const std::span outcome = std::span(outcome_).first(responses_ * count);
   const std::span status = std::span(status_).first(count);
   const std::span iterations = std::span(iterations_).first(count);
   evaluator_->evaluate({plan_->poses()[pose], plan_->background(), varied, values, count, range},
-                       {outcome, status, iterations, {}});
+                       {outcome, status, iterations, details});
   return {values, outcome, status, iterations};
 }
 

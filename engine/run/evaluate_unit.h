@@ -95,8 +95,9 @@ class UnitSolver {
   void draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
   /// Fills values_ with the draws of all factors, one row behind the other, and gives the bins into which they fall.
   EffectBins draw_in_bins(const WorkUnit& unit);
-  /// Solves the first [varied x count] of values_ at a pose.
-  UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range);
+  /// Solves the first [varied x count] of values_ at a pose. details: as of OutcomeBlock.
+  UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
+                     std::span<double> details = {});
 
   const Plan* plan_;            ///< whose units are solved
   std::size_t responses_;       ///< R

@@ -41,8 +41,14 @@ double NormalScore::ends() const {
   return 2.0 * ratio * density / std::erf(ratio / std::numbers::sqrt2);
 }
 
-PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const double> weights) {
-  POESY_EXPECTS(points.size() == weights.size() && !points.empty());
+double NormalScore::growth_factor() const {
+  const double ratio = half_width / sigma;
+  if (std::isinf(ratio)) return 1.0 / kErrorGrowth;
+  return std::erf(ratio / std::numbers::sqrt2) / std::erf(ratio / kErrorGrowth / std::numbers::sqrt2) / kErrorGrowth;
+}
+
+PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const double> weights, std::size_t degree) {
+  POESY_EXPECTS(points.size() == weights.size() && !points.empty() && degree <= kDegree);
   const auto [low, high] = std::ranges::minmax(points);
   POESY_EXPECTS(low < high);
   middle_ = 0.5 * (low + high);
@@ -52,52 +58,71 @@ PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const
   for (const double point : points) x.push_back((point - middle_) * inverse_half_);
   const double centre = mean([&](std::size_t n) { return x[n]; });
   sigma_ = std::sqrt(mean([&](std::size_t n) { return (x[n] - centre) * (x[n] - centre); })) / inverse_half_;
-  find_polynomials(x, weights, centre);
-  std::vector<double> scores;
-  for (const double point : points) scores.push_back((*this)(point));
-  mean_square_ = mean([&](std::size_t n) { return scores[n] * scores[n]; });
-  mean_cube_ = mean([&](std::size_t n) { return scores[n] * scores[n] * scores[n]; });
+  find_polynomials(x, weights, centre, degree);
+  const auto moments = [&](const auto& score) {
+    std::vector<double> scores;
+    for (const double point : points) scores.push_back(score(point));
+    return ScoreMoments{mean([&](std::size_t n) { return scores[n] * scores[n]; }),
+                        mean([&](std::size_t n) { return scores[n] * scores[n] * scores[n]; })};
+  };
+  moments_ = moments([&](double point) { return (*this)(point); });
+  growth_moments_ = moments([&](double point) { return growth(point); });
 }
 
 // Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for so low a degree.
-void PolynomialScore::find_polynomials(std::span<const double> x, std::span<const double> weights, double centre) {
+void PolynomialScore::find_polynomials(std::span<const double> x, std::span<const double> weights, double centre,
+                                       std::size_t degree) {
   constexpr double kNone = 1e-12;  // of the norm before: there are no more points than the degree
   const std::size_t count = x.size();
   const Mean mean(weights);
   AtPoints before{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   AtPoints now{std::vector<double>(count, 1.0), std::vector<double>(count, 0.0)};
+  std::vector<double> grown_before(count, 0.0);  // the same polynomials at c + g (e - c)
+  std::vector<double> grown(count, 1.0);
   double norm = 1.0;
   double ratio = 0.0;
-  for (std::size_t k = 0; k < kDegree; ++k) {
+  for (std::size_t k = 0; k < degree; ++k) {
     const double shift = mean([&](std::size_t n) { return x[n] * now.value[n] * now.value[n]; }) / norm;
     for (std::size_t n = 0; n < count; ++n) {  // the next one takes the place of the one before
       before.slope[n] = now.value[n] + (x[n] - shift) * now.slope[n] - ratio * before.slope[n];
       before.value[n] = (x[n] - shift) * now.value[n] - ratio * before.value[n];
     }
     std::swap(before, now);
+    for (std::size_t n = 0; n < count; ++n) {
+      const double at = centre + kErrorGrowth * (x[n] - centre);
+      grown_before[n] = (at - shift) * grown[n] - ratio * grown_before[n];
+    }
+    std::swap(grown_before, grown);
     const double next = mean([&](std::size_t n) { return now.value[n] * now.value[n]; });
     if (!(next > kNone * norm)) return;
     centres_[k] = shift;
     ratios_[k] = ratio;
     factors_[k] = mean([&](std::size_t n) { return now.slope[n] * (x[n] - centre); }) / next;
+    grown_[k] = mean([&](std::size_t n) { return grown[n]; }) / next;
     ratio = next / norm;
     norm = next;
   }
 }
 
-double PolynomialScore::operator()(double error) const {
+double PolynomialScore::sum_at(double error, const Factors& factors, std::size_t degree) const {
   const double x = (error - middle_) * inverse_half_;
   double before = 0.0;
   double value = 1.0;
   double sum = 0.0;
-  for (std::size_t k = 0; k < kDegree; ++k) {
+  for (std::size_t k = 0; k < degree; ++k) {
     const double next = (x - centres_[k]) * value - ratios_[k] * before;
     before = value;
     value = next;
-    sum += factors_[k] * value;
+    sum += factors[k] * value;
   }
   return sum;
 }
+
+double PolynomialScore::operator()(double error) const { return sum_at(error, factors_, kDegree); }
+
+double PolynomialScore::growth(double error) const { return sum_at(error, grown_, kDegree); }
+
+double PolynomialScore::parabola(double error) const { return sum_at(error, factors_, 2); }
 
 double size_of(const ErrorScore& score) {
   if (const auto* normal = std::get_if<NormalScore>(&score)) return normal->sigma;
@@ -123,7 +148,7 @@ void NormalBlock::replace(std::span<double> z) const {
 
 ScoreMoments score_moments(const ErrorScores& scores, std::size_t error) {
   if (const auto* polynomial = std::get_if<PolynomialScore>(&scores.each[error])) {
-    return {polynomial->mean_square(), polynomial->mean_cube()};
+    return polynomial->moments();
   }
   for (const NormalBlock& block : scores.blocks) {
     const auto place = std::ranges::find(block.errors, error);
@@ -137,6 +162,13 @@ ScoreMoments score_moments(const ErrorScores& scores, std::size_t error) {
   }
   POESY_EXPECTS(false);
   return {};
+}
+
+ScoreMoments growth_moments(const ErrorScores& scores, std::size_t error) {
+  if (const auto* polynomial = std::get_if<PolynomialScore>(&scores.each[error])) return polynomial->growth_moments();
+  constexpr double kStep = kErrorGrowth - 1.0;
+  const auto [square, cube] = score_moments(scores, error);
+  return {kStep * kStep * square, kStep * kStep * kStep * cube};
 }
 
 }  // namespace poesy

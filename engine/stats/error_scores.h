@@ -10,7 +10,17 @@ namespace poesy {
 
 // The score of an error by its size t says how its density changes while all its values grow in proportion,
 // S(e) = d ln f(e; t) / d ln t. Then dP/dt = E[1_event S] / t for any event (likelihood ratio; Rubinstein 1986, Math.
-// Comput. Simul. 28, 365-379).
+// Comput. Simul. 28, 365-379). The growth score is that of a step and no slope, f(e; g t) / f(e; t) - 1: its mean over
+// the event is what P changes by while the error grows by a factor g.
+
+/// By what factor an error grows where a change of the yield is said.
+inline constexpr double kErrorGrowth = 1.1;
+
+/// Means of a score's powers over all machines; its own mean is 0.
+struct ScoreMoments {
+  double square;  ///< E[S^2]
+  double cube;    ///< E[S^3]
+};
 
 /// Of a normal error e = t z: z^2 - 1; of one cut off at a fixed +-w: z^2 - 1 + (2 w/t) phi(w/t) / (2 Phi(w/t) - 1).
 struct NormalScore {
@@ -18,6 +28,11 @@ struct NormalScore {
   double half_width;  ///< w, the largest possible error; infinite for the normal
 
   double ends() const;  ///< What cutting off adds to z^2 - 1.
+  /// The growth score of z = e / t is factor exp(exponent z^2) - 1: for the normal exp(z^2 (1 - 1/g^2) / 2) / g - 1.
+  /// @{
+  double growth_factor() const;
+  static constexpr double growth_exponent() { return 0.5 * (1.0 - 1.0 / (kErrorGrowth * kErrorGrowth)); }
+  /// @}
 };
 
 /// Of an error of any shape whose size grows about its mean. Where the ends of a range move with it there is no score
@@ -28,33 +43,41 @@ struct NormalScore {
 ///
 /// For the uniform that is the sum of (2k + 1) P_k over k = 2, 4, 6 (Legendre), for a normal z^2 - 1 whatever the
 /// degree from 2 on. What the event's probability has beyond that degree is left out: THEORY.md has the bias.
+/// The growth score has E[p_k(c + g (e - c))] in the place of the first factor.
 class PolynomialScore {
  public:
   static constexpr std::size_t kDegree = 6;  ///< Higher ones have more noise than they take off bias (THEORY.md).
 
   /// points, weights: [n] in the unit of the error, over which means of polynomials up to degree 3 kDegree are
-  /// those of the error. Where n points or fewer are distinct, the degree is below that number. Precondition: weights
-  /// are positive and sum to 1; at least two distinct points.
-  PolynomialScore(std::span<const double> points, std::span<const double> weights);
+  /// those of the error. Where n points or fewer are distinct, the degree is below that number. degree: of the score,
+  /// at most kDegree. Precondition: weights are positive and sum to 1; at least two distinct points.
+  PolynomialScore(std::span<const double> points, std::span<const double> weights, std::size_t degree = kDegree);
 
-  double sigma() const { return sigma_; }              ///< Standard deviation of the points: t.
-  double operator()(double error) const;               ///< S.
-  double mean_square() const { return mean_square_; }  ///< Of S over all errors; its mean is 0.
-  double mean_cube() const { return mean_cube_; }      ///< Likewise.
+  double sigma() const { return sigma_; }                          ///< Standard deviation of the points: t.
+  double operator()(double error) const;                           ///< S.
+  double growth(double error) const;                               ///< The growth score.
+  double parabola(double error) const;                             ///< The part of S up to degree 2.
+  ScoreMoments moments() const { return moments_; }                ///< Of S over all errors.
+  ScoreMoments growth_moments() const { return growth_moments_; }  ///< Of the growth score.
 
  private:
+  using Factors = std::array<double, kDegree>;
+
   /// x: [n] points from -1 to 1; centre: their mean.
-  void find_polynomials(std::span<const double> x, std::span<const double> weights, double centre);
+  void find_polynomials(std::span<const double> x, std::span<const double> weights, double centre, std::size_t degree);
+  /// The sum of factors[k] q_(k+1) up to a degree.
+  double sum_at(double error, const Factors& factors, std::size_t degree) const;
 
   double sigma_;
   double middle_;        ///< of the points' range
   double inverse_half_;  ///< of half that range
   // Monic polynomials q_k of (e - middle) / half: q_(k+1) = (x - centre_k) q_k - ratio_k q_(k-1).
-  std::array<double, kDegree> centres_{};
-  std::array<double, kDegree> ratios_{};
-  std::array<double, kDegree> factors_{};  ///< of q_(k+1) in S; 0 beyond the degree that the points have
-  double mean_square_;
-  double mean_cube_;
+  Factors centres_{};
+  Factors ratios_{};
+  Factors factors_{};  ///< of q_(k+1) in S; 0 beyond the degree that the points have
+  Factors grown_{};    ///< likewise in the growth score
+  ScoreMoments moments_{};
+  ScoreMoments growth_moments_{};
 };
 
 /// Of an error of a NormalBlock.
@@ -84,14 +107,11 @@ struct ErrorScores {
   std::vector<NormalBlock> blocks = {};  ///< an error is in one at the most
 };
 
-/// Means of a score's powers over all machines; its own mean is 0.
-struct ScoreMoments {
-  double square;  ///< E[S^2]
-  double cube;    ///< E[S^3]
-};
-
 /// Of the error at this position. In a NormalBlock: 1 + r and 2 + 6 r with r = (R^-1)_ii, because it is a product of
 /// two normals of variances 1 and r and covariance 1. Precondition: the error has a PolynomialScore or a BlockScore.
 ScoreMoments score_moments(const ErrorScores& scores, std::size_t error);
+/// The same of the growth score; for an error of a NormalBlock it is (g - 1) S, because the ratio of the densities may
+/// have no variance where errors are strongly correlated.
+ScoreMoments growth_moments(const ErrorScores& scores, std::size_t error);
 
 }  // namespace poesy

@@ -1,5 +1,6 @@
 #include "engine/stats/yield_gradient.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,67 +19,98 @@ std::vector<std::size_t> places(std::span<const std::uint8_t> rejected) {
   return found;
 }
 
-/// So many rejects, with any error, are added where the spread of a score is estimated, because few rejects need not
-/// have had its largest values (as Agresti and Coull 1998, Am. Stat. 52, 119-126, add two of each kind for a share).
-constexpr double kAdded = 4.0;
-
-/// Sums of the powers of one error's score.
-struct ScorePowers {
-  double sum = 0.0;
-  double squares = 0.0;
-  double cubes = 0.0;
-
-  void add(double score) {
-    sum += score;
-    squares += score * score;
-    cubes += score * score * score;
-  }
-};
-
 /// score: of the error at a machine.
 template <class Score>
-ScorePowers score_powers(std::span<const std::size_t> rejects, const Score score) {
-  ScorePowers sums;
+PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
+  PowerSums sums;
   for (const std::size_t b : rejects) sums.add(score(b));
   return sums;
 }
 
 /// Of a normal error. Never inlined, because its sums then stay in registers.
-[[gnu::noinline]] ScorePowers score_powers(const NormalScore& score, std::span<const double> row,
-                                           std::span<const std::size_t> rejects) {
+/// @{
+[[gnu::noinline]] PowerSums slope_sums(const NormalScore& score, std::span<const double> row,
+                                       std::span<const std::size_t> rejects) {
   const double inverse_sigma = 1.0 / score.sigma;
-  return score_powers(rejects, [row, inverse_sigma](std::size_t b) {
+  return power_sums(rejects, [row, inverse_sigma](std::size_t b) {
     const double z = row[b] * inverse_sigma;
     return z * z - 1.0;
   });
 }
 
-/// Of an error that depends on no other. row: [B].
-ScorePowers score_powers(const ErrorScore& score, std::span<const double> row, std::span<const std::size_t> rejects) {
-  if (const auto* normal = std::get_if<NormalScore>(&score)) return score_powers(*normal, row, rejects);
-  if (const auto* polynomial = std::get_if<PolynomialScore>(&score)) {
-    return score_powers(rejects, [&](std::size_t b) { return (*polynomial)(row[b]); });
+[[gnu::noinline]] PowerSums growth_sums(const NormalScore& score, std::span<const double> row,
+                                        std::span<const std::size_t> rejects) {
+  const double inverse_sigma = 1.0 / score.sigma;
+  const double factor = score.growth_factor();
+  return power_sums(rejects, [row, inverse_sigma, factor](std::size_t b) {
+    const double z = row[b] * inverse_sigma;
+    return factor * std::exp(NormalScore::growth_exponent() * z * z) - 1.0;
+  });
+}
+/// @}
+
+constexpr Estimate kUnknown{kNaN, {kNaN, kNaN}};
+
+void write_sums(ByteWriter& to, const std::vector<PowerSums>& sums) {
+  for (const auto member : {&PowerSums::sum, &PowerSums::square, &PowerSums::cube}) {
+    for (const PowerSums& one : sums) to.real(one.*member);
   }
-  return {};
+}
+
+void read_sums(ByteReader& from, double rejects, std::vector<PowerSums>& sums) {
+  constexpr double kRounding = 1.0 + 1e-9;
+  for (const auto member : {&PowerSums::sum, &PowerSums::square, &PowerSums::cube}) {
+    for (PowerSums& one : sums) one.*member = from.real();
+  }
+  for (const PowerSums& one : sums) {
+    const bool possible = std::isfinite(one.square) && std::isfinite(one.cube) && one.square >= 0.0 &&
+                          one.sum * one.sum <= rejects * one.square * kRounding;
+    if (!possible) throw BytesError("has sums of scores that no machines give");
+  }
 }
 
 }  // namespace
 
+Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& added, double freedom,
+                     double conf_level) {
+  const auto n = static_cast<double>(machines);
+  const double mean = powers.sum / n;
+  if (!(freedom >= 1.0)) return {mean, {kNaN, kNaN}};
+  const double mean2 = powers.square / n + added.square;
+  const double mean3 = powers.cube / n + added.cube;
+  const double variance = mean2 - mean * mean;
+  const double third = mean3 - mean * (3.0 * mean2 - 2.0 * mean * mean);
+  const double z = two_sided_student_quantile(freedom, conf_level);
+  const double shift = 0.5 * z * z * third / variance / n;
+  const double half = std::sqrt(shift * shift + z * z * variance / (n - 1.0));
+  return {mean, {mean + shift - half, mean + shift + half}};
+}
+
+Estimate within(const Estimate& estimate, double least, double most) {
+  const auto kept = [&](double value) { return std::isnan(value) ? value : std::clamp(value, least, most); };
+  return {kept(estimate.value), {kept(estimate.interval.low), kept(estimate.interval.high)}};
+}
+
 ScoreSums::ScoreSums(ErrorScores scores)
     : scores_(std::move(scores)),
-      sums_(scores_.each.size()),
-      squares_(scores_.each.size()),
-      cubes_(scores_.each.size()) {}
+      slope_(scores_.each.size()),
+      growth_(scores_.each.size()),
+      parabola_(scores_.each.size()) {}
 
 void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
-  POESY_EXPECTS(errors.size() == sums_.size() * count);
+  POESY_EXPECTS(errors.size() == slope_.size() * count);
   const std::vector<std::size_t> rejects = places(rejected);  // few of many machines, as a rule
-  for (std::size_t p = 0; p < sums_.size(); ++p) {
-    const ScorePowers found = score_powers(scores_.each[p], errors.subspan(p * count, count), rejects);
-    sums_[p] += found.sum;
-    squares_[p] += found.squares;
-    cubes_[p] += found.cubes;
+  for (std::size_t p = 0; p < slope_.size(); ++p) {
+    const std::span<const double> row = errors.subspan(p * count, count);
+    if (const auto* normal = std::get_if<NormalScore>(&scores_.each[p])) {
+      slope_[p] += slope_sums(*normal, row, rejects);
+      growth_[p] += growth_sums(*normal, row, rejects);
+    } else if (const auto* polynomial = std::get_if<PolynomialScore>(&scores_.each[p])) {
+      slope_[p] += power_sums(rejects, [&](std::size_t b) { return (*polynomial)(row[b]); });
+      growth_[p] += power_sums(rejects, [&](std::size_t b) { return polynomial->growth(row[b]); });
+      for (const std::size_t b : rejects) parabola_[p] += polynomial->parabola(row[b]);
+    }
   }
   for (const NormalBlock& block : scores_.blocks) add_block(block, errors, count, rejects);
   machines_ += count;
@@ -89,7 +121,7 @@ void ScoreSums::add_block(const NormalBlock& block, std::span<const double> erro
                           std::span<const std::size_t> rejects) {
   const std::size_t size = block.errors.size();
   std::vector<double> z(size);
-  std::vector<ScorePowers> found(size);
+  std::vector<PowerSums> found(size);
   for (const std::size_t b : rejects) {
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t p = block.errors[i];
@@ -98,37 +130,55 @@ void ScoreSums::add_block(const NormalBlock& block, std::span<const double> erro
     block.replace(z);
     for (std::size_t i = 0; i < size; ++i) found[i].add(z[i]);
   }
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t p = block.errors[i];
-    sums_[p] += found[i].sum;
-    squares_[p] += found[i].squares;
-    cubes_[p] += found[i].cubes;
-  }
+  for (std::size_t i = 0; i < size; ++i) slope_[block.errors[i]] += found[i];
 }
 
 void ScoreSums::merge(const ScoreSums& other) {
-  POESY_EXPECTS(other.sums_.size() == sums_.size());
+  POESY_EXPECTS(other.slope_.size() == slope_.size());
   machines_ += other.machines_;
   rejects_ += other.rejects_;
-  for (std::size_t p = 0; p < sums_.size(); ++p) {
-    sums_[p] += other.sums_[p];
-    squares_[p] += other.squares_[p];
-    cubes_[p] += other.cubes_[p];
+  for (std::size_t p = 0; p < slope_.size(); ++p) {
+    slope_[p] += other.slope_[p];
+    growth_[p] += other.growth_[p];
+    parabola_[p] += other.parabola_[p];
   }
 }
 
 std::vector<Estimate> ScoreSums::gradient(double conf_level) const {
   std::vector<Estimate> gradient;
-  for (std::size_t p = 0; p < sums_.size(); ++p) {
+  for (std::size_t p = 0; p < slope_.size(); ++p) {
     const double sigma = size_of(scores_.each[p]);
     if (sigma == 0.0 || machines_ == 0) {
-      gradient.push_back({kNaN, {kNaN, kNaN}});
+      gradient.push_back(kUnknown);
       continue;
     }
-    const auto [value, interval] = mean_score(p, conf_level);
-    gradient.push_back({-value / sigma, {-interval.high / sigma, -interval.low / sigma}});
+    const Estimate score = mean_score(p, conf_level);
+    const auto& [value, interval] = score;
+    gradient.push_back(dominates(p, score) ? kUnknown
+                                           : Estimate{-value / sigma, {-interval.high / sigma, -interval.low / sigma}});
   }
   return gradient;
+}
+
+std::vector<Estimate> ScoreSums::change(double conf_level) const {
+  std::vector<Estimate> change;
+  for (std::size_t p = 0; p < slope_.size(); ++p) {
+    const bool known = size_of(scores_.each[p]) > 0.0 && machines_ > 0;
+    if (!known || dominates(p, mean_score(p, conf_level))) {
+      change.push_back(kUnknown);
+      continue;
+    }
+    const double rejects = static_cast<double>(rejects_) / static_cast<double>(machines_);
+    const auto [value, interval] = mean_growth(p, conf_level);
+    change.push_back(within({-value, {-interval.high, -interval.low}}, rejects - 1.0, rejects));
+  }
+  return change;
+}
+
+bool ScoreSums::dominates(std::size_t error, const Estimate& score) const {
+  if (!std::holds_alternative<PolynomialScore>(scores_.each[error])) return false;
+  const double all = slope_[error].sum;
+  return score.interval.low > 0.0 && (parabola_[error] < 0.5 * all || parabola_[error] > 2.0 * all);
 }
 
 Estimate ScoreSums::mean_score(std::size_t error, double conf_level) const {
@@ -136,46 +186,51 @@ Estimate ScoreSums::mean_score(std::size_t error, double conf_level) const {
   const auto rejects = static_cast<double>(rejects_);
   const auto* const normal = std::get_if<NormalScore>(&scores_.each[error]);
   const double ends = normal == nullptr ? 0.0 : normal->ends();
-  // the mean powers of the score, whose constant part is added here
-  const double mean = (sums_[error] + ends * rejects) / n;
-  double mean2 = (squares_[error] + ends * (2.0 * sums_[error] + ends * rejects)) / n;
-  double mean3 = (cubes_[error] + ends * (3.0 * squares_[error] + ends * (3.0 * sums_[error] + ends * rejects))) / n;
-  if (rejects_ < 2) return {mean, {kNaN, kNaN}};
-  if (normal == nullptr) {
+  const auto [sum, square, cube] = slope_[error];
+  // the powers of the score, whose constant part is added here
+  const PowerSums powers{sum + ends * rejects, square + ends * (2.0 * sum + ends * rejects),
+                         cube + ends * (3.0 * square + ends * (3.0 * sum + ends * rejects))};
+  ScoreMoments added{0.0, 0.0};
+  if (normal == nullptr && rejects_ >= 2) {
     const ScoreMoments all = score_moments(scores_, error);
-    mean2 += kAdded * all.square / n;
-    mean3 += kAdded * all.cube / n;
+    added = {kAddedRejects * all.square / n, kAddedRejects * all.cube / n};
   }
-  const double variance = mean2 - mean * mean;
-  const double third = mean3 - mean * (3.0 * mean2 - 2.0 * mean * mean);
-  const double z = two_sided_student_quantile(rejects - 1.0, conf_level);
-  const double shift = 0.5 * z * z * third / variance / n;
-  const double half = std::sqrt(shift * shift + z * z * variance / (n - 1.0));
-  return {mean, {mean + shift - half, mean + shift + half}};
+  return skewed_mean(powers, machines_, added, rejects - 1.0, conf_level);
+}
+
+Estimate ScoreSums::mean_growth(std::size_t error, double conf_level) const {
+  if (std::holds_alternative<BlockScore>(scores_.each[error])) {
+    constexpr double kStep = kErrorGrowth - 1.0;
+    const auto [value, interval] = mean_score(error, conf_level);
+    return {kStep * value, {kStep * interval.low, kStep * interval.high}};
+  }
+  const auto n = static_cast<double>(machines_);
+  ScoreMoments added{0.0, 0.0};
+  if (std::holds_alternative<PolynomialScore>(scores_.each[error])) {
+    const ScoreMoments all = growth_moments(scores_, error);
+    added = {kAddedRejects * all.square / n, kAddedRejects * all.cube / n};
+  }
+  return skewed_mean(growth_[error], machines_, added, static_cast<double>(rejects_) - 1.0, conf_level);
 }
 
 void ScoreSums::write(ByteWriter& to) const {
   to.number(machines_);
   to.number(rejects_);
-  to.reals(sums_);
-  to.reals(squares_);
-  to.reals(cubes_);
+  write_sums(to, slope_);
+  write_sums(to, growth_);
+  to.reals(parabola_);
 }
 
 ScoreSums ScoreSums::read(ByteReader& from, const ErrorScores& scores) {
   ScoreSums sums(scores);
-  const std::size_t errors = scores.each.size();
   sums.machines_ = from.number();
   sums.rejects_ = from.number_up_to(sums.machines_);
-  sums.sums_ = from.reals(errors);
-  sums.squares_ = from.reals(errors);
-  sums.cubes_ = from.reals(errors);
   const auto rejects = static_cast<double>(sums.rejects_);
-  constexpr double kRounding = 1.0 + 1e-9;
-  for (std::size_t p = 0; p < errors; ++p) {
-    const bool possible = std::isfinite(sums.squares_[p]) && std::isfinite(sums.cubes_[p]) && sums.squares_[p] >= 0.0 &&
-                          sums.sums_[p] * sums.sums_[p] <= rejects * sums.squares_[p] * kRounding;
-    if (!possible) throw BytesError("has sums of scores that no machines give");
+  read_sums(from, rejects, sums.slope_);
+  read_sums(from, rejects, sums.growth_);
+  from.reals(sums.parabola_);
+  if (!std::ranges::all_of(sums.parabola_, [](double one) { return std::isfinite(one); })) {
+    throw BytesError("has sums of scores that no machines give");
   }
   return sums;
 }

@@ -19,8 +19,8 @@ class CalibratedEvaluator final : public Evaluator {
       : model_(model),
         fidelity_(fidelity),
         uncorrected_(std::move(uncorrected)),
-        first_row_(static_cast<Eigen::Index>(responses_of(model).size() - platform_responses(*model.platform).size())) {
-  }
+        first_row_(
+            static_cast<Eigen::Index>(responses_of(model).size() - platform_responses(*model.platform, 0).size())) {}
 
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
     uncorrected_->evaluate(samples, outcomes);

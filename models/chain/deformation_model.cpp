@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/linalg/decompositions.h"
 #include "models/chain/deformation_solver.h"
 
 namespace poesy::chain {
@@ -133,7 +135,36 @@ class DeformationEvaluator final : public Evaluator {
   std::vector<double> values_;  ///< [varied entries x B]
 };
 
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The matrix [k x 6] whose product with the mismatch [omega; v] of one pair has the norm that a response judges.
+/// metric: none: as published, where linear mismatch is at the base's origin.
+RowMatrix judged_of_pair(const std::optional<Metric>& metric, std::size_t response) {
+  const bool is_angular = response == (metric ? 1 : 0);
+  const bool is_linear = response == (metric ? 2 : 1);
+  if (is_angular) return RowMatrix::Identity(3, 6);
+  RowMatrix all = lie::Matrix6<double>::Identity();
+  if (metric && is_linear) all.bottomLeftCorner(3, 3) = -lie::hat<double>(metric->origin);  // v + omega x origin
+  if (is_linear) return all.bottomRows(3);
+  if (metric) all = linalg::cholesky_root(metric->W);  // the gap
+  return all;
+}
+
 }  // namespace
+
+std::vector<double> norm_of_details(const DeformationModel& model, std::size_t response, std::span<const double> pose) {
+  if (model.chain.meets || response >= kResponses) return {};
+  const std::optional<Metric> metric =
+      model.points.empty() ? std::nullopt : model.metric(model.joint_displacements(pose));
+  const RowMatrix one = judged_of_pair(metric, response);
+  const auto pairs = static_cast<Eigen::Index>(model.chain.pairs.size());
+  // Root mean squares over the pairs. As published a mean of norms and the largest one, which are about as large.
+  const bool is_largest = !metric && response == 2;
+  const double share = is_largest ? 1.0 / std::numbers::sqrt2 : 1.0 / std::sqrt(static_cast<double>(pairs));
+  RowMatrix all = RowMatrix::Zero(pairs * one.rows(), 6 * pairs);
+  for (Eigen::Index n = 0; n < pairs; ++n) all.block(n * one.rows(), 6 * n, one.rows(), 6) = share * one;
+  return {all.data(), all.data() + all.size()};
+}
 
 std::vector<Response> deformation_responses() {
   // The sum Q of the three n^2 adds over independent errors. In a triangle 2 Q <= (sum of n)^2 <= 3 Q, so the square of
@@ -167,22 +198,27 @@ std::vector<Response> responses_by_metric() {
            "mismatch of position at the platform's origin between pairs of limbs, root mean square over the pairs"}};
 }
 
-std::vector<Response> platform_responses(const PlatformReport& report) {
+std::vector<Response> platform_responses(const PlatformReport& report, std::size_t first) {
   constexpr auto kLength = Dimension::length;
   constexpr auto kAngle = Dimension::angle;
-  std::vector<Response> list{{"x", kLength, "displacement of the platform's origin along the base's x"},
-                             {"y", kLength, "displacement of the platform's origin along the base's y"},
-                             {"z", kLength, "displacement of the platform's origin along the base's z"},
-                             {"theta_x", kAngle, "rotation of the platform about the base's x (rotation vector)"},
-                             {"theta_y", kAngle, "rotation of the platform about the base's y (rotation vector)"},
-                             {"theta_z", kAngle, "rotation of the platform about the base's z (rotation vector)"},
-                             {"position", kLength, "length of the displacement of the platform's origin"},
-                             {"rotation", kAngle, "angle by which the platform is rotated"}};
+  std::vector<Response> list{
+      {"x", kLength, "displacement of the platform's origin along the base's x"},
+      {"y", kLength, "displacement of the platform's origin along the base's y"},
+      {"z", kLength, "displacement of the platform's origin along the base's z"},
+      {"theta_x", kAngle, "rotation of the platform about the base's x (rotation vector)"},
+      {"theta_y", kAngle, "rotation of the platform about the base's y (rotation vector)"},
+      {"theta_z", kAngle, "rotation of the platform about the base's z (rotation vector)"},
+      {"position", kLength, "length of the displacement of the platform's origin", 1.0, {first, first + 1, first + 2}},
+      {"rotation", kAngle, "angle by which the platform is rotated", 1.0, {first + 3, first + 4, first + 5}}};
   if (!report.tool) return list;
   list.insert(list.end(), {{"tip_x", kLength, "displacement of the tool's point along the base's x"},
                            {"tip_y", kLength, "displacement of the tool's point along the base's y"},
                            {"tip_z", kLength, "displacement of the tool's point along the base's z"},
-                           {"tip_position", kLength, "length of the displacement of the tool's point"}});
+                           {"tip_position",
+                            kLength,
+                            "length of the displacement of the tool's point",
+                            1.0,
+                            {first + 8, first + 9, first + 10}}});
   return list;
 }
 
@@ -190,7 +226,7 @@ std::vector<Response> responses_of(const DeformationModel& model) {
   std::vector<Response> list;
   if (!model.chain.meets) list = model.points.empty() ? deformation_responses() : responses_by_metric();
   if (!model.platform) return list;
-  for (Response& response : platform_responses(*model.platform)) list.push_back(std::move(response));
+  for (Response& response : platform_responses(*model.platform, list.size())) list.push_back(std::move(response));
   return list;
 }
 

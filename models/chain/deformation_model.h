@@ -61,7 +61,8 @@ std::vector<Response> responses_by_metric();
 
 /// The platform's displacement D under errors, in the base frame and in the order of platform_rows(): x, y, z and
 /// position of its origin, theta_x, theta_y, theta_z and rotation, tip_x, tip_y, tip_z and tip_position of the tool.
-std::vector<Response> platform_responses(const PlatformReport& report);
+/// first: the position of x among the model's responses.
+std::vector<Response> platform_responses(const PlatformReport& report, std::size_t first);
 
 /// All responses of a model: of its deformation, then of its platform.
 std::vector<Response> responses_of(const DeformationModel& model);
@@ -76,6 +77,9 @@ double effect_rounding(const DeformationModel& model, std::size_t response);
 
 /// One detail per pair of limbs, delta_mu_ki = [omega; v] (Eqs. 30, 46), named with limbs counted from 1.
 std::vector<Detail> deformation_details(const ParallelChain& chain);
+
+/// Model::norm_of_details for a response of the deformation, [K x 6 pairs]; empty for responses of the platform.
+std::vector<double> norm_of_details(const DeformationModel& model, std::size_t response, std::span<const double> pose);
 
 /// The displacements q_i_j of all joints, limb by limb, limbs and joints counted from 1.
 std::vector<JointDisplacement> joint_displacement_names(const ParallelChain& chain);

@@ -179,6 +179,10 @@ class FileModel final : public Model {
 
   double rounding(std::size_t response) const override { return chain::effect_rounding(model_, response); }
 
+  std::vector<double> norm_of_details(std::size_t response, std::span<const double> pose) const override {
+    return chain::norm_of_details(model_, response, pose);
+  }
+
   Separation separation(std::span<const double> pose) const override { return chain::separation(model_, pose); }
 
   std::vector<PlatformPoint> metric_points() const override {

@@ -170,9 +170,9 @@ std::vector<Response> responses() {
   add("theta_", "xyz", Dimension::angle, "rotation vector of the platform, along ");
   add("", "xyz", Dimension::length, "displacement of the platform's centre P along ");
   add("tip_", "xyz", Dimension::length, "displacement of the tool tip along ");
-  list.push_back({"rotation", Dimension::angle, "angle by which the platform turns"});
-  list.push_back({"position", Dimension::length, "distance by which the platform's centre P moves"});
-  list.push_back({"tip_position", Dimension::length, "distance by which the tool tip moves"});
+  list.push_back({"rotation", Dimension::angle, "angle by which the platform turns", 1.0, {0, 1, 2}});
+  list.push_back({"position", Dimension::length, "distance by which the platform's centre P moves", 1.0, {3, 4, 5}});
+  list.push_back({"tip_position", Dimension::length, "distance by which the tool tip moves", 1.0, {6, 7, 8}});
   return list;
 }
 

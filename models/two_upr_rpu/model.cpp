@@ -134,6 +134,10 @@ class TwoUprRpu final : public Model {
 
   double rounding(std::size_t response) const override { return chain::effect_rounding(deformation_, response); }
 
+  std::vector<double> norm_of_details(std::size_t response, std::span<const double> pose) const override {
+    return chain::norm_of_details(deformation_, response, pose);
+  }
+
   std::vector<PlatformPoint> metric_points() const override {
     std::vector<PlatformPoint> points;
     for (const Vector3& point : deformation_.points) points.push_back({point.x(), point.y(), point.z()});

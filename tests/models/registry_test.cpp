@@ -82,14 +82,21 @@ struct Outcomes {
   std::vector<double> responses;  ///< [R x B]
   std::vector<SolveStatus> status;
   std::vector<std::uint32_t> iterations;
+  std::vector<double> details;  ///< [components of all details x B]
 };
 
 Outcomes solve(Evaluator& evaluator, const ModelDescription& model, std::span<const double> pose,
                std::span<const FactorIndex> varied, std::span<const double> values, std::size_t count) {
   const std::vector<double> none(model.factors.size(), 0.0);
-  Outcomes found{std::vector<double>(model.responses.size() * count), std::vector<SolveStatus>(count),
-                 std::vector<std::uint32_t>(count)};
-  evaluator.evaluate({pose, none, varied, values, count}, {found.responses, found.status, found.iterations, {}});
+  Outcomes found{std::vector<double>(model.responses.size() * count),
+                 std::vector<SolveStatus>(count),
+                 std::vector<std::uint32_t>(count),
+                 {}};
+  std::size_t components = 0;
+  for (const Detail& detail : model.details) components += detail.components.size();
+  found.details.resize(components * count);
+  evaluator.evaluate({pose, none, varied, values, count},
+                     {found.responses, found.status, found.iterations, found.details});
   return found;
 }
 
@@ -352,6 +359,64 @@ TEST_P(EveryMechanism, HasMeanSquaresThatAdd) {
   }
   if (some_may_exceed) {
     EXPECT_GT(most, 1.05);
+  }
+}
+
+/// The norm of the vector that a model names behind a response: of other responses, or of details.
+std::vector<double> norms_of(const Model& model, std::size_t response, std::span<const double> pose,
+                             const Outcomes& found, std::size_t count) {
+  const std::vector<std::size_t>& components = model.description().responses[response].components;
+  const std::vector<double> matrix = model.norm_of_details(response, pose);
+  const std::size_t details = found.details.size() / count;
+  std::vector<double> norms;
+  for (std::size_t s = 0; s < count; ++s) {
+    double sum = 0.0;
+    for (const std::size_t r : components) sum += std::pow(found.responses[r * count + s], 2);
+    for (std::size_t row = 0; components.empty() && row < matrix.size() / details; ++row) {
+      double component = 0.0;
+      for (std::size_t d = 0; d < details; ++d) component += matrix[row * details + d] * found.details[d * count + s];
+      sum += component * component;
+    }
+    norms.push_back(std::sqrt(sum));
+  }
+  return norms;
+}
+
+TEST_P(EveryMechanism, NamesTheVectorBehindEachNorm) {
+  constexpr std::size_t kSamples = 5;
+  constexpr double kSize = 1e-4;
+  const ModelDescription& model = description();
+  const auto evaluator = model_->evaluator({});
+  std::mt19937_64 random(20260103);
+  std::uniform_real_distribution<double> error(-kSize, kSize);
+  std::vector<FactorIndex> all;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) all.emplace_back(f);
+  std::vector<double> values(all.size() * kSamples);
+  for (double& value : values) value = error(random);
+  for (const std::vector<double>& pose : poses()) {
+    const Outcomes found = solve(*evaluator, model, pose, all, values, kSamples);
+    for (std::size_t r = 0; r < model.responses.size(); ++r) {
+      const std::span own = std::span(found.responses).subspan(r * kSamples, kSamples);
+      if (std::ranges::any_of(own, [](double value) { return value < 0.0; })) continue;  // it has a sign
+      const Response& response = model.responses[r];
+      const bool is_named = !response.components.empty() || !model_->norm_of_details(r, pose).empty();
+      if (!is_named) continue;  // a component that happens to be positive; the norms are listed below
+      const std::vector<double> norms = norms_of(*model_, r, pose, found, kSamples);
+      for (std::size_t s = 0; s < kSamples; ++s) {
+        // As published a mean and the largest of three norms: of the sides of a triangle.
+        const bool is_exact = response.mean_square_bound == 1.0;
+        EXPECT_NEAR(own[s], norms[s], (is_exact ? 1e-9 : 0.35) * norms[s] + 1e-15) << response.name;
+      }
+    }
+  }
+  for (std::size_t r = 0; r < model.responses.size(); ++r) {
+    const Response& response = model.responses[r];
+    const bool is_norm =
+        std::set<std::string>{"position",           "rotation",       "tip_position", "gap", "angular_deformation",
+                              "linear_deformation", "deformation_max"}
+            .contains(response.name);
+    EXPECT_EQ(!response.components.empty() || !model_->norm_of_details(r, poses().front()).empty(), is_norm)
+        << response.name;
   }
 }
 

@@ -8,7 +8,7 @@ import h5py
 import numpy
 
 from poesy_program import main
-from resumption import MACHINES, ResumptionTest
+from resumption import MACHINES, UNIFORM, ResumptionTest
 
 ALL_ERRORS = """\
 format = "poesy-study"
@@ -26,6 +26,27 @@ draws = "per machine"
 factors = "all"
 samples = 60
 limits = { linear_deformation = "1.2 mm", angular_deformation = "0.4 deg" }
+"""
+
+
+UNIFORM_ERRORS = """\
+format = "poesy-study"
+version = 1
+[mechanism]
+model = "2upr-rpu"
+[solver]
+metric = "platform"
+[poses]
+count = 40
+[errors]
+linear = { distribution = "uniform", half_width = "0.05 mm" }
+angular = { distribution = "uniform", half_width = "0.02 deg" }
+[analysis]
+kind = "monte-carlo"
+draws = "per machine"
+factors = "deforming-all"
+samples = 10000
+limits = { gap = "0.07 mm" }
 """
 
 
@@ -81,14 +102,74 @@ class Machines(ResumptionTest):
             self.assertEqual(largest[r], values[name][:, solved.all(axis=0)].max())
 
     def test_threads(self):
-        study = MACHINES.replace("12300", "3210")
-        hashes = set()
-        for threads in (1, 2, 3):
-            self.write("study.toml", study)
-            self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet", "--threads", threads)
-            self.succeeds("verify", "out.h5")
-            hashes.add(self.content_hash())
-        self.assertEqual(len(hashes), 1)
+        for study in (MACHINES, UNIFORM):
+            hashes = set()
+            for threads in (1, 2, 3):
+                self.write("study.toml", study.replace("12300", "3210"))
+                self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet", "--threads", threads)
+                self.succeeds("verify", "out.h5")
+                hashes.add(self.content_hash())
+            self.assertEqual(len(hashes), 1)
+
+    def test_what_the_yield_depends_on(self):
+        """Of uniform errors in README's setting: shares of the mean square against single errors that `evaluate` solves,
+        changes of the yield against runs whose one error is a tenth larger, on the same uniforms."""
+        study = UNIFORM_ERRORS
+        self.run_study(study)
+        tables = json.loads(self.succeeds("show", "out.h5", "--json"))["tables"]
+        self.assertEqual([table["name"] for table in tables[:3]], ["yield", "mean_square_shares", "yield_gradient"])
+        shares, changes = tables[1]["rows"], tables[2]["rows"]
+        text = self.succeeds("show", "out.h5", "--width", 200)
+        self.assertLess(text.index("shares of the mean square of gap"), text.index("What the yield changes by"))
+        with h5py.File(self.folder / "out.h5") as file:
+            names = list(file["factors/name"].asstr())
+            sigma = file["factors/sigma"][:]
+            row = list(file["responses/name"].asstr()).index("gap")
+            found = {name: file[f"yield/{name}"][()] for name in
+                     ("value", "rejects", "change", "change_ci_low", "change_ci_high", "gradient", "machines")}
+            ends = [file[f"yield/mean_square_share{end}"][row] for end in ("", "_ci_low", "_ci_high")]
+            linear = file["yield/linear_share"][row]
+            axes = [axis for axis in ("z", "beta", "gamma")]
+            poses = numpy.array([file[f"poses/{axis}"][:] for axis in axes]).T
+        self.assertGreater(linear, 0.99)
+        self.assertEqual([row["error"] for row in shares], [names[p] for p in numpy.argsort(-ends[0], kind="stable")])
+        # Independent errors add their mean squares: each alone, at a thousandth of its size, at every pose.
+        self.write("poses.csv", "\n".join([",".join(axes)] + [",".join(map(repr, map(float, pose))) for pose in poses]))
+        alone = numpy.diag(1e-3 * sigma)
+        self.write("errors.csv", "\n".join([",".join(names)] + [",".join(map(repr, map(float, row))) for row in alone]))
+        self.succeeds("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "rows.h5", "--quiet")
+        with h5py.File(self.folder / "rows.h5") as file:
+            squares = (file["evaluate/gap"][:] ** 2).sum(axis=0)
+        truth = squares / squares.sum()
+        numpy.testing.assert_allclose(ends[0], truth, atol=2e-3)
+        self.assertTrue(((ends[1] <= truth + 1e-3) & (truth - 1e-3 <= ends[2])).all())
+        # What cannot be told from zero is one line.
+        told = (found["change_ci_low"] > 0) | (found["change_ci_high"] < 0)
+        self.assertEqual(len(changes), told.sum() + 1)
+        self.assertEqual(changes[-1]["error"], f"{(~told).sum()} errors whose effect cannot be told from zero")
+        self.assertIsNone(changes[-1]["change"])
+        self.assertTrue((found["change_ci_low"] >= -found["value"]).all())
+        # As narrow as a likelihood ratio of normal errors, (z^2 - 1)/10, twice, or narrower.
+        half = 0.5 * (found["change_ci_high"] - found["change_ci_low"])
+        rejected = found["rejects"] / found["machines"]
+        self.assertLess(half.max(), 2 * 1.96 * 0.1 * numpy.sqrt(2 * rejected / found["machines"]))
+        largest = numpy.argsort(-truth)[:3]
+        for p in largest:
+            self.assertTrue(told[p], names[p])
+            unit = ("mm", 1e-3) if "delta" in names[p] else ("deg", numpy.pi / 180)
+            width = 1.1 * sigma[p] * numpy.sqrt(3) / unit[1]
+            override = f'[errors.override]\n{names[p]} = {{ distribution = "uniform", half_width = "{width:.12g} {unit[0]}" }}\n'
+            self.run_study(study.replace("[analysis]", override + "[analysis]"), output="grown.h5")
+            with h5py.File(self.folder / "grown.h5") as file:
+                change = file["yield/value"][()] - found["value"]
+            # Paired: machines that cross the limit, mostly one way. Alpha 1e-3 for three comparisons.
+            noise = numpy.hypot(half[p] / 1.96, numpy.sqrt(2 * abs(change) / found["machines"]))
+            self.assertAlmostEqual(found["change"][p], change, delta=3.6 * noise, msg=names[p])
+        self.succeeds("export", "out.h5", "-d", "tables")
+        with open(self.folder / "tables/mean_square_share.csv", encoding="utf-8") as file:
+            rows = [line.strip().split(",") for line in file]
+        self.assertEqual(rows[0], ["factor", "share_gap", "share_ci_low_gap", "share_ci_high_gap"])
+        self.assertEqual([float(row[1]) for row in rows[1:]], list(ends[0]))
 
     def test_more_machines_go_on_from_fewer(self):
         for fewer, more in ((1000, 2000), (1300, 2700)):

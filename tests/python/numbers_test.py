@@ -125,11 +125,34 @@ class Numbers(FolderTest):
         self.assertEqual(pairs, {})
 
     def test_monte_carlo(self):
-        for name in ("monte-carlo", "machines"):
-            found = result(name)
-            rows = shown(found)["first_order"]["rows"]
-            columns = {"name": "error", "S1": "S1_gap", "S1_low": "S1_ci_low_gap", "S1_high": "S1_ci_high_gap"}
-            self.check(found.ranking()[: len(rows)], rows, columns)
+        found = result("monte-carlo")
+        rows = shown(found)["first_order"]["rows"]
+        columns = {"name": "error", "S1": "S1_gap", "S1_low": "S1_ci_low_gap", "S1_high": "S1_ci_high_gap"}
+        self.check(found.ranking()[: len(rows)], rows, columns)
+
+    def test_machines(self):
+        found = result("machines")
+        table = shown(found)["mean_square_shares"]
+        limited = [column["name"].removeprefix("share_") for column in table["columns"][1::3]]
+        self.assertEqual(set(limited), {"gap", "angular_deformation"})
+        by_response = found.to_xarray("yield")["by_response"]
+        self.assertEqual(float(by_response.sel(response=limited[0])), float(by_response.min()))  # rejects most
+        for response, ranked in ((limited[0], found.ranking()), (limited[1], found.ranking(limited[1]))):
+            def share(end, of=response):
+                return lambda row: row[f"share_{end}{of}"] / 100.0
+            columns = {"name": "error", "mean_square_share": share(""), "mean_square_share_low": share("ci_low_"),
+                       "mean_square_share_high": share("ci_high_")}
+            order = [str(name) for name in found.to_xarray("yield")["factor"].values]  # of equal shares
+            rows = sorted(table["rows"], key=lambda row: (-row[f"share_{response}"], order.index(row["error"])))
+            self.check(ranked, rows, columns)
+            self.assertIn(response, ranked.title)
+        changes = {row["error"]: row for row in shown(found)["yield_gradient"]["rows"]}
+        for row in found.ranking():
+            if row.name in changes:
+                self.assertAlmostEqual(row.change, changes[row.name]["change"] / 100.0, places=12)
+        label = found.plot.ranking().get_xlabel()
+        self.assertEqual(label, "share of the mean square")
+        self.assertEqual(found.ranking("linear_deformation").value, "S1")  # has no limit
 
     def test_allocation(self):
         found = result("allocation")

@@ -8,6 +8,7 @@
 #include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/columns.h"
 #include "engine/kinds/monte_carlo/yield.h"
+#include "engine/kinds/monte_carlo/yield_by_map.h"
 
 namespace poesy {
 namespace {
@@ -29,6 +30,7 @@ void MachineCollector::Counts::add(const MachineUnit& unit) {
     solves[m].merge(unit.solves[m]);
     failed[m].merge(unit.failed[m]);
   }
+  rejected.insert(rejected.end(), unit.rejected.begin(), unit.rejected.end());
   machines.merge(unit.counts);
 }
 
@@ -42,6 +44,7 @@ void MachineCollector::Counts::merge(const Counts& later) {
     solves[m].merge(later.solves[m]);
     failed[m].merge(later.failed[m]);
   }
+  rejected.insert(rejected.end(), later.rejected.begin(), later.rejected.end());
   machines.merge(later.machines);
 }
 
@@ -53,11 +56,14 @@ void MachineCollector::Counts::write(ByteWriter& to) const {
     solves[m].write(to);
     failed[m].write(to);
   }
+  to.block(std::as_bytes(std::span(rejected)));
   machines.write(to);
 }
 
-MachineCollector::Counts MachineCollector::Counts::read(ByteReader& from, std::size_t responses, std::size_t poses,
-                                                        std::size_t first, std::size_t end) {
+MachineCollector::Counts MachineCollector::Counts::read(ByteReader& from, const MachineTable& table, std::size_t first,
+                                                        std::size_t end) {
+  const std::size_t responses = table.responses();
+  const std::size_t poses = table.plan().poses().size();
   Counts counts(responses, poses);
   for (auto* sketches : {&counts.at_pose, &counts.largest, &counts.rms}) {
     for (QuantileSketch& sketch : *sketches) sketch = QuantileSketch::read(from);
@@ -67,6 +73,7 @@ MachineCollector::Counts MachineCollector::Counts::read(ByteReader& from, std::s
     if (counts.solves[m].total() != end - first) throw BytesError("has a pose with other machines");
     counts.failed[m] = FailedSamples::read(from, counts.solves[m].not_converged(), first, end);
   }
+  counts.rejected = read_rejected(from, table, first, end);
   counts.machines = MachineCounts::read(from, responses, poses);
   if (counts.machines.machines != end - first) throw BytesError("has counts of other machines");
   return counts;
@@ -134,7 +141,9 @@ MachineResult MachineCollector::machines(const MachineSums& sums, std::span<cons
       main_effects(std::span(sums.effects).subspan(at_poses + 1, 1), Dependence::unknown, sums.effects[at_poses + 1],
                    spreads, table_->responses(), analysis_->conf_level);
   leave_out_correlated(table_->plan(), found.effects_on_largest);
-  if (sums.scores) found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
+  if (!sums.scores) return found;
+  found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
+  set_first_order(*table_, sums.fit ? &*sums.fit : nullptr, counts_.rejected, analysis_->conf_level, *found.yield);
   return found;
 }
 
@@ -212,7 +221,7 @@ void MachineCollector::restore_one(ByteReader& from) {
     const auto first = static_cast<std::size_t>(from.number_up_to(samples / each));
     const auto end = static_cast<std::size_t>(from.number_up_to(samples / each));
     if (first != before || end != sums_.end() || first >= end) throw BytesError("has sums of other machines");
-    counts_.merge(Counts::read(from, table_->responses(), poses(), first * each, end * each));
+    counts_.merge(Counts::read(from, *table_, first * each, end * each));
   }
   if (from.number_up_to(1) == 0) return;
   const bool same = samples == table_->plan().samples();

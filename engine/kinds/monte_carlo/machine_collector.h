@@ -50,6 +50,7 @@ class MachineCollector {
     std::vector<QuantileSketch> rms;      ///< [R]
     std::vector<SolveCounts> solves;      ///< [M]
     std::vector<FailedSamples> failed;    ///< [M]
+    std::vector<std::uint8_t> rejected;   ///< of the machines that MachineTable::kept() counts
     MachineCounts machines;
 
     Counts(std::size_t responses, std::size_t poses);
@@ -58,7 +59,7 @@ class MachineCollector {
     void merge(const Counts& later);
     void write(ByteWriter& to) const;
     /// Of machines `first` .. end - 1. Throws BytesError.
-    static Counts read(ByteReader& from, std::size_t responses, std::size_t poses, std::size_t first, std::size_t end);
+    static Counts read(ByteReader& from, const MachineTable& table, std::size_t first, std::size_t end);
   };
 
   std::size_t poses() const { return table_->plan().poses().size(); }

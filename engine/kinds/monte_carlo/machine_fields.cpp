@@ -1,6 +1,8 @@
 #include "engine/kinds/monte_carlo/machine_fields.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "engine/base/units.h"
 #include "engine/files/result_parts.h"
@@ -87,13 +89,34 @@ const Group<YieldResult> kYield{
       "Share of the machines that are not within the limit of this response at this pose; NaN for a response without a "
       "limit"},
      {"gradient", &YieldResult::gradient, kByFactor, "SI: 1 / factor unit",
-      "What the yield changes by for each unit of the error's sigma (likelihood ratio; of uniform, triangular and "
-      "measured errors what polynomials up to degree 6 say of it); NaN for errors of a correlated block that are not "
-      "all normal, and where there are no rejects to tell"},
+      "Slope of the yield by the error's sigma (likelihood ratio; of uniform, triangular and measured errors by a "
+      "linear map of the limited responses, where the machines give one); NaN for errors of a correlated block that "
+      "are not all normal, and where the machines do not tell it"},
      {"gradient_ci_low", &YieldResult::gradient_ci_low, kByFactor, "SI: 1 / factor unit",
       "Lower end of its interval (central limit theorem)"},
      {"gradient_ci_high", &YieldResult::gradient_ci_high, kByFactor, "SI: 1 / factor unit",
-      "Upper end of its interval (central limit theorem)"}}};
+      "Upper end of its interval (central limit theorem)"},
+     {"change", &YieldResult::change, kByFactor, "1",
+      "What the yield changes by if the error's sigma grows by a tenth and all else stays: the finite step, not a "
+      "tenth "
+      "of the slope, except for correlated errors; NaN as the gradient",
+      Presence::where_computed},
+     {"change_ci_low", &YieldResult::change_ci_low, kByFactor, "1", "Lower end of its interval (central limit theorem)",
+      Presence::where_computed},
+     {"change_ci_high", &YieldResult::change_ci_high, kByFactor, "1",
+      "Upper end of its interval (central limit theorem)", Presence::where_computed},
+     {"mean_square_share", &YieldResult::mean_square_share, kByResponseFactor, "1",
+      "Share of the mean square of the limited response, of a norm that of its vector, over all poses that the error "
+      "adds to first order; NaN for a response without a limit, for correlated errors, and where there are too few "
+      "machines for a fit",
+      Presence::where_computed},
+     {"mean_square_share_ci_low", &YieldResult::mean_square_share_ci_low, kByResponseFactor, "1",
+      "Lower end of its interval (least squares)", Presence::where_computed},
+     {"mean_square_share_ci_high", &YieldResult::mean_square_share_ci_high, kByResponseFactor, "1",
+      "Upper end of its interval (least squares)", Presence::where_computed},
+     {"linear_share", &YieldResult::linear_share, kByResponse, "1",
+      "The part of that mean square that is linear in the errors: the rest belongs to no error alone",
+      Presence::where_computed}}};
 
 /// S1, its interval.
 Fields<MainEffects> index_fields(const std::string& what) {
@@ -160,6 +183,24 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
   return table;
 }
 
+/// Each error's share of the mean square of each limited response.
+CsvTable share_table(const StoredResult& result, const YieldResult& found) {
+  CsvTable table{"mean_square_share",
+                 {"factor", [&](std::size_t p) { return result.factors[p].name; }},
+                 result.factors.size(),
+                 {},
+                 {}};
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    if (std::isnan(found.by_response[r])) continue;  // without a limit
+    const std::size_t first = r * result.factors.size();
+    const std::string& response = result.responses[r].name;
+    table.columns.push_back(list_column("share_" + response, found.mean_square_share, first));
+    table.columns.push_back(list_column("share_ci_low_" + response, found.mean_square_share_ci_low, first));
+    table.columns.push_back(list_column("share_ci_high_" + response, found.mean_square_share_ci_high, first));
+  }
+  return table;
+}
+
 /// All limits, then each.
 void append_yield_tables(CsvTables& tables, const StoredResult& result, const YieldResult& found) {
   CsvTable all{"yield", {"limit", [](std::size_t) { return std::string("all"); }}, 1, {}, {}};
@@ -174,12 +215,20 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
                  list_column("yield_ci_high", found.by_response_ci_high)},
                 {}};
   tables.push_back(std::move(each));
+  if (found.has_shares()) tables.push_back(share_table(result, found));
   CsvTable gradient{"yield_gradient",
                     {"factor", [&](std::size_t p) { return result.factors[p].name; }},
                     result.factors.size(),
                     {list_column("gradient", found.gradient), list_column("gradient_ci_low", found.gradient_ci_low),
                      list_column("gradient_ci_high", found.gradient_ci_high)},
                     {"unit", [&](std::size_t p) { return "per " + result.factors[p].unit; }}};
+  if (found.has_change()) {
+    for (const auto& [name, list] : {std::pair{"change", &found.change},
+                                     {"change_ci_low", &found.change_ci_low},
+                                     {"change_ci_high", &found.change_ci_high}}) {
+      gradient.columns.push_back(list_column(name, *list));
+    }
+  }
   tables.push_back(std::move(gradient));
   CsvTable poses = lines_of_poses(result, "rejects");
   for (std::size_t r = 0; r < result.responses.size(); ++r) {

@@ -7,6 +7,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/drivers.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/report/display.h"
@@ -21,20 +22,6 @@ constexpr int kDigits = 6;
 const MachineResult& machines_of(const StoredResult& result) { return *monte_carlo_of(result).machines; }
 
 const EffectResult& effects_of(const StoredResult& result) { return monte_carlo_of(result).effects; }
-
-/// A tenth of an error's sigma: gradients are shown for a change by that, because errors have different units.
-constexpr double kPart = 0.1;
-
-/// Positions by these values, the largest first; NaN last.
-std::vector<std::size_t> largest_first(std::size_t count, const std::function<double(std::size_t)>& value) {
-  std::vector<std::size_t> order = positions(count);
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-    const double x = value(a);
-    const double y = value(b);
-    return std::isnan(y) ? !std::isnan(x) : x > y;
-  });
-  return order;
-}
 
 /// "q_0_95", a name of JSON.
 std::string quantile_name(double level) {
@@ -73,35 +60,6 @@ Table values_table(const StoredResult& result) {
   return table;
 }
 
-Table gradient_table(const StoredResult& result) {
-  const YieldResult& yield = *machines_of(result).yield;
-  const auto change = [&](const std::vector<double>& slope) {
-    return [&](std::size_t p) { return kPart * slope[p] * result.factor_sigma[p]; };
-  };
-  const auto column = [&](std::string name, std::string heading, const std::vector<double>& slope) {
-    return FilledColumn{percent_column(std::move(name), std::move(heading)),
-                        [cell = change(slope)](std::size_t p) { return percent_cell(cell(p)); }};
-  };
-  const auto by_unit = [&result](std::string name, std::string heading, const std::vector<double>& slope) {
-    return FilledColumn{number_column(std::move(name), std::move(heading), "", 1), [&result, &slope](std::size_t p) {
-                          return number_cell(slope[p] * display(result.factors[p]).si);
-                        }};
-  };
-  Table table{
-      .name = "yield_gradient",
-      .caption = fmt::format("What the yield changes by if the sigma of one error grows by {}", percent_text(kPart)),
-      .columns = {},
-      .notes = {fmt::format("low, high: {} interval; slope: of the yield by sigma, 1/mm or 1/deg; - where an "
-                            "error is correlated and not all errors of its block are normal, or no machine is rejected",
-                            percent_text(yield.conf_level))},
-      .ranked = true};
-  fill(table, largest_first(result.factors.size(), [&](std::size_t p) { return -change(yield.gradient)(p); }),
-       {name_column(result.factors, "error"), column("change", "yield", yield.gradient),
-        column("change_low", "low", yield.gradient_ci_low), column("change_high", "high", yield.gradient_ci_high),
-        by_unit("slope", "slope", yield.gradient)});
-  return table;
-}
-
 /// The poses at which most machines are rejected, of each limit.
 Table rejects_table(const StoredResult& result) {
   constexpr std::size_t kMost = 5;
@@ -113,7 +71,7 @@ Table rejects_table(const StoredResult& result) {
                           percent_column("rejected", "rejected"), text_column("place", "where", 1)}};
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const auto share = [&](std::size_t m) { return yield.worst_pose_share[r * poses + m]; };
-    const std::vector<std::size_t> order = largest_first(poses, share);
+    const std::vector<std::size_t> order = largest_first(positions(poses), share);
     for (const std::size_t m : std::span(order).first(std::min(kMost, poses))) {
       if (!(share(m) > 0.0)) break;
       table.rows.push_back({text_cell(result.responses[r].name), count_cell(m), percent_cell(share(m)),
@@ -174,36 +132,6 @@ std::vector<double> in_order(std::span<const double> values, std::span<const std
   return list;
 }
 
-void add_yield_section(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const YieldResult& yield = *machines_of(result).yield;
-  Section& section = page.add_section("yield", "What the yield depends on");
-  ArrayPool& pool = page.figures.pool;
-  const auto add = [&](const std::string& name, const std::vector<double>& slope) {
-    std::vector<double> change;
-    for (std::size_t p = 0; p < slope.size(); ++p) change.push_back(kPart * slope[p] * result.factor_sigma[p]);
-    return pool.add(name, change, 0.01);
-  };
-  section.paragraph(
-      "A machine has one set of errors, and is good if it is within every limit at every pose. The yield is the share "
-      "of "
-      "good machines; its slope by the size of an error follows from the same machines (likelihood ratio).");
-  if (yield.rejects == 0) {
-    section.paragraph("No machine was rejected, so these machines say nothing of that slope: take tighter limits.");
-    return;
-  }
-  Bars bars{{},
-            {{fmt::format("change of the yield if sigma grows by {}", percent_text(kPart)),
-              {{"%"}},
-              add("yield_change", yield.gradient),
-              add("yield_change_low", yield.gradient_ci_low),
-              add("yield_change_high", yield.gradient_ci_high)}},
-            names_of(result.factors)};
-  add_figure(page, section, "yield-gradient", std::move(bars),
-             "The errors on which the yield depends most; thin lines are intervals.");
-  section.table(tables, "yield_gradient");
-  section.table(tables, "reject_poses");
-}
-
 /// A panel for each response of the headline, with the errors of the largest indices first.
 Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   constexpr std::size_t kMost = 12;
@@ -220,7 +148,7 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
     const NamedUnit& response = result.responses[r];
     Panel panel{"mean of " + response.name, unit_text(response), {}};
     const auto s1 = [&](std::size_t p) { return effects.s1[r * factors + p]; };
-    const std::vector<std::size_t> order = largest_first(factors, s1);
+    const std::vector<std::size_t> order = largest_first(positions(factors), s1);
     for (const std::size_t p : std::span(order).first(std::min(kMost, factors))) {
       const auto add = [&](std::string_view what, const std::vector<double>& values) {
         return pool.add(fmt::format("{}/{}/{}", what, r, p),
@@ -245,13 +173,8 @@ std::vector<Table> machine_tables(const StoredResult& result) {
                     yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = judge_yield(*yield, 0.0)}));
     }
     tables.push_back(rejects_table(result));
-    tables.push_back(gradient_table(result));
   }
   return tables;
-}
-
-void add_machine_sections(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  if (machines_of(result).yield) add_yield_section(result, tables, page);
 }
 
 void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -319,7 +242,8 @@ Table effect_table(const StoredResult& result) {
         "- for an error that is correlated with others: nothing is its effect alone; indices of groups and Shapley "
         "effects divide the variance of such errors");
   }
-  fill(table, largest_first(factors, [&](std::size_t p) { return effects.s1[ranking * factors + p]; }), columns);
+  fill(table, largest_first(positions(factors), [&](std::size_t p) { return effects.s1[ranking * factors + p]; }),
+       columns);
   return table;
 }
 

@@ -11,8 +11,7 @@
 /// Precondition of what follows but for effects: monte_carlo_of(result).machines is there.
 namespace poesy {
 
-/// Of each machine its largest magnitude and its root mean square; which errors the yield depends on, with its
-/// gradient; at which poses machines are rejected.
+/// Of each machine its largest magnitude and its root mean square; at which poses machines are rejected.
 std::vector<Table> machine_tables(const StoredResult& result);
 
 /// First-order indices.
@@ -20,9 +19,6 @@ Table effect_table(const StoredResult& result);
 
 /// The section on what each error does alone.
 void add_effects_section(const StoredResult& result, std::span<const Table> tables, Page& page);
-
-/// The section that comes after the limits: what the yield depends on.
-void add_machine_sections(const StoredResult& result, std::span<const Table> tables, Page& page);
 
 /// For dots in the workspace: the share of machines that each pose rejects, for each limit. Empty without limits.
 std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& figures);

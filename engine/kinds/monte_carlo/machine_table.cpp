@@ -39,16 +39,32 @@ ErrorScores scores_of(const Plan& plan) {
   return scores;
 }
 
+/// As many machines as a second or so suffices for.
+std::size_t kept_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
+  constexpr std::size_t kMostWork = 1'000'000'000;  // products
+  constexpr std::size_t kWorkOfRange = 10;          // of one error at one limit
+  constexpr std::size_t kLeast = 1000;
+  constexpr std::size_t kMost = 1'000'000;
+  const bool is_wanted = std::ranges::any_of(
+      scores.each, [](const ErrorScore& score) { return std::holds_alternative<PolynomialScore>(score); });
+  if (!is_wanted || vectors.rows() == 0) return 0;
+  const std::size_t at_pose = 2 * vectors.rows() + kWorkOfRange * vectors.each().size();
+  return std::clamp(kMostWork / (plan.poses().size() * scores.each.size() * at_pose), kLeast, kMost);
+}
+
 }  // namespace
 
-MachineTable::MachineTable(const Plan& plan, std::size_t responses, const Analysis& analysis)
+MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis& analysis)
     : plan_(&plan),
-      responses_(responses),
+      responses_(model.description().responses.size()),
       has_limits_(!analysis.limits.empty()),
       limits_(responses_, std::numeric_limits<double>::infinity()),
-      scores_(scores_of(plan)) {
+      scores_(scores_of(plan)),
+      vectors_(plan, model, analysis),
+      kept_(kept_machines(plan, vectors_, scores_)) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
   for (const ResponseLimit& limit : analysis.limits) limits_[limit.response] = limit.most;
+  for (std::size_t r = 0; r < responses_; ++r) rounding_.push_back(model.rounding(r));
   effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, errors());
 }
 
@@ -70,6 +86,12 @@ WorkUnit MachineTable::unit(std::size_t n) const {
   POESY_EXPECTS(n < units());
   const std::size_t each = unit_machines(plan_->poses().size());
   return {0, PoseIndex(0), SampleIndex(n * each), std::min(each, plan_->samples() - n * each)};
+}
+
+bool MachineTable::is_fitted(std::size_t n) const {
+  constexpr std::size_t kLeast = 1000;
+  constexpr std::size_t kForEach = 10;
+  return vectors_.rows() > 0 && unit(n).first.value < std::max(kLeast, kForEach * (errors() + 1));
 }
 
 }  // namespace poesy

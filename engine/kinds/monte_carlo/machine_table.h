@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/kinds/monte_carlo/limited_vectors.h"
+#include "engine/model/model.h"
 #include "engine/stats/error_scores.h"
 #include "engine/stats/main_effects.h"
 #include "engine/study/plan.h"
@@ -16,8 +18,8 @@ namespace poesy {
 /// M poses, R responses, P errors.
 class MachineTable {
  public:
-  /// Refers to the plan. Precondition: Draws::per_machine.
-  MachineTable(const Plan& plan, std::size_t responses, const Analysis& analysis);
+  /// Refers to the plan and the model. Precondition: Draws::per_machine.
+  MachineTable(const Plan& plan, const Model& model, const Analysis& analysis);
 
   /// Machines of a unit at so many poses, a divisor of Plan::kUnitSamples: the fewer the more poses there are, because
   /// memory grows with both, but enough for a solver that takes several at once.
@@ -40,6 +42,17 @@ class MachineTable {
   /// are all normal.
   const ErrorScores& scores() const { return scores_; }
 
+  /// The vectors behind the limited responses, which are fitted to first order.
+  const LimitedVectors& vectors() const { return vectors_; }
+  /// [R] what an error may seem to do because solves round (Model::rounding).
+  std::span<const double> rounding() const { return rounding_; }
+  /// Whether the vectors are fitted to this unit's machines, too: they are the first ones, as many as tell what is
+  /// linear.
+  bool is_fitted(std::size_t n) const;
+  /// The first machines of the study, of which it is kept whether they are rejected: as many as the gradient of the
+  /// yield by a linear map looks at, which takes time for each error at each pose. 0 where none is wanted.
+  std::size_t kept() const { return kept_; }
+
   /// The poses at which main effects are added up (engine/run/effect_poses.h).
   std::span<const PoseIndex> effect_poses() const { return effect_poses_; }
   /// Numbers whose main effects are added up: the responses at each of effect_poses(), a machine's means over all
@@ -52,6 +65,9 @@ class MachineTable {
   bool has_limits_;
   std::vector<double> limits_;
   ErrorScores scores_;
+  LimitedVectors vectors_;
+  std::vector<double> rounding_;
+  std::size_t kept_;
   std::vector<PoseIndex> effect_poses_;
 };
 

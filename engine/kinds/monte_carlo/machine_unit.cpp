@@ -26,6 +26,17 @@ void read_each(ByteReader& from, std::size_t count, std::vector<Value>& values) 
 
 }  // namespace
 
+std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& table, std::size_t first,
+                                        std::size_t end) {
+  std::vector<std::uint8_t> rejected;
+  for (const std::byte flag : from.block()) rejected.push_back(std::to_integer<std::uint8_t>(flag));
+  if (rejected.size() != std::min(end, table.kept()) - std::min(first, table.kept()) ||
+      std::ranges::any_of(rejected, [](std::uint8_t flag) { return flag > 1; })) {
+    throw BytesError("has flags of other machines");
+  }
+  return rejected;
+}
+
 MachineSums::MachineSums(const MachineTable& table)
     : at_pose(table.plan().poses().size() * table.responses()),
       mean(table.responses()),
@@ -41,12 +52,16 @@ void MachineSums::merge(const MachineSums& later) {
   merge_each(largest, later.largest);
   merge_each(rms, later.rms);
   if (scores) scores->merge(*later.scores);
+  if (later.fit && fit) fit->merge(*later.fit);
+  if (later.fit && !fit) fit = later.fit;
   merge_each(effects, later.effects);
 }
 
 void MachineSums::write(ByteWriter& to) const {
   for (const auto* moments : {&at_pose, &mean, &largest, &rms}) write_each(*moments, to);
   if (scores) scores->write(to);
+  to.number(fit ? 1 : 0);
+  if (fit) fit->write(to);
   write_each(effects, to);
 }
 
@@ -55,6 +70,9 @@ MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
   for (auto* moments : {&sums.at_pose, &sums.mean, &sums.largest, &sums.rms})
     read_each(from, moments->size(), *moments);
   if (sums.scores) sums.scores = ScoreSums::read(from, table.scores());
+  if (from.number_up_to(table.vectors().rows() > 0 ? 1 : 0) == 1) {
+    sums.fit = LinearFitSums::read(from, table.errors(), table.vectors().rows() * table.plan().poses().size());
+  }
   sums.effects.clear();
   for (std::size_t k = 0; k < table.effects(); ++k) {
     sums.effects.push_back(MainEffectSums::read(from, table.errors(), table.responses()));
@@ -66,6 +84,7 @@ void MachineUnit::write(ByteWriter& to) const {
   sums->write(to);
   counts.write(to);
   for (const auto* values : {&at_pose, &largest, &rms}) write_each(*values, to);
+  to.block(std::as_bytes(std::span(rejected)));
   write_each(solves, to);
   write_each(failed, to);
 }
@@ -78,6 +97,7 @@ MachineUnit MachineUnit::read(ByteReader& from, const MachineTable& table, std::
   read_each(from, poses * table.responses(), unit.at_pose);
   read_each(from, table.responses(), unit.largest);
   read_each(from, table.responses(), unit.rms);
+  unit.rejected = read_rejected(from, table, first, first + machines);
   read_each(from, poses, unit.solves);
   for (const SolveCounts& solves : unit.solves) {
     if (solves.total() != machines) throw BytesError("has a pose with other machines");
@@ -106,7 +126,12 @@ std::span<const double> MachineUnitEvaluator::only(std::span<const double> value
 
 void MachineUnitEvaluator::solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins,
                                       MachineBlock& block, MachineUnit& found) {
-  const UnitOutcomes outcomes = UnitSolver::solve(PoseIndex(pose), plan_->factors(), unit.count, 0.0);
+  const std::span details = std::span(details_).first(is_fitted_ ? table_->vectors().details() * unit.count : 0);
+  const UnitOutcomes outcomes = UnitSolver::solve(PoseIndex(pose), plan_->factors(), unit.count, 0.0, details);
+  if (is_fitted_) {
+    const std::size_t rows = table_->vectors().rows() * unit.count;
+    table_->vectors().fill(PoseIndex(pose), outcomes, details, std::span(rows_).subspan(pose * rows, rows));
+  }
   const std::span ok = std::span(counts_).first(unit.count);
   for (std::size_t b = 0; b < unit.count; ++b) {
     ok[b] = counts(outcomes.status[b], plan_->not_converged()) ? 1 : 0;
@@ -146,7 +171,24 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectB
   found.sums->effects[at_poses].add(bins, sum_, block.solved());
   found.sums->effects[at_poses + 1].add(bins, largest, block.solved());
   if (!found.sums->scores) return;
-  found.sums->scores->add(std::span(values_).first(table_->errors() * machines), block.rejected());
+  const std::vector<std::uint8_t> rejected = block.rejected();
+  found.sums->scores->add(std::span(values_).first(table_->errors() * machines), rejected);
+  if (is_fitted_) add_fit(block.solved(), found);
+  found.rejected = rejected;
+}
+
+void MachineUnitEvaluator::add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const {
+  const std::size_t machines = solved.size();
+  const std::size_t errors = table_->errors();
+  std::vector<double> x(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(errors * machines));
+  for (std::size_t p = 0; p < errors; ++p) {
+    const Distribution& error = plan_->distributions()[p];
+    for (double& one : std::span(x).subspan(p * machines, machines)) {
+      one = (one - error.mean()) / error.standard_deviation();
+    }
+  }
+  found.sums->fit.emplace(errors, table_->vectors().rows() * plan_->poses().size());
+  found.sums->fit->add(x, rows_, solved);
 }
 
 MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
@@ -159,10 +201,15 @@ MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   found.failed.resize(poses);
   const EffectBins bins = draw_in_bins(unit);
   sum_.assign(responses_ * unit.count, 0.0);
+  is_fitted_ = table_->is_fitted(n);
+  details_.resize(is_fitted_ ? table_->vectors().details() * unit.count : 0);
+  rows_.resize(is_fitted_ ? poses * table_->vectors().rows() * unit.count : 0);
   MachineBlock block(table_->limits(), unit.count);
   for (std::size_t m = 0; m < poses; ++m) solve_pose(unit, m, bins, block, found);
   found.counts = block.counts();
   add_machines(block, bins, found);
+  found.rejected.resize(std::min(unit.first.value + unit.count, table_->kept()) -
+                        std::min(unit.first.value, table_->kept()));
   found.total = total_of(found.solves);
   return found;
 }

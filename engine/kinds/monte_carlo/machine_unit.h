@@ -10,6 +10,7 @@
 #include "engine/kinds/monte_carlo/machine_table.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
+#include "engine/stats/linear_fit.h"
 #include "engine/stats/machines.h"
 #include "engine/stats/main_effects.h"
 #include "engine/stats/moments.h"
@@ -26,6 +27,7 @@ struct MachineSums {
   std::vector<Moments> largest;         ///< [R] of the machines' largest magnitudes
   std::vector<Moments> rms;             ///< [R] of the machines' root mean squares
   std::optional<ScoreSums> scores;      ///< where there are limits
+  std::optional<LinearFitSums> fit;     ///< of the limited vectors at all poses, over the machines that are fitted
   std::vector<MainEffectSums> effects;  ///< as MachineTable::effects() counts them
 
   /// Of no machines.
@@ -38,6 +40,11 @@ struct MachineSums {
   static MachineSums read(ByteReader& from, const MachineTable& table);  ///< Throws BytesError.
 };
 
+/// Whether each of the machines from `first` to before `end` that MachineTable::kept() counts is rejected, a block of
+/// bytes that are 1 or 0. Throws BytesError.
+std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& table, std::size_t first,
+                                        std::size_t end);
+
 /// What one unit of machines contributes.
 struct MachineUnit {
   std::optional<MachineSums> sums;      ///< empty in a default-constructed one alone
@@ -45,6 +52,7 @@ struct MachineUnit {
   std::vector<BucketedValues> at_pose;  ///< [M x R] the samples that count, ready for a sketch
   std::vector<BucketedValues> largest;  ///< [R] of the machines that are solved at each pose
   std::vector<BucketedValues> rms;      ///< [R] likewise
+  std::vector<std::uint8_t> rejected;   ///< 1 or 0 for each of the machines that MachineTable::kept() counts
   std::vector<SolveCounts> solves;      ///< [M] how they ended
   std::vector<FailedSamples> failed;    ///< [M] the first of them
   SolveCounts total;                    ///< of all poses
@@ -69,6 +77,8 @@ class MachineUnitEvaluator : private UnitSolver {
   void solve_pose(const WorkUnit& unit, std::size_t pose, const EffectBins& bins, MachineBlock& block,
                   MachineUnit& found);
   void add_machines(const MachineBlock& block, const EffectBins& bins, MachineUnit& found);
+  /// Fits the limited vectors to these machines, whose rows at all poses are in rows_.
+  void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
   /// Those of [B] values whose machine or sample counts.
   std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
 
@@ -76,6 +86,9 @@ class MachineUnitEvaluator : private UnitSolver {
   std::vector<std::uint8_t> counts_;  ///< [B] at the pose
   std::vector<double> sum_;           ///< [R x B] over the poses
   std::vector<double> kept_;          ///< of one response
+  bool is_fitted_ = false;            ///< the unit at work
+  std::vector<double> details_;       ///< [D x B] at the pose, where a limited vector is made of them
+  std::vector<double> rows_;          ///< [M x rows x B] of the limited vectors, where the unit is fitted
 };
 
 }  // namespace poesy

@@ -9,6 +9,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/drivers.h"
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/machine_report.h"
 #include "engine/kinds/monte_carlo/result.h"
@@ -324,7 +325,9 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
   if (monte_carlo_of(result).poses == 0 || monte_carlo_of(result).levels.empty()) return;
   add_limits(tables, page);
-  if (monte_carlo_of(result).machines) add_machine_sections(result, tables, page);
+  if (const auto& machines = monte_carlo_of(result).machines; machines && machines->yield) {
+    add_drivers_section(result, tables, page);
+  }
   add_how_large(result, tables, page);
   add_effects_section(result, tables, page);
   add_where(result, page);
@@ -357,11 +360,31 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
 }
 
+/// "Make flange_x (36 %), ... smaller first", the errors that add most to the mean square of a limited response; empty
+/// where their shares are not known.
+std::string limit_drivers_text(const StoredResult& result) {
+  constexpr std::size_t kMost = 3;
+  const auto shares = response_shares(result);
+  if (!shares) return {};
+  const auto share = [&](std::size_t p) { return shares->each[p]; };
+  std::vector<std::size_t> order = largest_first(positions(result.factors.size()), share);
+  std::erase_if(order, [&](std::size_t p) { return !(share(p) > 0.0); });
+  order.resize(std::min(kMost, order.size()));
+  std::string text;
+  for (const std::size_t p : order) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name, percent_text(share(p)));
+  }
+  if (text.empty()) return {};
+  return fmt::format("Make smaller first what adds most to the mean square of {}: {}.",
+                     result.responses[shares->response].name, text);
+}
+
 /// By the limits, where the study has some.
 std::string advice(const StoredResult& result, std::size_t r) {
   if (result.verdicts && result.verdicts->passed())
     return "Nothing has to be done: as far as it shows, the limits are kept.";
-  const std::string drivers = drivers_text(result, r);
+  std::string drivers = limit_drivers_text(result);
+  if (drivers.empty()) drivers = drivers_text(result, r);
   const std::string which = drivers.empty() ? "A sensitivity study says which errors to make smaller." : drivers;
   return (result.verdicts ? "" : "State limits under [analysis.limits], and the report judges them. ") + which;
 }
@@ -418,10 +441,17 @@ std::vector<std::pair<std::string, std::vector<double>>> overall(const StoredRes
   return list;
 }
 
-/// First-order indices, and root mean squares at the poses.
+/// Shares of the mean square of a limited response, else first-order indices; and root mean squares at the poses.
 ErrorShares error_shares(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   if (found.poses == 0) return {};
+  if (auto shares = response_shares(result)) {
+    const std::string& response = result.responses[shares->response].name;
+    return {.what = "share of the mean square of " + response,
+            .values = std::move(shares->each),
+            .pose_what = "the root mean square of " + response,
+            .at_poses = of_row(found.rms, shares->response, found.poses)};
+  }
   const std::size_t r = response_named(result, default_ranking(result));
   if (!varies(result, r)) return {};
   const std::string& response = result.responses[r].name;
@@ -447,6 +477,7 @@ std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOpt
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Table> tables;
   if (found.poses > 0 && !found.levels.empty()) {
+    tables = driver_tables(result);
     tables.push_back(overall_table(result));
     tables.push_back(poses_table(result));
     if (found.machines) std::ranges::move(machine_tables(result), std::back_inserter(tables));

@@ -61,6 +61,24 @@ struct YieldResult {
   std::vector<double> gradient = {};  ///< [P] of the yield by the sigma of each error; NaN where it is not known
   std::vector<double> gradient_ci_low = {};   ///< [P] central limit theorem
   std::vector<double> gradient_ci_high = {};  ///< [P]
+  /// [P] what the yield changes by if the sigma of an error grows by a tenth; NaN as the gradient. This and the lists
+  /// that follow are empty where a file of version 0.2 was read.
+  std::vector<double> change = {};
+  std::vector<double> change_ci_low = {};              ///< [P]
+  std::vector<double> change_ci_high = {};             ///< [P]
+  std::vector<double> mean_square_share = {};          ///< [R x P] of each limited response; NaN where not known
+  std::vector<double> mean_square_share_ci_low = {};   ///< [R x P]
+  std::vector<double> mean_square_share_ci_high = {};  ///< [R x P]
+  std::vector<double> linear_share = {};  ///< [R] of the mean square of the scatter, what is linear in the errors
+
+  /// Whether these lists are there.
+  /// @{
+  bool has_change() const { return !change.empty() && !change_ci_low.empty() && !change_ci_high.empty(); }
+  bool has_shares() const {
+    return !mean_square_share.empty() && !mean_square_share_ci_low.empty() && !mean_square_share_ci_high.empty() &&
+           !linear_share.empty();
+  }
+  /// @}
 };
 
 /// How much of the scatter of each response an error makes alone: P errors, E bins.

@@ -125,7 +125,7 @@ class MachineWork {
       : plan_(plan),
         model_(model),
         analysis_(analysis),
-        table_(plan, model.description().responses.size(), analysis),
+        table_(plan, model, analysis),
         units_(options.shard.value_or(Shard()).of(table_.units())),
         rule_(rule_of(model, analysis)),
         rounds_(plan, rule_),
@@ -212,26 +212,28 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 /// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places
 /// in the tree, and what pieces in flight hold.
-MemoryOutlook machine_memory(const Study& study, const Plan& plan) {
+MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan& plan) {
   constexpr std::size_t kSketch = 20'000;
   constexpr std::size_t kPackedSketch = 6000;
   constexpr std::size_t kInFlight = 8;
   const std::size_t responses = study.model().responses.size();
   const std::size_t errors = plan.factors().size();
   const std::size_t cells = plan.poses().size() * responses;
-  const MachineTable table(plan, responses, study.analysis);
-  const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512;
+  const MachineTable table(plan, model, study.analysis);
+  const std::size_t fit = plan.poses().size() * table.vectors().rows() * (errors + 3) * sizeof(double);
+  const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512 + fit;
   const std::size_t nodes = MergeTree<MachineSums>::most_nodes(table.units()) * sums;
   const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(std::uint32_t);
   const std::size_t numbers = (cells + 6 * responses * errors * (1 + kEffectBins)) * sizeof(double);
-  return {cells * kSketch + nodes + kInFlight * piece, cells * kPackedSketch + nodes, numbers, numbers};
+  return {cells * kSketch + nodes + kInFlight * piece + table.kept(), cells * kPackedSketch + nodes + table.kept(),
+          numbers + 3 * fit, numbers};
 }
 
 MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
   return {a.accumulators + b.accumulators, a.state + b.state, a.result + b.result, a.file + b.file};
 }
 
-MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
+MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
   constexpr std::size_t kNumbers = 8;  // mean, its interval, std, min, max, count, rms
   const std::size_t responses = study.model().responses.size();
   // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
@@ -249,7 +251,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Plan& plan) {
   memory.state += effects;
   memory.result += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
   memory.file += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
-  if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, plan));
+  if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, model, plan));
   if (!plan.adaptive()) return memory;
   // Packed sketches of finished poses, for the next round.
   constexpr std::size_t kPackedSketch = 6000;
@@ -267,7 +269,7 @@ Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSe
                     (machines ? " machines with " : " samples of ") +
                     counted_things(plan->factors().size(), machines ? "errors = " : "errors together = ") +
                     solves_text(*plan, 1),
-          .memory = monte_carlo_memory(study, *plan),
+          .memory = monte_carlo_memory(study, model, *plan),
           .shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model), 1.0)},
           .by_one = {},
           .least = least_share(*plan)};

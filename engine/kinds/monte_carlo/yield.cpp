@@ -86,6 +86,9 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
   for (const Estimate& one : scores.gradient(conf_level)) {
     append(one, found.gradient, found.gradient_ci_low, found.gradient_ci_high);
   }
+  for (const Estimate& one : scores.change(conf_level)) {
+    append(one, found.change, found.change_ci_low, found.change_ci_high);
+  }
   return found;
 }
 

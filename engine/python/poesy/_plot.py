@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 _QUANTITIES = ("rms", "mean", "std", "min", "max")
 _BAR, _LINE = "#7da7d9", "#1f3b5c"
-_INTERVALS = {
-    "effect": ("effect_low", "effect_high", "effect on {response}"),
-    "ST": ("ST_low", "ST_high", "ST, share of the variance of {response}"),
-    "S1": ("S1_low", "S1_high", "S1, share of the variance of {response}"),
-    "cost": (None, None, "cost"),
-    "mean_square_share": (None, None, "share of the mean square"),
-    "share": (None, None, "share of the poses where the error deforms alone"),
+_RANKED = {
+    "effect": "effect on {response}",
+    "ST": "ST, share of the variance of {response}",
+    "S1": "S1, share of the variance of {response}",
+    "cost": "cost",
+    "mean_square_share": "share of the mean square",
+    "share": "share of the poses where the error deforms alone",
 }
 
 
@@ -61,13 +61,14 @@ class Plots:
         ranked = self._result.ranking(response)[:top]
         if not ranked.rows:
             raise NotInResult(f"{self._result.path}: {ranked.title}")
-        low, high, words = _INTERVALS[ranked.value]
+        words = _RANKED[ranked.value]
         values = np.array([getattr(row, ranked.value) for row in ranked])
         at = np.arange(len(values))
         axes = _axes(ax, 1.4 + 0.27 * len(values))
         axes.barh(at, values, color=_BAR)
-        if low is not None and high is not None:
-            axes.hlines(at, [getattr(row, low) for row in ranked], [getattr(row, high) for row in ranked], color=_LINE)
+        low, high = ([getattr(row, f"{ranked.value}_{end}", None) for row in ranked] for end in ("low", "high"))
+        if None not in low:
+            axes.hlines(at, low, high, color=_LINE)
         axes.set_yticks(at, [row.name for row in ranked])
         axes.invert_yaxis()
         axes.margins(y=0.01)

@@ -75,6 +75,22 @@ class MonteCarloRow:
 
 
 @dataclass(frozen=True)
+class YieldRow:
+    """An error of a study of machines with limits: what it adds to the mean square of the limited response, to first
+    order. NaN where it is correlated with others."""
+
+    rank: int
+    name: str
+    mean_square_share: float  #: over all poses, of a norm that of its vector
+    mean_square_share_low: float
+    mean_square_share_high: float
+    change: float  #: what the yield changes by if the error's sigma grows by a tenth
+    change_low: float
+    change_high: float
+    description: str
+
+
+@dataclass(frozen=True)
 class AllocationRow:
     """A part of the drawing and its tolerance +-T."""
 
@@ -100,7 +116,7 @@ class IdentificationRow:
     description: str
 
 
-Row = SensitivityRow | SobolRow | MonteCarloRow | AllocationRow | IdentificationRow
+Row = SensitivityRow | SobolRow | MonteCarloRow | YieldRow | AllocationRow | IdentificationRow
 
 
 @dataclass(frozen=True)
@@ -271,7 +287,37 @@ def _sobol(result: Result, response: str | None) -> Ranking:
     return Ranking(f"Shares of the variance of {response}, over the poses together", "ST", what, rows)
 
 
+def limited_response(result: Result, response: str | None) -> str | None:
+    """Of the limited responses, those of which shares of the mean square are known, this one, by default the one that
+    rejects most machines. None where it is none of them."""
+    if result.kind != "monte-carlo" or "yield" not in result.groups:
+        return None
+    found = result.to_xarray("yield")
+    if "linear_share" not in found:
+        return None
+    known = found["by_response"].where(found["linear_share"].notnull()).dropna("response")
+    if response is None:
+        return str(known["response"].values[int(np.argmin(known.values))]) if known.size else None
+    return response if response in known["response"].values else None
+
+
+def _yield(result: Result, response: str) -> Ranking:
+    found = result.to_xarray("yield")
+    shares = _with_ends(found.sel(response=response), "mean_square_share")
+    changes = _with_ends(found, "change")
+    names = [str(name) for name in found["factor"].values]
+    rows = tuple(
+        YieldRow(rank, names[p], *shares[p], *changes[p], result.description("factor", names[p]))
+        for rank, p in enumerate(_in_order([value for value, _, _ in shares]), start=1)
+    )
+    title = f"Shares of the mean square of {response}, which is limited, to first order"
+    return Ranking(title, "mean_square_share", "error", rows)
+
+
 def _monte_carlo(result: Result, response: str | None) -> Ranking:
+    limited = limited_response(result, response)
+    if limited is not None:
+        return _yield(result, limited)
     response = result.response(response)
     found = result.to_xarray("monte_carlo").sel(response=response)
     if response in result.constant:

@@ -162,7 +162,8 @@ class Result:
         ==============  ===================================================================
         sensitivity     errors by effect, index x sigma, with intervals (`SensitivityRow`)
         sobol           errors or groups by total index ST, over the poses (`SobolRow`)
-        monte-carlo     errors by first-order index S1 (`MonteCarloRow`)
+        monte-carlo     errors by first-order index S1 (`MonteCarloRow`); of a limited response with
+                        draws per machine by share of its mean square (`YieldRow`)
         allocation      parts by cost, else by share of the mean square (`AllocationRow`)
         identification  errors by whether they deform the mechanism (`IdentificationRow`)
         ==============  ===================================================================
@@ -172,7 +173,8 @@ class Result:
         Parameters
         ----------
         response
-            By which to rank; default: the one of `poesy show`.
+            By which to rank; default: the one of `poesy show`; with draws per machine and limits the limited one that
+            rejects most machines.
 
         Raises
         ------

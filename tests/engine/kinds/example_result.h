@@ -193,7 +193,13 @@ class Example {
     yield.unsolved_pass_rejects = 49;
     for (auto* list : {&yield.by_response, &yield.by_response_ci_low, &yield.by_response_ci_high}) fill(*list, 2);
     fill(yield.worst_pose_share, 2 * kPoses);
-    for (auto* list : {&yield.gradient, &yield.gradient_ci_low, &yield.gradient_ci_high}) fill(*list, 2);
+    for (auto* list : {&yield.gradient, &yield.gradient_ci_low, &yield.gradient_ci_high, &yield.change,
+                       &yield.change_ci_low, &yield.change_ci_high, &yield.linear_share}) {
+      fill(*list, 2);
+    }
+    for (auto* list : {&yield.mean_square_share, &yield.mean_square_share_ci_low, &yield.mean_square_share_ci_high}) {
+      fill(*list, 4);
+    }
     result.verdicts = {.judge = Judge::yield,
                        .limits = {{.response = 1,
                                    .limit = 0.25,

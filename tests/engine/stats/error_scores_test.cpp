@@ -27,12 +27,24 @@ TEST(PolynomialScore, OfTheUniformIsASumOfLegendrePolynomials) {
   const WeightedPoints points = weighted_points(Distribution::uniform(kHalf));
   const PolynomialScore score(points.points, points.weights);
   EXPECT_NEAR(score.sigma(), kHalf / std::numbers::sqrt3, 1e-15 * kHalf);
-  EXPECT_NEAR(score.mean_square(), 5.0 + 9.0 + 13.0, 1e-12);
-  EXPECT_NEAR(score.mean_cube(), mean_of(points, [&](double e) { return std::pow(score(e), 3); }), 1e-11);
+  EXPECT_NEAR(score.moments().square, 5.0 + 9.0 + 13.0, 1e-12);
+  EXPECT_NEAR(score.moments().cube, mean_of(points, [&](double e) { return std::pow(score(e), 3); }), 1e-11);
   for (const double u : {-1.0, -0.7, -0.1, 0.0, 0.3, 0.95, 1.0}) {
     const double expected = 5.0 * std::legendre(2, u) + 9.0 * std::legendre(4, u) + 13.0 * std::legendre(6, u);
     EXPECT_NEAR(score(u * kHalf), expected, 1e-12) << u;
   }
+}
+
+TEST(PolynomialScore, OfALowerDegreeIsItsBeginning) {
+  const WeightedPoints points = weighted_points(Distribution::uniform(2.0));
+  const PolynomialScore six(points.points, points.weights);
+  const PolynomialScore two(points.points, points.weights, 2);
+  for (const double e : {-1.9, 0.3, 2.0}) {
+    EXPECT_NEAR(two(e), 5.0 * std::legendre(2, 0.5 * std::abs(e)), 1e-13);
+    EXPECT_EQ(two(e), six.parabola(e));
+    EXPECT_NEAR(two.growth(e), 0.5 * (kErrorGrowth * kErrorGrowth - 1.0) * two(e), 1e-13);
+  }
+  EXPECT_NEAR(two.moments().square, 5.0, 1e-13);
 }
 
 TEST(PolynomialScore, OfANormalIsTheExactOne) {
@@ -47,7 +59,7 @@ TEST(PolynomialScore, OfANormalIsTheExactOne) {
   for (const double z : {-4.0, -1.0, 0.0, 0.5, 3.0}) EXPECT_NEAR(score(3.0 * z), z * z - 1.0, 1e-9) << z;
 }
 
-/// E[S q] = E[q'(e) (e - c)] for q = ((e - c) / t)^k.
+/// E[S q] = E[q'(e) (e - c)] for q = ((e - c) / t)^k, and with the growth score E[q(c + g (e - c))] - E[q].
 void expect_score(const WeightedPoints& points, int degree) {
   const PolynomialScore score(points.points, points.weights);
   const double centre = mean_of(points, [](double e) { return e; });
@@ -57,6 +69,10 @@ void expect_score(const WeightedPoints& points, int degree) {
     const double expected = k * mean_of(points, [&](double e) { return std::pow(z(e), k); });
     const double size = mean_of(points, [&](double e) { return std::abs(score(e) * std::pow(z(e), k)); });
     EXPECT_NEAR(mean_of(points, [&](double e) { return score(e) * std::pow(z(e), k); }), expected, 1e-10 * size) << k;
+    const double grown =
+        (std::pow(kErrorGrowth, k) - 1.0) * mean_of(points, [&](double e) { return std::pow(z(e), k); });
+    EXPECT_NEAR(mean_of(points, [&](double e) { return score.growth(e) * std::pow(z(e), k); }), grown, 1e-10 * size)
+        << k;
   }
 }
 

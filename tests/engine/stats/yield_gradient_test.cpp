@@ -84,7 +84,7 @@ struct OneError {
     return (8.0 * (yield(sigma + step) - yield(sigma - step)) - yield(sigma + 2.0 * step) + yield(sigma - 2.0 * step)) /
            (12.0 * step);
   }
-  double from_scores(double sigma) const {
+  ScoreSums scores_at(double sigma) const {
     constexpr std::size_t kMachines = 100000;
     std::vector<double> errors(kMachines);
     for (std::size_t k = 0; k < kMachines; ++k) errors[k] = (static_cast<double>(k) + 0.5) / kMachines;
@@ -95,8 +95,10 @@ struct OneError {
     for (const double error : errors) rejected.push_back(static_cast<std::uint8_t>(std::abs(error) > limit));
     ScoreSums scores(ErrorScores{{NormalScore{sigma, half_width}}});
     scores.add(errors, rejected);
-    return scores.gradient(0.95).front().value;
+    return scores;
   }
+  double from_scores(double sigma) const { return scores_at(sigma).gradient(0.95).front().value; }
+  double change(double sigma) const { return scores_at(sigma).change(0.95).front().value; }
 };
 
 TEST(YieldGradient, OfNormalAndTruncatedErrorsIsExact) {
@@ -178,6 +180,56 @@ TEST(YieldGradient, OfCorrelatedNormalErrorsHoldsTheClosedForm) {
   }
 }
 
+/// What the yield changes by while one error grows by a tenth: the step itself, and no tenth of the slope.
+TEST(YieldChange, IsThatOfAStep) {
+  constexpr std::size_t kMachines = 400000;
+  const Sum sum;
+  const Machines machines(sum, kMachines, 3);
+  ScoreSums scores(sum.errors());
+  scores.add(machines.errors, machines.rejected);
+  const std::vector<Estimate> change = scores.change(0.999);
+  for (std::size_t p = 0; p < 3; ++p) {  // each makes a third of the variance 0.03
+    const double expected = std::erf(0.3 / std::sqrt(2.0 * 0.0321)) - .9167354833;
+    EXPECT_LT(change[p].interval.low, expected);
+    EXPECT_GT(change[p].interval.high, expected);
+    EXPECT_LT(change[p].interval.high - change[p].interval.low, 0.1 * std::abs(expected));
+  }
+  // of one normal error alone at 3 sigma, where a tenth of the slope is a quarter too little
+  for (const double half_width : {kInfinity, 3.5}) {
+    const OneError error{half_width, 3.0};
+    const double expected = error.yield(1.1) - error.yield(1.0);
+    EXPECT_NEAR(error.change(1.0), expected, 3e-3 * std::abs(expected)) << half_width;
+  }
+}
+
+/// No yield falls below nothing: of few good machines all that the score takes away may be more.
+TEST(YieldChange, LeavesNoNegativeYield) {
+  ScoreSums scores(ErrorScores{{NormalScore{1.0, kInfinity}}});
+  scores.add(std::array{9.0, 9.0, 9.0, 0.1}, std::array<std::uint8_t, 4>{1, 1, 1, 0});
+  const Estimate change = scores.change(0.95).front();
+  EXPECT_EQ(change.value, -0.25);
+  EXPECT_EQ(change.interval.low, -0.25);
+  EXPECT_LE(change.interval.high, 0.75);
+}
+
+/// At 99.73 % polynomials of degree 6 find a twelfth of the gradient by a uniform error that alone makes the rejects.
+TEST(YieldGradient, IsNotSaidOfAnErrorThatAloneMakesTheRejects) {
+  constexpr std::size_t kMachines = 100000;
+  for (const double limit : {0.5, 0.9, 0.9973}) {
+    std::vector<double> errors;
+    std::vector<std::uint8_t> rejected;
+    for (std::size_t k = 0; k < kMachines; ++k) {
+      errors.push_back(2.0 * (static_cast<double>(k) + 0.5) / kMachines - 1.0);
+      rejected.push_back(static_cast<std::uint8_t>(std::abs(errors.back()) > limit));
+    }
+    ScoreSums scores(ErrorScores{{test::score_of(Distribution::uniform(1.0))}});
+    scores.add(errors, rejected);
+    const double slope = scores.gradient(0.95).front().value;
+    EXPECT_TRUE(std::isnan(slope) || std::abs(slope * std::sqrt(3.0) / 3.0 / limit + 1.0) < 0.3) << limit << slope;
+    EXPECT_EQ(std::isnan(scores.change(0.95).front().value), std::isnan(slope));
+  }
+}
+
 /// The sums of normal errors, bit for bit.
 TEST(ScoreSums, OfNormalErrorsAreTheirSquares) {
   constexpr std::size_t kMachines = 501;
@@ -185,10 +237,10 @@ TEST(ScoreSums, OfNormalErrorsAreTheirSquares) {
   const Machines machines(sum, kMachines, 6);
   ScoreSums scores(sum.errors());
   scores.add(machines.errors, machines.rejected);
-  std::array<std::vector<double>, 3> powers;
+  std::array<std::vector<double>, 6> powers;
   std::uint64_t rejects = 0;
   for (std::size_t p = 0; p < 3; ++p) {
-    std::array<double, 3> sums{};
+    std::array<double, 6> sums{};
     for (std::size_t b = 0; b < kMachines; ++b) {
       if (machines.rejected[b] == 0) continue;
       const double z = machines.errors[p * kMachines + b] * (1.0 / sum.sigma[p]);
@@ -196,14 +248,19 @@ TEST(ScoreSums, OfNormalErrorsAreTheirSquares) {
       sums[0] += score;
       sums[1] += score * score;
       sums[2] += score * score * score;
+      const double growth = 1.0 / 1.1 * std::exp(0.5 * (1.0 - 1.0 / (1.1 * 1.1)) * z * z) - 1.0;
+      sums[3] += growth;
+      sums[4] += growth * growth;
+      sums[5] += growth * growth * growth;
       rejects += p == 0 ? 1 : 0;
     }
-    for (std::size_t k = 0; k < 3; ++k) powers[k].push_back(sums[k]);
+    for (std::size_t k = 0; k < 6; ++k) powers[k].push_back(sums[k]);
   }
   ByteWriter to;
   to.number(kMachines);
   to.number(rejects);
   for (const std::vector<double>& one : powers) to.reals(one);
+  to.reals(std::array{0.0, 0.0, 0.0});  // no score is a polynomial
   EXPECT_EQ(written(scores), to.take());
 }
 
@@ -272,7 +329,7 @@ TEST(StoredScoreSums, GoOnWithTheSameBits) {
 }
 
 TEST(StoredScoreSums, OfEveryShapeGoOnWithTheSameBits) {
-  const ErrorScores scores{{test::score_of(Distribution::uniform(0.2)), BlockScore{0.05}, BlockScore{0.2}},
+  const ErrorScores scores{{test::score_of(Distribution::uniform(0.5)), BlockScore{0.05}, BlockScore{0.2}},
                            {{{1, 2}, lower_triangle(std::array{1.0, 0.5, 0.5, 1.0})}}};
   const auto read = [&](ByteReader& from) { return ScoreSums::read(from, scores); };
   const Machines machines(Sum{}, 300, 7);
@@ -290,7 +347,8 @@ TEST(StoredScoreSums, OfNoMachinesAreRefused) {
     ByteWriter to;
     to.number(machines);
     to.number(rejects);
-    to.reals(std::array{sum, square, cube});
+    for (int slope_and_growth = 0; slope_and_growth < 2; ++slope_and_growth) to.reals(std::array{sum, square, cube});
+    to.real(0.0);
     const Bytes bytes = to.take();
     ByteReader from(bytes);
     try {

@@ -134,9 +134,12 @@ void expect_same(const YieldResult& found, const YieldResult& expected) {
        {&YieldResult::rejects, &YieldResult::machines, &YieldResult::unsolved, &YieldResult::unsolved_pass_rejects}) {
     EXPECT_EQ(found.*member, expected.*member);
   }
-  for (const auto member : {&YieldResult::by_response, &YieldResult::by_response_ci_low,
-                            &YieldResult::by_response_ci_high, &YieldResult::worst_pose_share, &YieldResult::gradient,
-                            &YieldResult::gradient_ci_low, &YieldResult::gradient_ci_high}) {
+  for (const auto member :
+       {&YieldResult::by_response, &YieldResult::by_response_ci_low, &YieldResult::by_response_ci_high,
+        &YieldResult::worst_pose_share, &YieldResult::gradient, &YieldResult::gradient_ci_low,
+        &YieldResult::gradient_ci_high, &YieldResult::change, &YieldResult::change_ci_low, &YieldResult::change_ci_high,
+        &YieldResult::linear_share, &YieldResult::mean_square_share, &YieldResult::mean_square_share_ci_low,
+        &YieldResult::mean_square_share_ci_high}) {
     expect_same(found.*member, expected.*member);
   }
 }
@@ -165,6 +168,7 @@ TEST_F(MonteCarloFile, KeepsWhatMachinesDid) {
   EXPECT_TRUE(verify_result(path_).matches());
   const h5::File file = h5::File::open(path_);
   EXPECT_EQ(file.shape("/yield/gradient"), (h5::Shape{2}));
+  EXPECT_EQ(file.shape("/yield/mean_square_share"), (h5::Shape{2, 2}));
   EXPECT_EQ(file.shape("/yield/worst_pose_share"), (h5::Shape{2, kPoses}));
   EXPECT_EQ(file.shape("/monte_carlo/main_effect/mean"), (h5::Shape{2, 2, kEffectBins}));
   EXPECT_EQ(file.shape("/monte_carlo/S1"), (h5::Shape{2, 2}));

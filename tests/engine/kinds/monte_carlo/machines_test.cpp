@@ -187,7 +187,7 @@ TEST(Machines, HaveAGradientByErrorsOfEveryShape) {
     const double expected = uniform.gradient[p] * LinearModel::kSlopes[p];
     const double half = 0.5 * (found[p].interval.high - found[p].interval.low);
     EXPECT_NEAR(found[p].value, expected, half * 3.9 / 1.96) << p;
-    EXPECT_LT(half, 0.3 * std::abs(expected)) << p;
+    EXPECT_LT(half, 0.02 * std::abs(expected)) << p;
   }
   study.errors.by_factor[0] = Distribution::triangular(0.2);
   study.errors.by_factor[1] = Distribution::measured({-.08, -.04, -.03, 0.0, 0.01, 0.01, 0.02, 0.12});
@@ -195,6 +195,92 @@ TEST(Machines, HaveAGradientByErrorsOfEveryShape) {
     EXPECT_LT(one.interval.low, one.value);
     EXPECT_LT(one.interval.high, 0.0);
   }
+}
+
+/// One error makes the rejects, and others hardly anything: slope and step are those of that error alone. Polynomials
+/// find a twelfth of the slope.
+TEST(Machines, TellTheGradientByAnErrorThatAloneMakesTheRejects) {
+  constexpr double kGood = 0.9973;
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 2, 20'000, {1e-4, 1e-4, 1e-4});
+  study.errors.by_factor[0] = Distribution::uniform(0.1);
+  study.errors.by_factor[1] = Distribution::uniform(1e-9);
+  study.errors.by_factor[2] = Distribution::uniform(1e-9);
+  study.analysis.limits = {{0, kGood * 0.1}};
+  const YieldResult yield = *run(study, LinearModel()).machines->yield;
+  EXPECT_NEAR(yield.gradient[0], -kGood * std::sqrt(3.0) / 0.1, 0.02 * kGood * std::sqrt(3.0) / 0.1);
+  EXPECT_NEAR(yield.change[0], -kGood * (1.0 - 1.0 / 1.1), 1e-3);
+  EXPECT_LT(yield.change_ci_high[0], -0.08);
+  for (const std::size_t p : {1U, 2U}) {
+    EXPECT_LE(yield.change_ci_low[p], 0.0);
+    EXPECT_GE(yield.change_ci_high[p], 0.0);
+    EXPECT_LT(yield.change_ci_high[p] - yield.change_ci_low[p], 1e-3);
+  }
+}
+
+/// The step by each error is what another study finds whose error is a tenth larger, on the same uniforms, and no more
+/// of the yield is lost than there is.
+TEST(Machines, TellWhatAStepChangesTheYieldBy) {
+  constexpr std::size_t kMachines = 40'000;
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 2, kMachines, {0.1, 0.05, 0.2});
+  study.errors.by_factor[0] = Distribution::uniform(0.3);
+  study.analysis.limits = {{0, 0.25}};
+  const YieldResult yield = *run(study, LinearModel()).machines->yield;
+  for (std::size_t p = 0; p < 3; ++p) {
+    Study grown = study;
+    Distribution& error = grown.errors.by_factor[p];
+    error = p == 0 ? Distribution::uniform(0.33) : Distribution::normal(1.1 * error.sigma());
+    const double expected = run(grown, LinearModel()).machines->yield->value - yield.value;
+    // Machines that cross the limit one way alone: the variance of their share; alpha 1e-4, three comparisons.
+    const double half = 0.5 * (yield.change_ci_high[p] - yield.change_ci_low[p]) / 1.96;
+    const double noise = std::hypot(half, std::sqrt(2.0 * std::abs(expected) / kMachines));
+    EXPECT_NEAR(yield.change[p], expected, 4.2 * noise) << p;
+    EXPECT_LT(half, 0.1 * std::abs(expected)) << p;
+    EXPECT_GE(yield.change_ci_low[p], -yield.value);
+  }
+}
+
+TEST(Machines, TellTheSharesOfTheMeanSquare) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 3, 2'000, {0.1, 0.05, 0.4});
+  study.errors.by_factor[1] = Distribution::uniform(0.05 * std::sqrt(3.0));
+  study.analysis.limits = {{0, 0.3}};
+  const YieldResult yield = *run(study, LinearModel()).machines->yield;
+  const std::array expected{1.0 / 6.0, 1.0 / 6.0, 4.0 / 6.0};
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(yield.mean_square_share[p], expected[p], 1e-9);
+    EXPECT_NEAR(yield.mean_square_share_ci_low[p], expected[p], 1e-6);
+    EXPECT_NEAR(yield.mean_square_share_ci_high[p], expected[p], 1e-6);
+    EXPECT_TRUE(std::isnan(yield.mean_square_share[3 + p]));  // without a limit
+  }
+  EXPECT_NEAR(yield.linear_share[0], 1.0, 1e-9);
+  EXPECT_TRUE(std::isnan(yield.linear_share[1]));
+}
+
+/// Seven machines do not tell three slopes, an offset and a rest.
+TEST(Machines, AreTooFewForSharesBelowTwiceTheUnknowns) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 2, 7, {0.1, 0.05, 0.2});
+  study.errors.by_factor[1] = Distribution::uniform(0.1);
+  study.analysis.limits = {{0, 0.1}};
+  EXPECT_TRUE(std::isnan(run(study, LinearModel()).machines->yield->mean_square_share[0]));
+  study.analysis.samples = 8;
+  EXPECT_NEAR(run(study, LinearModel()).machines->yield->linear_share[0], 1.0, 1e-9);
+}
+
+/// A machine that is not solved at one pose is left out of the fit, and is a reject all the same.
+TEST(Machines, ThatAreNotSolvedAreNotFitted) {
+  const Catalog catalog = test::fake_catalog();
+  Study study = study_of(catalog, 4, 5'000, {1e-3, 2e-3, 5e-3});
+  study.errors.by_factor[1] = Distribution::uniform(4e-3);
+  study.analysis.limits = {{0, 6e-4}};
+  const YieldResult yield = *run(study, FailingModel()).machines->yield;
+  EXPECT_GT(yield.unsolved, 0u);
+  // The response is a magnitude of which the model names no vector: hardly anything of it is linear. No map of it tells
+  // the gradient, and by the error that makes most rejects polynomials do not.
+  EXPECT_LT(yield.linear_share[0], 0.5);
+  EXPECT_TRUE(std::isnan(yield.gradient[1]));
 }
 
 TEST(Machines, HaveAGradientByCorrelatedNormalErrors) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -175,6 +176,98 @@ TEST(MonteCarloTable, ShowsTheHeadlineAlone) {
   }
   ASSERT_EQ(tables[2].columns.size(), 4U);  // the error, and the index with its interval
   EXPECT_EQ(tables[2].columns[1].name, "S1_ratio");
+}
+
+/// Five errors of machines with limits on both responses.
+StoredResult example_of_machines() {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  StoredResult result = example();
+  result.factors = {{"delta_1", "m"}, {"epsilon_1", "rad"}, {"delta_2", "m"}, {"delta_3", "m"}, {"delta_4", "m"}};
+  result.factor_sigma.assign(5, 1e-3);
+  MonteCarloResult& found = monte_carlo_in(result);
+  for (auto* list : {&found.effects.effects.s1, &found.effects.effects.s1_ci_low, &found.effects.effects.s1_ci_high}) {
+    list->assign(10, 0.1);
+  }
+  MachineResult& machines = found.machines.emplace();
+  for (MachineValues* values : {&machines.largest, &machines.rms}) {
+    values->mean = values->max = {1e-3, 0.5};
+    values->quantiles.assign(4, 1e-3);
+  }
+  YieldResult& yield = machines.yield.emplace();
+  yield.value = 0.75;
+  yield.rejects = 50;
+  yield.machines = 200;
+  yield.by_response = {0.8, 0.9};
+  yield.worst_pose_share.assign(6, 0.0);
+  yield.gradient = {-10.0, -200.0, 1.0, -2.0, kNone};
+  yield.change = {-0.01, -0.2, 0.001, -0.002, kNone};
+  yield.change_ci_low = {-0.015, -0.25, -0.001, -0.004, kNone};
+  yield.change_ci_high = {-0.005, -0.15, 0.003, 0.0001, kNone};
+  yield.mean_square_share = {0.1, 0.7, 0.05, 0.125, kNone, 0.5, 0.25, 0.125, 0.125, kNone};
+  yield.mean_square_share_ci_low = yield.mean_square_share;
+  yield.mean_square_share_ci_high = yield.mean_square_share;
+  yield.linear_share = {0.975, 0.5};
+  return result;
+}
+
+TEST(MonteCarloTable, ShowsFirstWhatMakesTheLimitedResponse) {
+  const std::vector<Table> tables = monte_carlo_tables(example_of_machines());
+  ASSERT_GT(tables.size(), 2U);
+  EXPECT_EQ(tables[0].caption,
+            "Which errors a limit is up against: shares of the mean square of linear_deformation, to first order");
+  std::vector<std::string> shown;
+  for (const std::vector<Cell>& row : tables[0].rows) shown.push_back(row[0].text + " " + row[1].text);
+  EXPECT_EQ(shown, (std::vector<std::string>{"epsilon_1 70", "delta_3 12.5", "delta_1 10", "delta_2 5", "delta_4 -"}));
+  EXPECT_EQ(tables[0].columns[4].name, "share_ratio");
+  EXPECT_EQ(tables[0].notes[1], "linear_deformation: 97.5 % of the mean square of its scatter is linear in the errors");
+  EXPECT_EQ(
+      tables[0].notes[2],
+      "ratio: 50 % of the mean square of its scatter is linear in the errors; the rest belongs to no error alone, "
+      "so these shares say little");
+}
+
+TEST(MonteCarloTable, PutsWhatIsNotToldFromZeroIntoOneLine) {
+  const StoredResult result = example_of_machines();
+  Table table = monte_carlo_tables(result)[1];
+  EXPECT_EQ(table.name, "yield_gradient");
+  table.notes.clear();
+  EXPECT_EQ(text_of(table, kUnlimitedWidth),
+            "What the yield changes by if the sigma of one error grows by 10 %\n"
+            "error                                           yield    low   high   slope\n"
+            "                                                  [%]    [%]    [%]\n"
+            "epsilon_1                                         -20  -25    -15    -3.491\n"
+            "delta_1                                            -1   -1.5   -0.5  -0.01\n"
+            "2 errors whose effect cannot be told from zero      -      -      -       -\n"
+            "1 error of which these machines do not tell it      -      -      -       -\n");
+}
+
+TEST(MonteCarloTable, SaysThatFewRejectsTellLittle) {
+  StoredResult result = example_of_machines();
+  const auto says = [&](std::uint64_t rejects) {
+    monte_carlo_in(result).machines->yield->rejects = rejects;
+    const Table table = monte_carlo_tables(result)[1];
+    return std::ranges::any_of(table.notes,
+                               [](const std::string& note) { return note.find(" are few: ") != std::string::npos; });
+  };
+  EXPECT_TRUE(says(5));
+  EXPECT_TRUE(says(19));
+  EXPECT_FALSE(says(20));
+}
+
+/// Files of version 0.2 have the slope alone.
+TEST(MonteCarloTable, TakesAPartOfTheSlopeWhereAFileHasNoChange) {
+  StoredResult result = example_of_machines();
+  YieldResult& yield = *monte_carlo_in(result).machines->yield;
+  yield.change = yield.change_ci_low = yield.change_ci_high = {};
+  yield.mean_square_share = yield.mean_square_share_ci_low = yield.mean_square_share_ci_high = {};
+  yield.linear_share = {};
+  yield.gradient_ci_low = {-15.0, -9000.0, -1.0, -4.0, yield.gradient[4]};
+  yield.gradient_ci_high = {-5.0, -150.0, 3.0, 0.1, yield.gradient[4]};
+  const Table table = monte_carlo_tables(result).front();
+  ASSERT_EQ(table.name, "yield_gradient");
+  EXPECT_NEAR(table.rows[0][1].value.value(), -2.0, 1e-12);
+  EXPECT_EQ(table.rows[0][2].value.value(), -75.0);  // all of the yield and no more
+  EXPECT_EQ(table.rows[2][0].text, "2 errors whose effect cannot be told from zero");
 }
 
 TEST(DefaultRanking, IsTheFirstLengthOfTheHeadline) {

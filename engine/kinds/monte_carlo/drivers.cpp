@@ -1,0 +1,243 @@
+#include "engine/kinds/monte_carlo/drivers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/nan.h"
+#include "engine/base/units.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/report/display.h"
+#include "engine/stats/error_scores.h"
+#include "engine/stats/yield_gradient.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kStep = kErrorGrowth - 1.0;
+
+const YieldResult* yield_in(const StoredResult& result) {
+  const auto& machines = monte_carlo_of(result).machines;
+  return machines && machines->yield ? &*machines->yield : nullptr;
+}
+
+/// Limited responses of which shares are known, the one that rejects most machines first.
+std::vector<std::size_t> shared_responses(const StoredResult& result, const YieldResult& yield) {
+  std::vector<std::size_t> list;
+  if (!yield.has_shares()) return list;
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    if (!std::isnan(yield.linear_share[r])) list.push_back(r);
+  }
+  std::ranges::stable_sort(list, {}, [&](std::size_t r) { return yield.by_response[r]; });
+  return list;
+}
+
+/// What the yield changes by, with its interval: in files without it a part of the slope.
+struct Changes {
+  std::vector<double> value;  ///< [P]
+  std::vector<double> low;    ///< [P]
+  std::vector<double> high;   ///< [P]
+
+  /// Whether it is told from zero.
+  bool is_told(std::size_t p) const { return low[p] > 0.0 || high[p] < 0.0; }
+};
+
+Changes changes_of(const StoredResult& result, const YieldResult& yield) {
+  if (yield.has_change()) return {yield.change, yield.change_ci_low, yield.change_ci_high};
+  const auto part = [&](const std::vector<double>& slope) {
+    std::vector<double> change;
+    for (std::size_t p = 0; p < slope.size(); ++p) {
+      change.push_back(std::max(-yield.value, kStep * slope[p] * result.factor_sigma[p]));
+      if (std::isnan(slope[p])) change.back() = kNaN;
+    }
+    return change;
+  };
+  return {part(yield.gradient), part(yield.gradient_ci_low), part(yield.gradient_ci_high)};
+}
+
+/// Errors of which the change is told from zero, the largest loss first.
+std::vector<std::size_t> told_errors(const Changes& changes) {
+  std::vector<std::size_t> told;
+  for (std::size_t p = 0; p < changes.value.size(); ++p) {
+    if (changes.is_told(p)) told.push_back(p);
+  }
+  return largest_first(std::move(told), [&](std::size_t p) { return -changes.value[p]; });
+}
+
+std::string linear_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
+  return fmt::format(
+      "{}: {} of the mean square of its scatter is linear in the errors{}", result.responses[r].name,
+      percent_text(yield.linear_share[r]),
+      yield.linear_share[r] < 0.9 ? "; the rest belongs to no error alone, so these shares say little" : "");
+}
+
+Table share_table(const StoredResult& result, const YieldResult& yield, const std::vector<std::size_t>& responses) {
+  const std::size_t factors = result.factors.size();
+  const std::size_t first = responses.front();
+  std::vector<FilledColumn> columns{name_column(result.factors, "error")};
+  const auto add = [&](const std::string& name, const std::string& heading, const std::vector<double>& values,
+                       std::size_t r, int dispensable) {
+    columns.push_back({percent_column(name, heading, dispensable),
+                       [&values, at = r * factors](std::size_t p) { return percent_cell(values[at + p]); }});
+  };
+  Table table{.name = "mean_square_shares",
+              .caption = fmt::format("Which errors a limit is up against: shares of the mean square of {}, to first "
+                                     "order",
+                                     result.responses[first].name),
+              .columns = {},
+              .notes = {fmt::format("over all poses, of a norm that of its vector; low, high: {} interval",
+                                    percent_text(yield.conf_level))},
+              .ranked = true};
+  for (const std::size_t r : responses) {
+    const std::string& response = result.responses[r].name;
+    add("share_" + response, response, yield.mean_square_share, r, r == first ? 0 : 1);
+    add("share_ci_low_" + response, "low", yield.mean_square_share_ci_low, r, r == first ? 0 : 2);
+    add("share_ci_high_" + response, "high", yield.mean_square_share_ci_high, r, r == first ? 0 : 2);
+    table.notes.push_back(linear_note(result, yield, r));
+  }
+  const auto share = [&](std::size_t p) { return yield.mean_square_share[first * factors + p]; };
+  fill(table, largest_first(positions(factors), share), columns);
+  return table;
+}
+
+/// "33 errors whose effect cannot be told from zero", in the place of their rows.
+void add_line(Table& table, std::size_t errors, std::string_view one, std::string_view many) {
+  if (errors == 0) return;
+  std::vector<Cell> row{text_cell(fmt::format("{} {}", counted(errors, "error", "errors"), errors == 1 ? one : many))};
+  row.resize(table.columns.size(), text_cell(""));
+  table.rows.push_back(std::move(row));
+}
+
+Table change_table(const StoredResult& result, const YieldResult& yield) {
+  const Changes changes = changes_of(result, yield);
+  const auto column = [&](std::string name, std::string heading, const std::vector<double>& values) {
+    return FilledColumn{percent_column(std::move(name), std::move(heading)),
+                        [&values](std::size_t p) { return percent_cell(values[p]); }};
+  };
+  Table table{
+      .name = "yield_gradient",
+      .caption = fmt::format("What the yield changes by if the sigma of one error grows by {}", percent_text(kStep)),
+      .columns = {},
+      .notes = {fmt::format(
+          "low, high: {} interval; slope: of the yield by sigma, 1/mm or 1/deg, which holds for small "
+          "changes alone",
+          percent_text(yield.conf_level))},
+      .ranked = true};
+  const std::vector<std::size_t> told = told_errors(changes);
+  fill(table, told,
+       {name_column(result.factors, "error"),
+        column("change", "yield", changes.value),
+        column("change_low", "low", changes.low),
+        column("change_high", "high", changes.high),
+        {number_column("slope", "slope", "", 1),
+         [&](std::size_t p) { return number_cell(yield.gradient[p] * display(result.factors[p]).si); }}});
+  const auto unknown =
+      static_cast<std::size_t>(std::ranges::count_if(changes.low, [](double low) { return std::isnan(low); }));
+  add_line(table, changes.value.size() - told.size() - unknown, "whose effect cannot be told from zero",
+           "whose effect cannot be told from zero");
+  add_line(table, unknown, "of which these machines do not tell it", "of which these machines do not tell it");
+  if (unknown > 0) {
+    table.notes.emplace_back(
+        "not told: where an error is correlated and not all errors of its block are normal, where its mean is shifted, "
+        "where one error that is not normal makes the rejects alone and no linear map is found, or no machine is "
+        "rejected");
+  }
+  if (yield.rejects > 0 && yield.rejects < kFewRejects) {
+    table.notes.push_back(fmt::format(
+        "{} are few: intervals of 95 % by normal errors then hold the truth in some 90 % of all cases with five, and "
+        "less often with fewer",
+        counted(yield.rejects, "reject", "rejects")));
+  }
+  return table;
+}
+
+void add_share_figure(const StoredResult& result, const YieldResult& yield, Section& section, Page& page) {
+  const std::vector<std::size_t> responses = shared_responses(result, yield);
+  if (responses.empty()) return;
+  const auto add = [&](const std::string& name, const std::vector<double>& values) {
+    std::vector<double> list;
+    for (const std::size_t r : responses) {
+      const std::vector<double> row = of_row(values, r, result.factors.size());
+      list.insert(list.end(), row.begin(), row.end());
+    }
+    return page.figures.pool.add(name, list, 0.01);
+  };
+  Bars bars{
+      {{"response", names_of(result.responses, responses)}},
+      {{"share of the mean square", std::vector(responses.size(), std::vector<std::string>{"%"}),
+        add("mean_square_share", yield.mean_square_share), add("mean_square_share_low", yield.mean_square_share_ci_low),
+        add("mean_square_share_high", yield.mean_square_share_ci_high)}},
+      names_of(result.factors)};
+  add_figure(page, section, "mean-square-shares", std::move(bars),
+             "The errors that make a limited response large: shares of its mean square, to first order. Thin lines are "
+             "intervals.");
+}
+
+/// Of the errors whose effect is told from zero.
+void add_change_figure(const StoredResult& result, const YieldResult& yield, Section& section, Page& page) {
+  const Changes changes = changes_of(result, yield);
+  const std::vector<std::size_t> told = told_errors(changes);
+  if (told.empty()) return;
+  const auto add = [&](const std::string& name, const std::vector<double>& values) {
+    std::vector<double> list;
+    for (const std::size_t p : told) list.push_back(values[p]);
+    return page.figures.pool.add(name, list, 0.01);
+  };
+  Bars bars{{},
+            {{fmt::format("change of the yield if sigma grows by {}", percent_text(kStep)),
+              {{"%"}},
+              add("yield_change", changes.value),
+              add("yield_change_low", changes.low),
+              add("yield_change_high", changes.high)}},
+            names_of(result.factors, told)};
+  add_figure(page, section, "yield-gradient", std::move(bars),
+             "The errors on which the yield depends, as far as its change is told from zero. Thin lines are "
+             "intervals.");
+}
+
+}  // namespace
+
+std::vector<std::size_t> largest_first(std::vector<std::size_t> order,
+                                       const std::function<double(std::size_t)>& value) {
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    const double x = value(a);
+    const double y = value(b);
+    return std::isnan(y) ? !std::isnan(x) : x > y;
+  });
+  return order;
+}
+
+std::optional<ResponseShares> response_shares(const StoredResult& result) {
+  const YieldResult* const yield = yield_in(result);
+  if (yield == nullptr) return std::nullopt;
+  const std::vector<std::size_t> responses = shared_responses(result, *yield);
+  if (responses.empty()) return std::nullopt;
+  return ResponseShares{responses.front(), of_row(yield->mean_square_share, responses.front(), result.factors.size())};
+}
+
+std::vector<Table> driver_tables(const StoredResult& result) {
+  const YieldResult* const yield = yield_in(result);
+  if (yield == nullptr) return {};
+  std::vector<Table> tables;
+  const std::vector<std::size_t> responses = shared_responses(result, *yield);
+  if (!responses.empty()) tables.push_back(share_table(result, *yield, responses));
+  tables.push_back(change_table(result, *yield));
+  return tables;
+}
+
+void add_drivers_section(const StoredResult& result, std::span<const Table> tables, Page& page) {
+  const YieldResult& yield = *yield_in(result);
+  Section& section = page.add_section("yield", "What the yield depends on");
+  section.paragraph(
+      "A machine has one set of errors, and is good if it is within every limit at every pose. The yield is the share "
+      "of good machines. What each error adds to a limited response, and what the yield changes by with its size, "
+      "follow from the same machines.");
+  add_share_figure(result, yield, section, page);
+  section.table(tables, "mean_square_shares");
+  add_change_figure(result, yield, section, page);
+  section.table(tables, "yield_gradient");
+  section.table(tables, "reject_poses");
+}
+
+}  // namespace poesy

@@ -1,0 +1,159 @@
+#include "engine/kinds/monte_carlo/yield_by_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/base/nan.h"
+#include "engine/random/stream.h"
+#include "engine/random/weighted_points.h"
+#include "engine/stats/indices.h"
+#include "engine/stats/linear_limits.h"
+#include "engine/stats/mapped_gradient.h"
+#include "engine/stats/mean_square_shares.h"
+
+namespace poesy {
+namespace {
+
+/// Rows of the fit that are a vector's components at all poses.
+std::vector<std::size_t> rows_of(const MachineTable& table, const LimitedVector& vector) {
+  std::vector<std::size_t> rows;
+  for (std::size_t m = 0; m < table.plan().poses().size(); ++m) {
+    for (std::size_t k = 0; k < vector.rows; ++k) rows.push_back(m * table.vectors().rows() + vector.first_row + k);
+  }
+  return rows;
+}
+
+std::vector<ErrorEffect> effects_on(const MachineTable& table, std::size_t response) {
+  const Plan& plan = table.plan();
+  std::vector<ErrorEffect> errors;
+  for (const Distribution& error : plan.distributions()) {
+    const double sigma = error.standard_deviation();
+    const double offset = error.mean() / sigma;
+    errors.push_back({.mean_square = 1.0 + offset * offset,
+                      .block = 0,
+                      .rounding = sigma * index_rounding(table.rounding()[response], sigma)});
+  }
+  for (std::size_t n = 0; n < plan.correlated().size(); ++n) {
+    for (const std::size_t p : plan.correlated()[n].slots) errors[p].block = n + 1;
+  }
+  return errors;
+}
+
+/// A limited vector at one pose, by the errors themselves.
+LinearLimit limit_at(const MachineTable& table, const LinearFit& fit, const LimitedVector& vector, std::size_t pose) {
+  const std::size_t first = pose * table.vectors().rows() + vector.first_row;
+  const auto part = [&](const std::vector<double>& list, std::size_t each) {
+    const auto from = list.begin() + static_cast<std::ptrdiff_t>(first * each);
+    return std::vector(from, from + static_cast<std::ptrdiff_t>(vector.rows * each));
+  };
+  LinearLimit limit = with_fewest_rows({vector.rows, vector.most, part(fit.offset, 1), part(fit.slope, fit.errors)});
+  for (std::size_t k = 0; k < limit.rows; ++k) {
+    for (std::size_t p = 0; p < fit.errors; ++p) {
+      const Distribution& error = table.plan().distributions()[p];
+      double& slope = limit.slope[k * fit.errors + p];
+      slope /= error.standard_deviation();
+      limit.offset[k] -= slope * error.mean();
+    }
+  }
+  return limit;
+}
+
+LinearLimits limits_of(const MachineTable& table, const LinearFit& fit) {
+  std::vector<LinearLimit> limits;
+  for (std::size_t m = 0; m < table.plan().poses().size(); ++m) {
+    for (const LimitedVector& vector : table.vectors().each()) limits.push_back(limit_at(table, fit, vector, m));
+  }
+  return {fit.errors, std::move(limits)};
+}
+
+std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table) {
+  constexpr std::size_t kDegree = 2;  // of what few machines say that the map judges wrongly
+  std::vector<std::optional<MappedError>> errors;
+  for (std::size_t p = 0; p < table.errors(); ++p) {
+    errors.emplace_back();
+    if (!std::holds_alternative<PolynomialScore>(table.scores().each[p])) continue;
+    const Distribution& error = table.plan().distributions()[p];
+    std::vector<double> quantiles = ErrorRange::grid();
+    error.transform(quantiles);
+    const WeightedPoints points = weighted_points(error);
+    errors.back().emplace(MappedError{ErrorRange(std::move(quantiles), error.mean()),
+                                      PolynomialScore(points.points, points.weights, kDegree)});
+  }
+  return errors;
+}
+
+/// The errors of consecutive machines once more, [P x B].
+std::vector<double> errors_of(const Plan& plan, std::size_t first, std::size_t count) {
+  const std::size_t errors = plan.factors().size();
+  std::vector<double> values(errors * count);
+  for (std::size_t p = 0; p < errors; ++p) {
+    fill_uniforms(plan.address(p, PoseIndex(0)), SampleIndex(first), std::span(values).subspan(p * count, count));
+  }
+  plan.transform(values, count);
+  return values;
+}
+
+void set(const Estimate& estimate, std::size_t p, std::vector<double>& value, std::vector<double>& low,
+         std::vector<double>& high) {
+  value[p] = estimate.value;
+  low[p] = estimate.interval.low;
+  high[p] = estimate.interval.high;
+}
+
+void set_shares(const MachineTable& table, const LinearFit& fit, double conf_level, YieldResult& yield) {
+  const std::size_t errors = table.errors();
+  for (const LimitedVector& vector : table.vectors().each()) {
+    const MeanSquareShares shares = mean_square_shares(fit, rows_of(table, vector), table.plan().poses().size(),
+                                                       effects_on(table, vector.response), conf_level);
+    yield.linear_share[vector.response] = shares.linear;
+    for (std::size_t p = 0; p < errors; ++p) {
+      set(shares.each[p], vector.response * errors + p, yield.mean_square_share, yield.mean_square_share_ci_low,
+          yield.mean_square_share_ci_high);
+    }
+  }
+}
+
+/// Whether so many machines that the map judges wrongly are few: of many the parabola would leave out too much.
+bool judges_well(const MappedGradient& gradient, std::span<const std::uint8_t> rejected) {
+  constexpr double kMost = 0.3;  // of the rejects, or of the good machines where these are fewer
+  constexpr double kAnyway = 4.0;
+  const auto rejects = static_cast<double>(std::ranges::count(rejected, 1));
+  const double fewer = std::min(rejects, static_cast<double>(rejected.size()) - rejects);
+  return static_cast<double>(gradient.misjudged()) <= kAnyway + kMost * fewer;
+}
+
+void set_gradient(const MachineTable& table, const LinearFit& fit, std::span<const std::uint8_t> rejected,
+                  double conf_level, YieldResult& yield) {
+  constexpr std::size_t kBlock = 50;
+  MappedGradient gradient(limits_of(table, fit), mapped_errors(table));
+  for (std::size_t first = 0; first < rejected.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, rejected.size() - first);
+    gradient.add(errors_of(table.plan(), first, count), rejected.subspan(first, count));
+  }
+  if (!judges_well(gradient, rejected)) return;
+  for (std::size_t p = 0; p < table.errors(); ++p) {
+    if (!std::holds_alternative<PolynomialScore>(table.scores().each[p])) continue;
+    set(gradient.gradient(p, conf_level), p, yield.gradient, yield.gradient_ci_low, yield.gradient_ci_high);
+    set(within(gradient.change(p, conf_level), -yield.value, 1.0 - yield.value), p, yield.change, yield.change_ci_low,
+        yield.change_ci_high);
+  }
+}
+
+}  // namespace
+
+void set_first_order(const MachineTable& table, const LinearFitSums* sums, std::span<const std::uint8_t> rejected,
+                     double conf_level, YieldResult& yield) {
+  for (auto* list : {&yield.mean_square_share, &yield.mean_square_share_ci_low, &yield.mean_square_share_ci_high}) {
+    list->assign(table.responses() * table.errors(), kNaN);
+  }
+  yield.linear_share.assign(table.responses(), kNaN);
+  const std::optional<LinearFit> fit = sums == nullptr ? std::nullopt : sums->fit();
+  if (!fit) return;
+  set_shares(table, *fit, conf_level, yield);
+  if (!rejected.empty()) set_gradient(table, *fit, rejected, conf_level, yield);
+}
+
+}  // namespace poesy

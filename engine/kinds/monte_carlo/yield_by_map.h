@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "engine/kinds/monte_carlo/machine_table.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/stats/linear_fit.h"
+
+namespace poesy {
+
+/// What the limited vectors say of the yield to first order, fitted to the study's first machines (sums; null: there is
+/// no fit):
+/// - the shares of the mean square of each limited response, for all errors; NaN without a fit;
+/// - the gradient and the change by errors whose score is a polynomial, by MappedGradient in place of what is there,
+///   if the map judges few machines wrongly. rejected: of the first machines, which are drawn anew.
+void set_first_order(const MachineTable& table, const LinearFitSums* sums, std::span<const std::uint8_t> rejected,
+                     double conf_level, YieldResult& yield);
+
+}  // namespace poesy

@@ -1,0 +1,81 @@
+#include "engine/stats/mean_square_shares.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
+
+namespace poesy {
+namespace {
+
+/// Of the variance of a slope that least squares state; see mean_square_shares.h.
+constexpr double kSquaredRest = 5.0;
+
+/// Sums over the rows of a vector.
+struct Sums {
+  double square = 0.0;  ///< of the slope of one error
+  double noise = 0.0;   ///< of its variance
+};
+
+Sums sums_of(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t error) {
+  Sums sums;
+  for (const std::size_t k : rows) {
+    const std::size_t at = k * fit.errors + error;
+    sums.square += fit.slope[at] * fit.slope[at];
+    sums.noise += fit.slope_variance[at];
+  }
+  return sums;
+}
+
+/// What two correlated errors add to the mean square beside what each adds.
+double together(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t p, std::size_t q) {
+  double sum = 0.0;
+  for (const std::size_t k : rows) sum += fit.slope[k * fit.errors + p] * fit.slope[k * fit.errors + q];
+  return 2.0 * sum * fit.products[p * fit.errors + q];
+}
+
+double square_of(double value) { return value * value; }
+
+}  // namespace
+
+MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t poses,
+                                    std::span<const ErrorEffect> errors, double conf_level) {
+  POESY_EXPECTS(errors.size() == fit.errors && poses > 0);
+  const double z = two_sided_normal_quantile(conf_level);
+  const auto unknown = Estimate{kNaN, {kNaN, kNaN}};
+  MeanSquareShares found{std::vector<Estimate>(fit.errors, unknown), kNaN};
+  double linear = 0.0;
+  double rest = 0.0;
+  bool varies = false;
+  for (const std::size_t k : rows) rest += fit.rest[k];
+  for (std::size_t p = 0; p < fit.errors; ++p) {
+    const Sums sums = sums_of(fit, rows, p);
+    const ErrorEffect& error = errors[p];
+    const double own = std::max(0.0, sums.square - sums.noise);
+    linear += own * error.mean_square;
+    if (error.block != 0) {
+      for (std::size_t q = 0; q < p; ++q) {
+        if (errors[q].block == error.block) linear += together(fit, rows, p, q);
+      }
+    }
+    const bool has_effect = sums.square > static_cast<double>(poses) * square_of(error.rounding);
+    varies = varies || has_effect;
+    const double noise = z * std::sqrt(kSquaredRest * sums.noise);
+    const double size = std::sqrt(sums.square);
+    found.each[p] = {
+        own * error.mean_square,
+        {square_of(std::max(0.0, size - noise)) * error.mean_square, square_of(size + noise) * error.mean_square}};
+    if (!has_effect) found.each[p] = {0.0, {0.0, 0.0}};
+    if (error.block != 0) found.each[p] = unknown;
+  }
+  const double all = linear + rest;
+  if (!varies || !(all > 0.0)) return {std::vector<Estimate>(fit.errors, unknown), kNaN};
+  for (Estimate& one : found.each) {
+    one = {one.value / all, {one.interval.low / all, std::min(1.0, one.interval.high / all)}};
+  }
+  found.linear = linear / all;
+  return found;
+}
+
+}  // namespace poesy
