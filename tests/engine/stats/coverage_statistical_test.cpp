@@ -56,6 +56,20 @@ double mean_plus_spread(const std::vector<double>& scales) {
   return over_poses.mean() + over_poses.standard_deviation();
 }
 
+/// How often the interval of a local index holds it, of a response that is a function of a normal error.
+double local_coverage(double (*response)(double), double deviation, int samples, std::uint64_t seed) {
+  constexpr int kRepetitions = 4000;
+  boost::random::mt19937_64 engine(seed);
+  boost::random::normal_distribution<double> normal;
+  int hits = 0;
+  for (int r = 0; r < kRepetitions; ++r) {
+    Moments moments;
+    for (int k = 0; k < samples; ++k) moments.add(response(normal(engine)));
+    hits += holds(local_index(moments, 1.0, kLevel), deviation) ? 1 : 0;
+  }
+  return static_cast<double>(hits) / kRepetitions;
+}
+
 /// z of the coverage of the global interval over poses whose indices are known.
 double z_of_global_coverage(const std::vector<double>& scales, int samples, int repetitions, std::uint64_t seed) {
   Experiment experiment(seed);
@@ -67,6 +81,23 @@ double z_of_global_coverage(const std::vector<double>& scales, int samples, int 
   const double z = z_of(hits, repetitions);
   testing::Test::RecordProperty("coverage", std::to_string(static_cast<double>(hits) / repetitions));
   return z;
+}
+
+/// What tables say of few samples (kinds/sensitivity/ranking.cpp), within 3.291 standard errors of a share of 4000 and
+/// half a percent of rounding.
+TEST(LocalIndexInterval, CoversWithFewSamplesAsStated) {
+  const auto expect = [](double share, double stated) {
+    EXPECT_NEAR(share, stated, 0.005 + 3.291 * std::sqrt(stated * (1.0 - stated) / 4000.0));
+  };
+  const auto folded = [](double e) { return std::abs(e); };
+  expect(local_coverage(folded, kFoldedDeviation, 20, 31), 0.91);
+  expect(local_coverage(folded, kFoldedDeviation, 50, 32), 0.92);
+  expect(local_coverage(folded, kFoldedDeviation, 200, 33), 0.94);
+  const auto square = [](double e) { return e * e; };
+  expect(local_coverage(square, std::numbers::sqrt2, 20, 34), 0.79);
+  expect(local_coverage(square, std::numbers::sqrt2, 50, 35), 0.84);
+  expect(local_coverage(square, std::numbers::sqrt2, 200, 36), 0.90);
+  expect(local_coverage(square, std::numbers::sqrt2, 1000, 37), 0.94);
 }
 
 /// Evenly spaced from low to high.

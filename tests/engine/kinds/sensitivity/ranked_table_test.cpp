@@ -77,6 +77,26 @@ TEST(RankedTable, SaysWhichErrorsAreTooSmallToTell) {
   EXPECT_TRUE(table.notes.back().starts_with("rounding: the error is so small")) << table.notes.back();
 }
 
+TEST(RankedTable, SaysHowOftenIntervalsOfFewSamplesHold) {
+  StoredResult result = ranked_result();
+  const auto note = [&](std::uint64_t samples) -> std::string {
+    for (SolveCounts& solves : sensitivity_in(result).solves) {
+      solves = {};
+      solves.by_status[0] = samples;
+    }
+    const Table table = result_tables(result, "x").front();
+    for (const std::string& one : table.notes) {
+      if (one.find(" at each pose are few") != std::string::npos) return one;
+    }
+    return {};
+  };
+  EXPECT_TRUE(note(50).starts_with("50 samples at each pose are few")) << note(50);
+  EXPECT_EQ(note(200), "");
+  sensitivity_in(result).index_change[0] = -0.9;  // of the first response, by which the table ranks
+  EXPECT_TRUE(note(200).starts_with("200 samples at each pose are few"));
+  EXPECT_EQ(note(1000), "");
+}
+
 TEST(RankedTable, IsInTheOrderAskedFor) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(names(RowOrder::effect), (Names{"epsilon_a", "delta_c", "delta_b", "delta_a"}));
