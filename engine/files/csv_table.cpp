@@ -13,11 +13,15 @@
 namespace poesy {
 namespace {
 
-/// A count is written with all its digits.
 std::string cell(double value) {
   constexpr double kLongest = 1e15;
   if (std::isnan(value)) return "NaN";
   return std::abs(value) < kLongest && value == std::trunc(value) ? fmt::format("{:.0f}", value) : shortest(value);
+}
+std::string cell(std::int64_t value) { return std::to_string(value); }
+std::string cell(std::uint64_t value) { return std::to_string(value); }
+std::string cell(const Number& number) {
+  return std::visit([](auto value) { return cell(value); }, number);
 }
 
 /// The names of different units, in the order of the things, with "or" between them.

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/number.h"
 #include "engine/files/fields.h"
 #include "engine/files/result_file.h"
 
@@ -21,7 +22,7 @@ struct CsvText {
 /// A number for each line of a CSV file.
 struct CsvColumn {
   std::string heading;                             ///< with its unit, see with_unit()
-  std::function<double(std::size_t line)> number;  ///< SI, or in the heading's unit
+  std::function<Number(std::size_t line)> number;  ///< SI, or in the heading's unit
 };
 
 /// A CSV file: in the first line the names of the columns, then one line for each thing.
@@ -29,7 +30,7 @@ struct CsvTable {
   std::string name;                                ///< of the file, without ".csv"
   CsvText first;                                   ///< the first cell of a line
   std::size_t lines = 0;                           ///< without the names
-  std::vector<CsvColumn> columns = {};             ///< NaN is written as "NaN", a count with all its digits
+  std::vector<CsvColumn> columns = {};             ///< NaN is written as "NaN", a whole number with all its digits
   CsvText last = {};                               ///< a cell after the numbers; none where it has no heading
   std::function<bool(std::size_t line)> has = {};  ///< whether the file has this line; all where empty
   std::vector<CsvText> more = {};                  ///< cells between the first one and the numbers
@@ -65,7 +66,7 @@ template <class Thing, class Get = std::identity>
 CsvColumn list_column(std::string heading, const std::vector<Thing>& list, std::size_t first = 0, std::size_t step = 1,
                       Get get = {}) {
   return {std::move(heading), [&list, first, step, get](std::size_t line) {
-            return static_cast<double>(std::invoke(get, list[first + line * step]));
+            return to_number(std::invoke(get, list[first + line * step]));
           }};
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/base/contract.h"
+#include "engine/base/number.h"
 #include "engine/files/h5.h"
 
 /// One row for each dataset of a result file. From a row come the dataset with its unit, description and axes, its way
@@ -247,12 +248,12 @@ void restore(StoredAs<Value> from, Value& to) {
 
 /// An element as a number. Precondition: it is not a text.
 template <class Value>
-double number(const Value& value) {
+Number number(const Value& value) {
   if constexpr (std::is_same_v<Value, std::string>) {
     POESY_EXPECTS(false);
     return 0.0;
   } else {
-    return static_cast<double>(stored(value));
+    return to_number(stored(value));
   }
 }
 
@@ -386,12 +387,16 @@ void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   read_fields(file, group.path, group.fields, found);
 }
 
-/// The element of a row at this position, as a number. Precondition: it has one there.
+/// The element of a row at this position, as the file has it. Precondition: it is a number, and there.
 template <class Found>
-double number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
-  const auto get = [&](auto member) {
+Number number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
+  const auto get = [&](auto member) -> Number {
     const auto& value = found.*member;
-    if constexpr (detail::kIsList<std::remove_cvref_t<decltype(value)>>) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::vector<double>>) {
+      if (field.stored == Stored::as_whole_numbers) return static_cast<std::uint64_t>(value[at]);
+    }
+    if constexpr (detail::kIsList<Value>) {
       return detail::number(value[at]);
     } else {
       return detail::number(value);

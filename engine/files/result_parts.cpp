@@ -170,12 +170,12 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
 const std::vector<SolveNumber>& solve_numbers() {
   static const std::vector<SolveNumber> kNumbers = [] {
     std::vector<SolveNumber> list{
-        {"not_converged", [](const SolveCounts& cell) { return static_cast<double>(cell.not_converged()); }},
+        {"not_converged", [](const SolveCounts& cell) { return to_number(cell.not_converged()); }},
         {"iterations_mean", mean_iterations},
-        {"iterations_max", [](const SolveCounts& cell) { return static_cast<double>(cell.most_iterations); }}};
+        {"iterations_max", [](const SolveCounts& cell) { return to_number(cell.most_iterations); }}};
     for (std::size_t status = 0; status < kStatusNames.size(); ++status) {
       list.push_back({"solves_" + std::string(kStatusNames[status]),
-                      [status](const SolveCounts& cell) { return static_cast<double>(cell.by_status[status]); }});
+                      [status](const SolveCounts& cell) { return to_number(cell.by_status[status]); }});
     }
     return list;
   }();
@@ -317,7 +317,7 @@ void append_course_tables(CsvTables& tables, const StoredResult& result, const C
                    {words.csv_slot, [&, numbers](std::size_t line) { return result.varied[line / numbers]; }},
                    lines};
     table.columns.push_back(
-        {"samples", [&, numbers](std::size_t line) { return static_cast<double>(found.samples[line % numbers]); }});
+        {"samples", [&, numbers](std::size_t line) { return to_number(found.samples[line % numbers]); }});
     for (std::size_t k = 0; k < words.group.fields.size(); ++k) {
       const FieldRow<EstimateCourse>& field = words.group.fields[k];
       const std::string unit = csv_unit(field.unit, result, &response);

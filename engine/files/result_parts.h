@@ -79,7 +79,7 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes);
 /// A number that CSV says about how solves ended.
 struct SolveNumber {
   std::string name;                               ///< "not_converged", "iterations_mean", ..., "solves_STATUS"
-  std::function<double(const SolveCounts&)> get;  ///< of a cell
+  std::function<Number(const SolveCounts&)> get;  ///< of a cell
 };
 const std::vector<SolveNumber>& solve_numbers();  ///< All of them.
 /// Appends a column for each of them; line n is of the n-th cell.

@@ -198,7 +198,7 @@ Cell number_cell(double value, int digits) { return cell(number_text(value, digi
 
 Cell value_cell(double si, const NamedUnit& named, int digits) { return number_cell(si / display(named).si, digits); }
 
-Cell count_cell(std::uint64_t count) { return {count_text(count), static_cast<double>(count)}; }
+Cell count_cell(std::uint64_t count) { return {count_text(count), static_cast<double>(count), count}; }
 
 Cell percent_cell(double share) { return cell(percent_number(share), 100.0 * share); }
 

@@ -77,6 +77,11 @@ std::optional<Table> frames_table(const Model& model, const PoseSet& poses) {
   return table;
 }
 
+static std::string number_text(const Cell& cell) {
+  if (cell.whole) return std::to_string(*cell.whole);
+  return cell.value ? shortest(*cell.value) : "NaN";
+}
+
 std::string csv_of(const Table& table) {
   std::string text;
   for (const Column& column : table.columns) {
@@ -88,7 +93,7 @@ std::string csv_of(const Table& table) {
     for (std::size_t c = 0; c < row.size(); ++c) {
       const bool is_number = table.columns[c].kind == Column::Kind::number;
       text += c == 0 ? "" : ",";
-      text += !is_number ? row[c].text : row[c].value ? shortest(*row[c].value) : "NaN";
+      text += is_number ? number_text(row[c]) : row[c].text;
     }
     text += "\n";
   }

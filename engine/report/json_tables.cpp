@@ -27,6 +27,11 @@ static void to_json(Json& json, const Column& column) {
           {"kind", column.kind == Column::Kind::number ? "number" : "text"}};
 }
 
+static Json number_of(const Cell& cell) {
+  if (cell.whole) return *cell.whole;
+  return cell.value ? Json(*cell.value) : Json(nullptr);
+}
+
 static void to_json(Json& json, const Table& table) {
   Json rows = Json::array();
   Json shown = Json::array();
@@ -34,10 +39,9 @@ static void to_json(Json& json, const Table& table) {
     Json& values = rows.emplace_back(Json::object());
     Json& texts = shown.emplace_back(Json::array());
     for (std::size_t c = 0; c < row.size(); ++c) {
-      const auto& [text, value] = row[c];
       const bool number = table.columns[c].kind == Column::Kind::number;
-      values[table.columns[c].name] = !number ? Json(text) : value ? Json(*value) : Json(nullptr);
-      texts.push_back(text);
+      values[table.columns[c].name] = number ? number_of(row[c]) : Json(row[c].text);
+      texts.push_back(row[c].text);
     }
   }
   json = {{"name", table.name},      {"caption", table.caption},  {"columns", table.columns},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -30,6 +31,8 @@ struct Cell {
   std::string text;  ///< as shown, rounded; "-" where there is no number
   /// The number behind it in the unit shown, not rounded; none where there is no finite one.
   std::optional<double> value;
+  std::optional<std::uint64_t> whole =
+      std::nullopt;  ///< the same where it is a whole number: a double rounds large ones
 };
 
 /// A table as plain values. Terminal, report and JSON show the same cells, so they show the same digits.

@@ -292,7 +292,7 @@ CsvTable part_table(const Result& found) {
     table.columns.push_back(field_column(with_unit(name, si_units(parts)), field, found));
     table.columns.push_back({with_unit(name, display_units(parts)), [&found, &field](std::size_t n) {
                                const Unit& unit = display_unit(dimension_of(found.part_unit[n]));
-                               return number_at(field, found, n) / unit.si;
+                               return to_double(number_at(field, found, n)) / unit.si;
                              }});
   }
   for (const char* name : {"sigmas", "cost", "share", "mean_square_share", "bound", "coarser_yield"}) {
@@ -319,7 +319,7 @@ CsvTable limit_table(const StoredResult& result) {
                              }});
     table.columns.push_back({"largest_" + name + "_pose", [&found, &values](std::size_t r) {
                                const std::optional<std::size_t> pose = worst_pose(found, values, r);
-                               return pose ? static_cast<double>(*pose) : -1.0;
+                               return pose ? static_cast<std::int64_t>(*pose) : -1;
                              }});
   };
   add_largest("limit_use", found.limit_use);

@@ -195,7 +195,7 @@ void append_response_columns(CsvTable& table, const StoredResult& result, const 
 CsvTable curve_table(const StoredResult& result) {
   const std::size_t poses = result.poses.size();
   CsvTable table = subset_table(result, "coupling", poses);
-  table.columns.push_back({"pose", [poses](std::size_t line) { return static_cast<double>(line % poses); }});
+  table.columns.push_back({"pose", [poses](std::size_t line) { return to_number(line % poses); }});
   if (!result.time.empty()) {
     table.columns.push_back({"time [s]", [&, poses](std::size_t line) { return result.time[line % poses]; }});
   }

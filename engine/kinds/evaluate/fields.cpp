@@ -218,7 +218,7 @@ void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string
     return;
   }
   table.first = {labels.column, [&labels, row](std::size_t line) { return labels.names[row(line)]; }};
-  table.columns.push_back({heading, [number](std::size_t line) { return static_cast<double>(number(line)); }});
+  table.columns.push_back({heading, [number](std::size_t line) { return to_number(number(line)); }});
 }
 
 /// What a solve gave. at(line): its position, counted pose by pose.
@@ -227,8 +227,7 @@ void append_solve_columns(CsvTable& table, const StoredResult& result, const At&
   const StoredEvaluation& stored = evaluation_of(result);
   const EvaluationResult& found = stored.evaluation;
   const auto append = [&](const std::string& heading, auto number) {
-    table.columns.push_back(
-        {heading, [at, number](std::size_t line) { return static_cast<double>(number(at(line))); }});
+    table.columns.push_back({heading, [at, number](std::size_t line) { return to_number(number(at(line))); }});
   };
   if (!result.time.empty()) append("time [s]", [&](std::size_t k) { return result.time[k / found.samples]; });
   for (std::size_t r = 0; r < found.responses; ++r) {
@@ -256,7 +255,7 @@ CsvTable solve_table(const StoredResult& result) {
   set_first_cells(
       table, stored.labels, "pose", [&stored](std::size_t at) { return row_of_solve(stored, at); },
       [samples](std::size_t at) { return at / samples; });
-  table.columns.push_back({"sample", [samples](std::size_t at) { return static_cast<double>(at % samples); }});
+  table.columns.push_back({"sample", [samples](std::size_t at) { return to_number(at % samples); }});
   append_solve_columns(table, result, std::identity());
   return table;
 }
@@ -268,7 +267,7 @@ CsvTable case_solve_table(const StoredResult& result) {
   const std::size_t cases = stored.cases.size();
   CsvTable table{
       "evaluate", {"case", [&, poses](std::size_t line) { return stored.cases[line / poses]; }}, cases * poses};
-  table.columns.push_back({"pose", [poses](std::size_t line) { return static_cast<double>(line % poses); }});
+  table.columns.push_back({"pose", [poses](std::size_t line) { return to_number(line % poses); }});
   append_solve_columns(table, result, [poses, cases](std::size_t line) { return line % poses * cases + line / poses; });
   return table;
 }
@@ -308,7 +307,7 @@ CsvTable part_table(const StoredResult& result) {
   CsvTable table{"parts", {labels.column, [&](std::size_t row) { return labels.names[row]; }}, labels.names.size()};
   const auto append = [&](const std::string& heading, const std::vector<RowOutcome>& outcomes, auto member) {
     table.columns.push_back(
-        {heading, [outcomes, member](std::size_t row) { return static_cast<double>(outcomes[row].*member); }});
+        {heading, [outcomes, member](std::size_t row) { return to_number(outcomes[row].*member); }});
   };
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];

@@ -106,7 +106,7 @@ void append_index_columns(CsvTable& table, const StoredResult& result, const std
     const auto field = std::ranges::find(kIndices.fields, estimator + end, &FieldRow<Indices>::name);
     const auto number = [&result, &response, field, displayed, r](std::size_t p) {
       const double scale = displayed ? display(result.factors[p]).si / display(response).si : 1.0;
-      return number_at<Indices>(*field, sensitivity_of(result), r * result.factors.size() + p) * scale;
+      return to_double(number_at<Indices>(*field, sensitivity_of(result), r * result.factors.size() + p)) * scale;
     };
     const std::string name = response.name + estimator.substr(std::string_view("global").size()) + end;
     table.columns.push_back({with_unit(name, unit), number});

@@ -328,7 +328,7 @@ void append_tolerance_tables(CsvTables& tables, const StoredResult& result) {
   for (std::size_t r = 0; r < sensitivity_of(result).tolerance_reference.size(); ++r) {
     CsvTable table = lines_of_factors(result, "tolerances_" + result.responses[r].name);
     table.columns.push_back({"angular", [&](std::size_t p) {
-                               return dimension_of(result.factors[p].unit) == Dimension::angle ? 1.0 : 0.0;
+                               return to_number(dimension_of(result.factors[p].unit) == Dimension::angle);
                              }});
     table.columns.push_back(list_column("limb", sensitivity_of(result).factor_limb));
     const auto heading = [](const std::string& name, const std::string& unit, const char*) {

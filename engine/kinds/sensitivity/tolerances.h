@@ -52,8 +52,8 @@ ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t res
 ///
 ///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the
 ///     study) | index, index_ci_low, index_ci_high, mean_square_share, index_change (as
-///     /sensitivity/index_change), equal_effect, and with a limit limit_equal_effect and limit_equal_tolerance, in
-///     `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
+///     /sensitivity/index_change), with a limit limit_equal_effect and limit_equal_tolerance, and equal_effect, which
+///     keeps no limit, in `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
 ///
 /// The one table in which more than the first column is text. A tolerance is the standard deviation of a normal error,
 /// whatever the error was studied as; "inf" says that the error has no effect on its own. Returns the path. Throws

@@ -62,7 +62,8 @@ TEST(Fields, AGroupReadsBackAsItWasWritten) {
   EXPECT_EQ(read.counts, numbers.counts);
   EXPECT_EQ(read.marks, numbers.marks);
   EXPECT_EQ(read.text, "a");
-  EXPECT_EQ(number_at(kNumbers.fields[0], read, 4), 5.0);
+  EXPECT_EQ(number_at(kNumbers.fields[0], read, 4), Number(5.0));
+  EXPECT_EQ(number_at(kNumbers.fields[1], read, 2), Number(std::uint64_t{9})) << "stored as a whole number";
 }
 
 TEST(Fields, WhatAStudyDidNotComputeStaysEmpty) {

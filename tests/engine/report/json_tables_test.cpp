@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "engine/report/display.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
 namespace poesy {
@@ -37,6 +38,18 @@ TEST(JsonTables, HaveEveryCellAsValueAndAsText) {
       }
     }
   }
+}
+
+TEST(JsonTables, HaveWholeNumbersAsWholeNumbers) {
+  constexpr std::uint64_t kSeed = 5193415256785059083U;  // 2^62 and more; no double has this value
+  const Table table{.name = "t",
+                    .caption = "",
+                    .columns = {number_column("seed", "seed"), number_column("share", "share")},
+                    .rows = {{count_cell(kSeed), number_cell(2.0)}}};
+  const json row = json::parse(json_of(table))["rows"][0];
+  EXPECT_TRUE(row["seed"].is_number_unsigned());
+  EXPECT_EQ(row["seed"].get<std::uint64_t>(), kSeed);
+  EXPECT_TRUE(row["share"].is_number_float());
 }
 
 TEST(JsonTables, NameEachColumnOnce) {

@@ -226,7 +226,8 @@ TEST_F(AllocationFile, IsExportedWithItsWayAndItsCertificate) {
   EXPECT_TRUE(
       certificate.starts_with("decision,asked,conf_level,seed,machines,rejects,unsolved,most_rejects,yield,"
                               "ci_low,ci_high,lower_bound,design_machines,design_rejects,design_most\n"
-                              "kept,0.9973,0.95,"));
+                              "kept,0.9973,0.95,12345678901234567890,148000,360,2,366,"))
+      << "a seed has 64 bits, a double has 53";
   EXPECT_TRUE(csv("not_converged").starts_with("pose,not_converged,"));
   EXPECT_EQ(csv("failures"), "factor,pose,sample,status\nall,2,7,3\n");
   EXPECT_TRUE(csv("factors").starts_with("factor,sigma [rad or m],"));
