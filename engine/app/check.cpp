@@ -7,6 +7,7 @@
 
 #include "engine/app/command_line.h"
 #include "engine/app/progress.h"
+#include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/h5.h"
@@ -98,7 +99,7 @@ std::string cost_text(const Outlook& expected) {
 int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const SelectedPoses poses = select_poses(study.poses, *model);
+  const SelectedPoses poses = find_poses(study, *model, {}).value();
   print(resolved_text(study));
   const Outlook expected = outlook(study, *model, poses.poses);
   print(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)));

@@ -165,23 +165,38 @@ std::string live_line(const ProgressFacts& facts, std::size_t width) {
   return fits != from_most_to_least.end() ? *fits : std::string();
 }
 
-ProgressPrinter::ProgressPrinter(bool quiet)
-    : quiet_(quiet), live_(shows_live_lines(STDERR_FILENO)), next_(Clock::now() + interval()), rate_(Clock::now()) {}
+std::string search_line(const PoseSearch& search) {
+  return fmt::format("looking for poses: {} of {} found, {} candidates", search.found, search.wanted,
+                     search.candidates);
+}
 
-ProgressPrinter::~ProgressPrinter() { finish(); }
+ProgressLine::ProgressLine(bool quiet)
+    : quiet_(quiet), live_(shows_live_lines(STDERR_FILENO)), next_(Clock::now() + interval()) {}
 
-ProgressPrinter::Clock::duration ProgressPrinter::interval() const {
+ProgressLine::Clock::duration ProgressLine::interval() const {
   return live_ ? Clock::duration(kLive) : Clock::duration(kPlain);
 }
 
-void ProgressPrinter::finish() {
-  if (line_open_) std::fputs("\r\033[K", stderr);
-  line_open_ = false;
+void ProgressLine::finish() {
+  if (open_) std::fputs("\r\033[K", stderr);
+  open_ = false;
+}
+
+bool ProgressLine::is_due(Clock::time_point now) {
+  if (quiet_ || now < next_) return false;
+  next_ = now + interval();
+  return true;
+}
+
+void ProgressLine::write(const std::function<std::string()>& plain,
+                         const std::function<std::string(std::size_t)>& live) {
+  std::fputs((live_ ? "\r" + live(room()) + "\033[K" : plain() + "\n").c_str(), stderr);
+  std::fflush(stderr);
+  open_ = live_;
 }
 
 void ProgressPrinter::operator()(const Progress& progress) {
-  if (quiet_) return;
-  const Clock::time_point now = Clock::now();
+  const RecentRate::Clock::time_point now = RecentRate::Clock::now();
   const std::uint64_t done = progress.solves - progress.before;
   if (done < done_) {  // counted from the beginning again
     rate_ = RecentRate(now);
@@ -189,12 +204,9 @@ void ProgressPrinter::operator()(const Progress& progress) {
   }
   done_ = done;
   rate_.add(now, done);
-  if (now < next_) return;
-  next_ = now + interval();
+  if (!line_.is_due(now)) return;
   const ProgressFacts facts{progress, rate_.per_second(), stage_};
-  std::fputs((live_ ? "\r" + live_line(facts, room()) + "\033[K" : plain_line(facts) + "\n").c_str(), stderr);
-  std::fflush(stderr);
-  line_open_ = live_;
+  line_.write([&] { return plain_line(facts); }, [&](std::size_t width) { return live_line(facts, width); });
 }
 
 }  // namespace poesy::app

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <string>
 
 #include "engine/run/run_options.h"
+#include "engine/study/poses/pose_selection.h"
 
 namespace poesy::app {
 
@@ -56,28 +58,45 @@ std::string plain_line(const ProgressFacts& facts);
 /// then the details go, and the time left last of all.
 std::string live_line(const ProgressFacts& facts, std::size_t width);
 
-/// Writes progress to stderr: one live line on a terminal, as wide as that is now, a line every few seconds otherwise,
-/// nothing when quiet.
-class ProgressPrinter {
- public:
-  explicit ProgressPrinter(bool quiet);
-  ~ProgressPrinter();
-  ProgressPrinter(const ProgressPrinter&) = delete;
-  ProgressPrinter& operator=(const ProgressPrinter&) = delete;
+/// "looking for poses: 12 of 100 found, 34000 candidates"
+std::string search_line(const PoseSearch& search);
 
-  void operator()(const Progress& progress);
+/// A line on stderr that is written again and again: over itself on a terminal, as wide as that is now, below itself
+/// every few seconds otherwise, never when quiet.
+class ProgressLine {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit ProgressLine(bool quiet);
+  ~ProgressLine() { finish(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Whether it is time to write it, which is so once.
+  bool is_due(Clock::time_point now);
+  /// plain: the line; live(width): the same in at most so many columns.
+  void write(const std::function<std::string()>& plain, const std::function<std::string(std::size_t)>& live);
   /// Takes the live line away, so that other lines may follow.
   void finish();
 
  private:
-  using Clock = RecentRate::Clock;
-
   Clock::duration interval() const;
 
   bool quiet_;
   bool live_;
-  bool line_open_ = false;
+  bool open_ = false;
   Clock::time_point next_;
+};
+
+/// Writes the progress of solves.
+class ProgressPrinter {
+ public:
+  explicit ProgressPrinter(bool quiet) : line_(quiet), rate_(RecentRate::Clock::now()) {}
+
+  void operator()(const Progress& progress);
+
+ private:
+  ProgressLine line_;
   RecentRate rate_;
   std::uint64_t done_ = 0;
   std::size_t stage_ = 1;

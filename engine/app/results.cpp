@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/app/progress.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -144,6 +145,17 @@ RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solve
   facts.wall_seconds = wall_seconds;
   facts.solves = solves;
   return facts;
+}
+
+std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, const SearchOptions& options) {
+  ProgressLine line(options.quiet);
+  return select_poses(study.poses, model, [&](const PoseSearch& search) {
+    if (options.stop != nullptr && *options.stop) return false;
+    if (!line.is_due(ProgressLine::Clock::now())) return true;
+    const auto cut = [&](std::size_t width) { return search_line(search).substr(0, width); };
+    line.write([&] { return search_line(search); }, cut);
+    return true;
+  });
 }
 
 ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -18,6 +19,16 @@ namespace poesy::app {
 
 /// Facts about a run that has just ended, on this machine.
 RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves);
+
+/// How poses are looked for.
+struct SearchOptions {
+  bool quiet = false;                       ///< without progress
+  const std::atomic<bool>* stop = nullptr;  ///< set by somebody else to stop the search soon; may be null
+};
+
+/// The poses that the study selects, with progress on stderr; none where the search was stopped. Throws InputError as
+/// select_poses().
+std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, const SearchOptions& options);
 
 /// A study that is ready to run.
 struct Job {

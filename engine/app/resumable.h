@@ -36,7 +36,7 @@ struct ResumeOptions {
 };
 
 /// The checkpoints of one run of the program. A run without --resume refuses to start where there are some, because
-/// they are hours of somebody's work; with it, where there are none.
+/// they are hours of somebody's work; with it, where there are none but a result, which is complete.
 class ResumableRun {
  public:
   /// Throws InputError or FileError when the run must not start. resume_command: for messages.
@@ -49,11 +49,12 @@ class ResumableRun {
     if (!options.max_wall.empty()) end_ = Clock::now() + duration_of(parse_duration(options.max_wall, "--max-wall"));
     if (options.resume && !files_.exist()) {
       std::error_code ignored;
-      const bool done = std::filesystem::exists(result_path, ignored);
-      throw InputError({.file = files_.newer()},
-                       done ? "there is no such checkpoint, and " + result_path + " is there: that run is complete"
-                            : std::string("there is no such checkpoint to resume from"),
-                       "leave --resume out to run the study from the beginning");
+      if (std::filesystem::exists(result_path, ignored)) {
+        throw InputError({.file = files_.newer()},
+                         "there is no such checkpoint, and " + result_path + " is there: that run is complete",
+                         "leave --resume out to run the study from the beginning");
+      }
+      say(Message::note, "there is no checkpoint " + files_.newer() + " to resume from: starting from the beginning");
     }
     if (!options.resume && files_.exist()) {
       throw InputError({.file = files_.newer()}, "holds an earlier run of this result, finished or not",
@@ -93,6 +94,9 @@ class ResumableRun {
   /// That all parts of the run took since they were started.
   RunTime time() const { return {before_.wall + seconds_since(start_), before_.checkpoints + checkpoint_seconds_}; }
 
+  /// Whether an earlier run left a checkpoint.
+  bool continues() const { return files_.exist(); }
+
   /// Interrupts the run when its time is over.
   void check_time() const {
     if (end_ && Clock::now() >= *end_) interrupt();
@@ -127,7 +131,9 @@ class ResumableRun {
 
   /// The run was interrupted: says what to do.
   void explain_interruption() const {
-    say(Message::note, "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_);
+    say(Message::note,
+        files_.exist() ? "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_
+                       : "interrupted before anything was solved, start again with: " + command_);
   }
 
   /// The state of the checkpoint that was taken up is not one.

@@ -136,14 +136,15 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const Study study = study_of(options);
   start_threads(threads);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  const SelectedPoses poses = select_poses(study.poses, *model);
-  if (!team.agree(text_of(identity_of(study, poses.poses, options.shard)), threads, &stop)) {
+  const auto poses = find_poses(study, *model, {.quiet = true, .stop = &stop});
+  if (!poses) return team.leave(LeaveReason::stopped, "stopped while it looked for poses");
+  if (!team.agree(text_of(identity_of(study, poses->poses, options.shard)), threads, &stop)) {
     throw InputError({options.study}, "is not the same here as on rank 0, or its poses or poesy itself are not",
                      "give all ranks the same files and the same program");
   }
   Checkpoints not_kept;
   try {
-    run_study(study, *model, poses.poses,
+    run_study(study, *model, poses->poses,
               {.threads = threads,
                .stop = &stop,
                .checkpoints = &not_kept,
@@ -151,7 +152,7 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
                .keep_checkpoint = options.resume.keep_checkpoint,
                .team = &team});
   } catch (const std::bad_alloc&) {
-    throw too_little_for_run("", study, *model, poses.poses);
+    throw too_little_for_run("", study, *model, poses->poses);
   }
 }
 
@@ -177,6 +178,11 @@ std::vector<std::string> inputs_of(const RunCommandOptions& options, const Study
   return inputs;
 }
 
+int explained_interruption(const ResumableRun& resumable) {
+  resumable.explain_interruption();
+  return kInterrupted;
+}
+
 /// In one process, or as rank 0 of a team.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
@@ -188,9 +194,10 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   start_threads(threads);  // before there is a checkpoint, even of nothing
   ResumableRun resumable(options.resume, path, resume_command(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  SelectedPoses poses = select_poses(study.poses, *model);
-  if (options.shard) check_shard(*options.shard, study, poses.poses.size());
-  const CheckpointIdentity identity = identity_of(study, poses.poses, options.shard);
+  auto poses = find_poses(study, *model, {.quiet = options.quiet, .stop = &stop});
+  if (!poses) return explained_interruption(resumable);
+  if (options.shard) check_shard(*options.shard, study, poses->poses.size());
+  const CheckpointIdentity identity = identity_of(study, poses->poses, options.shard);
   resumable.start(identity, options.quiet);
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
@@ -199,7 +206,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   }
   Job job{.study = study,
           .model = *model,
-          .poses = std::move(poses),
+          .poses = *std::move(poses),
           .path = path,
           .options = {.threads = threads,
                       .stop = &stop,

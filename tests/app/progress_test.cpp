@@ -22,6 +22,11 @@ TEST(ReadableDuration, HasOneOrTwoParts) {
 
 ProgressFacts facts() { return {{.solves = 432000, .total = 1000000, .not_converged = 12}, 7100.0}; }
 
+TEST(SearchLine, SaysWhatIsFound) {
+  EXPECT_EQ(search_line({.found = 12, .wanted = 100, .candidates = 34000}),
+            "looking for poses: 12 of 100 found, 34000 candidates");
+}
+
 TEST(PlainLine, SaysEverything) {
   EXPECT_EQ(plain_line(facts()), "43.2 % done, 7.1 k solves/s, 12 not converged (0.0028 %), 1 min 20 s left");
 }

@@ -28,5 +28,16 @@ TEST(ResumableRun, CountsTheTimeOfEarlierParts) {
   EXPECT_GT(run.time().checkpoints, kBefore.checkpoints);
 }
 
+TEST(ResumableRun, StartsWhereThereIsNothingToResume) {
+  const test::TempFolder folder;
+  ResumeOptions options;
+  options.resume = true;
+  EXPECT_FALSE(ResumableRun(options, folder / "r.h5", "").continues());
+  folder.write("r.h5", "a result");
+  EXPECT_THROW(ResumableRun(options, folder / "r.h5", ""), InputError) << "that run is complete";
+  CheckpointFiles(folder / "r.h5").write({}, {}, {});
+  EXPECT_TRUE(ResumableRun(options, folder / "r.h5", "").continues());
+}
+
 }  // namespace
 }  // namespace poesy::app

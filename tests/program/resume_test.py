@@ -144,9 +144,19 @@ class Resume(ResumptionTest):
         self.assertEqual(self.generations(), before)
         self.assertFalse((self.folder / "out.h5").exists())
 
+    def test_resuming_what_never_began_begins_it(self):
+        """As of a job that was killed before its first checkpoint, and is started again by the same command."""
+        expected = self.undisturbed(SENSITIVITY)
+        done = self.resume()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(b"there is no checkpoint out.h5.part to resume from: starting from the beginning", done.stderr)
+        self.assertEqual(self.content_hash(), expected)
+        done = self.resume()
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"out.h5 is there: that run is complete; leave --resume out", done.stderr)
+
     def test_refusals(self):
         self.write("study.toml", SENSITIVITY)
-        self.refused("out.h5.part", "no such checkpoint", "leave --resume out")
         self.stop_early()
         for old, new, words in [
             ("seed = 5", "seed = 6", ["seed 5", "6"]),

@@ -276,6 +276,18 @@ class Interruption(FolderTest):
         self.assertTrue(Path("out.h5.part").exists())
         self.assertIn("--resume", raised.exception.__notes__[0])
 
+    def test_progress_of_a_search_for_poses(self):
+        fake = self.folder / "poesy"
+        fake.write_text("#!/bin/sh\necho 'looking for poses: 3 of 20 found, 34000 candidates' >&2\nexit 3\n")
+        fake.chmod(0o755)
+        self.addCleanup(setattr, poesy, "program", None)
+        poesy.program = fake
+        heard = []
+        with self.assertRaisesRegex(poesy.FileError, "said nothing"):
+            poesy.run("study.toml", progress=heard.append)
+        self.assertEqual([(one.share, one.stage, str(one)) for one in heard],
+                         [(0.0, 1, "looking for poses: 3 of 20 found, 34000 candidates")])
+
     def test_a_callback_that_fails_stops_the_program(self):
         fake = self.folder / "poesy"
         ends = "trap 'echo poesy: stopped >&2; exit 4' INT"

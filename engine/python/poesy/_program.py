@@ -21,7 +21,7 @@ DONE, TOO_MANY_NOT_CONVERGED, LIMIT_NOT_KEPT = 0, 5, 6
 _ERRORS: dict[int, type[Error]] = {1: InternalError, 2: StudyError, 3: FileError, 4: Interrupted}
 _BEGINNING = "poesy: "
 _WARNING = "poesy: warning: "
-_PROGRESS = re.compile(r"(?:stage (?P<stage>\d+): )?(?P<percent>[\d.]+) % done, ")
+_PROGRESS = re.compile(r"(?:stage (?P<stage>\d+): )?(?P<percent>[\d.]+) % done, |looking for poses: ")
 
 
 @dataclass(frozen=True)
@@ -31,11 +31,11 @@ class Progress:
     Attributes
     ----------
     share
-        Of the stage's solves that are done, 0 to 1.
+        Of the stage's solves that are done, 0 to 1; 0 while the program looks for poses.
     stage
         Counts from 1; only studies that solve in several stages get beyond it.
     text
-        The program's line: share done, solves a second, samples that did not converge, time left.
+        The program's line: poses found while it looks for them, then share done, solves a second, samples that did not converge, time left.
     """
 
     share: float
@@ -155,7 +155,7 @@ def _follow(process: subprocess.Popen[str], done: Finished, on_progress: Callabl
         if progress is None:
             done.take(line, stacklevel=4)  # that of run() and evaluate()
         elif on_progress is not None:
-            on_progress(Progress(float(progress["percent"]) / 100.0, int(progress["stage"] or 1), line))
+            on_progress(Progress(float(progress["percent"] or 0.0) / 100.0, int(progress["stage"] or 1), line))
     process.wait()
 
 

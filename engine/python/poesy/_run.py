@@ -46,7 +46,7 @@ def run(
     progress
         Called every five seconds of a long run with a `Progress`; ``True`` prints it.
     resume
-        Continues a run of the same study to the same output that was stopped.
+        Continues a run of the same study to the same output that was stopped; starts it where it kept no checkpoint.
 
     Returns
     -------

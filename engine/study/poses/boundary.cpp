@@ -204,15 +204,15 @@ bool some_coincide(const Workspace& workspace, const PoseCollector& collector) {
 
 }  // namespace
 
-SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model) {
+SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
   const Workspace workspace(selection, model);
-  PoseCollector collector(workspace);
+  PoseCollector collector(workspace, selection.count, watch);
   const std::size_t coordinates = workspace.coordinates();
   Vector uniforms(coordinates == 1 ? 1 : uniforms_for(coordinates) + uniforms_for(coordinates - 1) + 1);
   SobolSequence sequence(uniforms.size());
   const std::size_t most = std::max<std::size_t>(20'000, 100 * selection.count);
   for (std::size_t line = 0; collector.kept() < selection.count; ++line) {
-    if (line == most) collector.fail(selection.count, selection.place);
+    if (line == most || collector.in_vain()) collector.fail(selection.place);
     sequence.next(uniforms);
     if (const auto chord = chord_of(line_of(uniforms, coordinates))) keep_crossings(*chord, workspace, collector);
   }

@@ -71,11 +71,13 @@ struct PointRefusal {
   std::string note;                                 ///< behind what to do
 };
 
-/// The poses of all points of a table. Throws InputError for the first that the mechanism cannot take.
-SelectedPoses poses_of(const PoseTable& table, const PointRefusal& refusal, const Model& model, double max_condition) {
+/// The poses of all points of a table. Throws InputError for the first that the mechanism cannot take, SearchStopped.
+SelectedPoses poses_of(const PoseTable& table, const PointRefusal& refusal, const Model& model, double max_condition,
+                       const WatchSearch& watch) {
   SelectedPoses selected;
   std::vector<double> values;
   for (std::size_t m = 0; m < table.points.size(); ++m) {
+    tell(watch, {.found = m, .wanted = table.points.size(), .candidates = m});
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
       throw InputError(refusal.place(m), refusal.point(m) + why, remedy + refusal.note);
     };
@@ -129,7 +131,7 @@ TimedPoints sampled(const Trajectory& trajectory, const ModelDescription& model)
   return found;
 }
 
-SelectedPoses file_poses(const PoseSelection& selection, const Model& model) {
+SelectedPoses file_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
   const PoseTable& table = selection.from_file;
   const auto& names = coordinates(model.description(), table.chart);
   const auto point = [&](std::size_t m) {
@@ -141,10 +143,10 @@ SelectedPoses file_poses(const PoseSelection& selection, const Model& model) {
                    .if_unreachable = "correct or remove this pose",
                    .if_singular = "remove this pose",
                    .note = kSi},
-                  model, selection.max_condition);
+                  model, selection.max_condition, watch);
 }
 
-SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& model) {
+SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
   POESY_EXPECTS(selection.trajectory.has_value());
   const Trajectory& trajectory = *selection.trajectory;
   TimedPoints points = sampled(trajectory, model.description());
@@ -162,7 +164,7 @@ SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& mode
        .if_unreachable = elsewhere + ", or change the geometry",
        .if_singular = elsewhere + " away from singular poses, or raise max_condition",
        .note = trajectory.curve ? "" : kSi},
-      model, selection.max_condition);
+      model, selection.max_condition, watch);
   selected.time = std::move(points.time);
   return selected;
 }

@@ -13,15 +13,15 @@ namespace {
 /// No more candidates than this are tried for a number of poses.
 std::size_t most_candidates(std::size_t count) { return std::max<std::size_t>(100'000, 100 * count); }
 
-SelectedPoses interior_poses(const PoseSelection& selection, const Model& model) {
+SelectedPoses interior_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
   const Workspace workspace(selection, model);
-  PoseCollector collector(workspace);
+  PoseCollector collector(workspace, selection.count, watch);
   SobolSequence sequence(workspace.coordinates());
   std::vector<double> scaled(workspace.coordinates());
   std::vector<double> pose(workspace.coordinates());
   const std::size_t most = most_candidates(selection.count);
   for (std::size_t candidate = 0; collector.kept() < selection.count; ++candidate) {
-    if (candidate == most) collector.fail(selection.count, selection.place);
+    if (candidate == most || collector.in_vain()) collector.fail(selection.place);
     sequence.next(scaled);
     workspace.unscale(scaled, pose);
     if (const auto condition = collector.test(pose)) collector.keep(pose, *condition);
@@ -29,9 +29,8 @@ SelectedPoses interior_poses(const PoseSelection& selection, const Model& model)
   return std::move(collector).result();
 }
 
-/// All feasible points of a grid, the last coordinate fastest.
-PoseCollector grid_points(const Workspace& workspace, std::span<const std::size_t> counts) {
-  PoseCollector collector(workspace);
+/// All feasible points of a grid, the last coordinate fastest. collector: an empty one.
+PoseCollector grid_points(PoseCollector collector, std::span<const std::size_t> counts, const Workspace& workspace) {
   std::vector<double> scaled(counts.size());
   std::vector<double> pose(counts.size());
   const std::size_t points = std::accumulate(counts.begin(), counts.end(), std::size_t{1}, std::multiplies());
@@ -54,43 +53,63 @@ std::size_t grid_size(std::size_t number, std::size_t coordinates, std::size_t m
   return size;
 }
 
-SelectedPoses grid_poses(const PoseSelection& selection, const Model& model) {
+SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
   const Workspace workspace(selection, model);
   if (!selection.grid_counts.empty()) {
-    PoseCollector points = grid_points(workspace, selection.grid_counts);
-    if (points.kept() == 0) points.fail(selection.count, selection.place);
+    PoseCollector points =
+        grid_points(PoseCollector(workspace, selection.count, watch), selection.grid_counts, workspace);
+    if (points.kept() == 0) points.fail(selection.place);
     return std::move(points).result();
   }
   const std::size_t most = most_candidates(selection.count);
   std::size_t number = 1;
   while (grid_size(number, workspace.coordinates(), most) < selection.count) ++number;
+  std::size_t tested = 0;  // in all grids, as the next one
+  std::size_t feasible = 0;
   for (;; ++number) {
-    PoseCollector points = grid_points(workspace, std::vector<std::size_t>(workspace.coordinates(), number));
+    PoseCollector points = grid_points(PoseCollector(workspace, selection.count, watch, tested),
+                                       std::vector<std::size_t>(workspace.coordinates(), number), workspace);
+    tested += points.tested();
+    feasible += points.kept();
     if (points.kept() >= selection.count) {
       points.thin_to(selection.count);
       return std::move(points).result();
     }
-    if (grid_size(number + 1, workspace.coordinates(), most) > most) points.fail(selection.count, selection.place);
+    const bool scarce = tested >= 2 * kMostInVain && 4 * feasible * most < selection.count * tested;
+    if (scarce || grid_size(number + 1, workspace.coordinates(), most) > most) points.fail(selection.place);
   }
+}
+
+SelectedPoses watched_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch) {
+  using Select = PoseSelection::Select;
+  switch (selection.select) {
+    case Select::interior:
+      return interior_poses(selection, model, watch);
+    case Select::boundary:
+      return boundary_poses(selection, model, watch);
+    case Select::grid:
+      return grid_poses(selection, model, watch);
+    case Select::trajectory:
+      return trajectory_poses(selection, model, watch);
+    case Select::file:
+      break;
+  }
+  return file_poses(selection, model, watch);
 }
 
 }  // namespace
 
-SelectedPoses select_poses(const PoseSelection& selection, const Model& model) {
-  using Select = PoseSelection::Select;
-  switch (selection.select) {
-    case Select::interior:
-      return interior_poses(selection, model);
-    case Select::boundary:
-      return boundary_poses(selection, model);
-    case Select::grid:
-      return grid_poses(selection, model);
-    case Select::trajectory:
-      return trajectory_poses(selection, model);
-    case Select::file:
-      break;
+std::optional<SelectedPoses> select_poses(const PoseSelection& selection, const Model& model,
+                                          const WatchSearch& watch) {
+  try {
+    return watched_poses(selection, model, watch);
+  } catch (const SearchStopped&) {
+    return std::nullopt;
   }
-  return file_poses(selection, model);
+}
+
+SelectedPoses select_poses(const PoseSelection& selection, const Model& model) {
+  return watched_poses(selection, model, {});
 }
 
 }  // namespace poesy

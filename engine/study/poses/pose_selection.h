@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -121,6 +122,16 @@ struct SelectedPoses {
   std::vector<double> time;             ///< [M] s, ascending, of a trajectory; else empty
 };
 
+/// How far a search for poses is.
+struct PoseSearch {
+  std::size_t found;       ///< poses so far
+  std::size_t wanted;      ///< poses
+  std::size_t candidates;  ///< poses that were looked at
+};
+
+/// Called after each pose that a search looks at; false stops the search.
+using WatchSearch = std::function<bool(const PoseSearch&)>;
+
 /// The study's poses. Deterministic. A pose of the box is feasible when the model reaches it, every limited joint stays
 /// in its range, and its condition number is at most max_condition.
 ///
@@ -133,9 +144,14 @@ struct SelectedPoses {
 /// - trajectory: the poses of sampled(), in the order of time.
 ///
 /// Throws InputError at the place of the limit that rejected most, or of the selection, when the box gives fewer poses
-/// than wanted (interior and grid: after max(100 000, 100 count) candidates); at count_place when poses of the boundary
-/// coincide to rounding; for the first pose of a file or a trajectory that does not exist, is out of reach or above
-/// max_condition: at its line where the poses are a file's own, else at the study's trajectory.
+/// than wanted: interior after max(100 000, 100 count) candidates, or 50 000 in a row of which none is feasible;
+/// boundary likewise, see boundary_poses(); grid when so many candidates are more than a grid may have, or when, after
+/// 100 000 in all grids, their feasible share would give less than a quarter of the poses there; at count_place when
+/// poses of the boundary coincide to rounding; for the first pose of a file or a trajectory that does not exist, is out
+/// of reach or above max_condition: at its line where the poses are a file's own, else at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
+
+/// The same; none where the search was stopped. watch: may be empty.
+std::optional<SelectedPoses> select_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch);
 
 }  // namespace poesy

@@ -38,9 +38,15 @@ Judgement Workspace::judge(std::span<const double> pose) const {
           "move the workspace away from singular poses, or raise max_condition"};
 }
 
+void tell(const WatchSearch& watch, const PoseSearch& search) {
+  if (watch && !watch(search)) throw SearchStopped();
+}
+
 std::optional<double> PoseCollector::test(std::span<const double> pose) {
   const Judgement judgement = workspace_->judge(pose);
   ++tested_;
+  ++in_vain_;
+  tell(*watch_, {std::min(kept(), wanted_), wanted_, before_ + tested_});
   if (judgement.feasible()) return judgement.condition;
   Count& count = rejected_[judgement.reason];
   ++count.count;
@@ -51,6 +57,7 @@ std::optional<double> PoseCollector::test(std::span<const double> pose) {
 void PoseCollector::keep(std::span<const double> pose, double condition) {
   values_.insert(values_.end(), pose.begin(), pose.end());
   condition_.push_back(condition);
+  in_vain_ = 0;
 }
 
 std::span<const double> PoseCollector::pose(std::size_t m) const {
@@ -73,10 +80,11 @@ void PoseCollector::thin_to(std::size_t count) {
   keep_first(count);
 }
 
-void PoseCollector::fail(std::size_t wanted, const Place& workspace_place) const {
+void PoseCollector::fail(const Place& workspace_place) const {
   std::string problem =
       kept() == 0 ? "the workspace is empty"
-                  : "the workspace gives only " + std::to_string(kept()) + " of " + std::to_string(wanted) + " poses";
+                  : "the workspace gives only " + std::to_string(kept()) + " of " + std::to_string(wanted_) + " poses";
+  if (kept() > 0 && in_vain()) problem += ", the last " + std::to_string(in_vain_) + " candidates none";
   const auto most = std::ranges::max_element(rejected_, {}, [](const auto& reason) { return reason.second.count; });
   if (most == rejected_.end()) throw InputError(workspace_place, problem, "make the workspace wider");
   const auto& [reason, rejected] = *most;

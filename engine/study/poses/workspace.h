@@ -39,22 +39,36 @@ class Workspace {
   const Model* model_;
 };
 
+/// Thrown where a search is stopped; select_poses() catches it.
+struct SearchStopped {};
+
+/// Calls watch, if it is not empty. Throws SearchStopped.
+void tell(const WatchSearch& watch, const PoseSearch& search);
+
+/// After so many candidates in a row of which none is feasible a search gives up.
+inline constexpr std::size_t kMostInVain = 50'000;
+
 /// Collects feasible poses and counts the others by their reason.
 class PoseCollector {
  public:
-  explicit PoseCollector(const Workspace& workspace) : workspace_(&workspace) {}  ///< Refers to it.
+  /// Refers to both. wanted: poses; before: candidates that the search has looked at already.
+  PoseCollector(const Workspace& workspace, std::size_t wanted, const WatchSearch& watch, std::size_t before = 0)
+      : workspace_(&workspace), watch_(&watch), wanted_(wanted), before_(before) {}
 
-  /// The condition number of a feasible pose; none for others, which it counts.
+  /// The condition number of a feasible pose; none for others, which it counts. Throws SearchStopped.
   std::optional<double> test(std::span<const double> pose);
   void keep(std::span<const double> pose, double condition);  ///< Keeps a feasible pose.
 
   std::size_t kept() const { return condition_.size(); }  ///< How many feasible poses it has.
-  std::span<const double> pose(std::size_t m) const;      ///< The m-th that was kept, SI.
-  void keep_first(std::size_t count);                     ///< Drops all but the first `count`.
+  std::size_t tested() const { return tested_; }          ///< How many candidates it has looked at.
+  /// Whether the last kMostInVain candidates gave no pose.
+  bool in_vain() const { return in_vain_ >= kMostInVain; }
+  std::span<const double> pose(std::size_t m) const;  ///< The m-th that was kept, SI.
+  void keep_first(std::size_t count);                 ///< Drops all but the first `count`.
   /// Keeps `count` of the poses, evenly spread over their order. Precondition: count <= kept().
   void thin_to(std::size_t count);
   /// Throws the InputError of a box that gives fewer poses than wanted.
-  [[noreturn]] void fail(std::size_t wanted, const Place& workspace_place) const;
+  [[noreturn]] void fail(const Place& workspace_place) const;
   SelectedPoses result() &&;  ///< The poses, and what was rejected, most frequent first.
 
  private:
@@ -64,17 +78,21 @@ class PoseCollector {
   };
 
   const Workspace* workspace_;
+  const WatchSearch* watch_;
+  std::size_t wanted_;
+  std::size_t before_;
   std::vector<double> values_;
   std::vector<double> condition_;
   std::map<std::string, Count> rejected_;
   std::size_t tested_ = 0;
+  std::size_t in_vain_ = 0;  ///< candidates since the last pose
 };
 
 /// The poses of a file; see select_poses().
-SelectedPoses file_poses(const PoseSelection& selection, const Model& model);
+SelectedPoses file_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch = {});
 
 /// The poses along a trajectory, with their times; see select_poses().
-SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& model);
+SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch = {});
 
 /// The first `count` poses of a sequence on the boundary of the feasible set, its faces on the box included, uniform by
 /// area. Area is that in coordinates scaled to the box (each range is [0, 1]), because metres and radians have no
@@ -88,7 +106,8 @@ SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& mode
 /// shorter than a scan interval can be missed, and a piece shorter than rounding is left out. Among rejected poses the
 /// points of the scans count.
 ///
-/// Throws InputError when max(20 000, 100 count) lines do not give enough, or when poses coincide to rounding.
-SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model);
+/// Throws InputError when max(20 000, 100 count) lines do not give enough, or kMostInVain points of the scans in a row
+/// give no pose, or when poses coincide to rounding.
+SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch = {});
 
 }  // namespace poesy

@@ -306,5 +306,69 @@ TEST(ScarceWorkspace, SaysHowManyPosesWereFound) {
       {"the workspace gives only 98 of 200 poses (out of reach: outside the region: 99902 of 100000 candidates)"});
 }
 
+class VainSearch : public testing::TestWithParam<Select> {};
+
+TEST_P(VainSearch, EndsAfterSomeTenThousandCandidates) {
+  const test::RegionModel nowhere([](std::span<const double>) { return false; });
+  std::size_t candidates = 0;
+  EXPECT_THROW(select_poses(test::unit_cube(GetParam(), 20, 3), nowhere,
+                            [&](const PoseSearch& search) {
+                              candidates = search.candidates;
+                              return true;
+                            }),
+               InputError);
+  EXPECT_GE(candidates, 50'000u);
+  EXPECT_LE(candidates, 120'000u);
+}
+
+TEST_P(VainSearch, IsTold) {
+  const PoseSelection selection = test::fake_box(GetParam(), 20);
+  PoseSearch last{};
+  std::size_t calls = 0;
+  const auto poses = select_poses(selection, kModel, [&](const PoseSearch& search) {
+    EXPECT_EQ(search.wanted, 20u);
+    EXPECT_EQ(search.candidates, ++calls);
+    last = search;
+    return true;
+  });
+  ASSERT_TRUE(poses);
+  EXPECT_EQ(values_of(poses->poses), values_of(select_poses(selection, kModel).poses));
+  EXPECT_LE(last.found, 20u);
+}
+
+TEST_P(VainSearch, StopsAtOnce) {
+  const PoseSelection selection = test::fake_box(GetParam(), 2000);
+  std::size_t calls = 0;
+  EXPECT_FALSE(select_poses(selection, kModel, [&](const PoseSearch&) { return ++calls < 7; }));
+  EXPECT_EQ(calls, 7u);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, VainSearch, testing::Values(Select::interior, Select::boundary, Select::grid),
+                         test::named({"Interior", "Boundary", "Grid"}));
+
+TEST(ScarceWorkspace, SaysThatTheLastCandidatesGaveNone) {
+  std::size_t tested = 0;
+  const test::RegionModel few([&](std::span<const double>) { return ++tested <= 3; });
+  test::expect_input_error([&] { select_poses(test::unit_cube(Select::interior, 20, 3), few); }, {"study.toml", 12, 13},
+                           {"the workspace gives only 3 of 20 poses, the last 50000 candidates none "
+                            "(out of reach: outside the region: 50000 of 50003 candidates)"});
+}
+
+TEST(ScarceWorkspace, GivesItsPosesAllTheSame) {
+  const test::RegionModel corner([](std::span<const double> pose) { return std::ranges::max(pose) < 0.1; });
+  EXPECT_EQ(select_poses(test::unit_cube(Select::interior, 90, 3), corner).poses.size(), 90u);
+  EXPECT_EQ(select_poses(test::unit_cube(Select::boundary, 90, 3), corner).poses.size(), 90u);
+  EXPECT_EQ(select_poses(test::unit_cube(Select::grid, 60, 3), corner).poses.size(), 60u);
+}
+
+TEST(FilePoses, AreWatchedToo) {
+  PoseSelection selection;
+  selection.select = Select::file;
+  selection.from_file.points = PoseSet(3, {-0.2, 0.0, 0.0, -0.25, 0.1, 0.0});
+  std::size_t calls = 0;
+  EXPECT_TRUE(select_poses(selection, kModel, [&](const PoseSearch&) { return ++calls < 3; }));
+  EXPECT_FALSE(select_poses(selection, kModel, [&](const PoseSearch&) { return false; }));
+}
+
 }  // namespace
 }  // namespace poesy

@@ -1,0 +1,68 @@
+"""A search for poses that takes long: it says how far it is, hears signals, leaves nothing behind, and gives up in time."""
+
+import re
+import signal
+import subprocess
+
+from poesy_program import GALLERY, PROGRAM, STUDY, ProgramTest, main
+
+LINE = re.compile(r"looking for poses: 0 of 10000000 found, \d+ candidates")
+# Ten million points of a grid, none of which keeps the limit; a mechanism from a file takes a while for each.
+NOWHERE = f"""\
+format = "poesy-study"
+version = 1
+mechanism.file = "{GALLERY / "3-rrr/3-rrr.toml"}"
+[poses]
+select = "grid"
+count = {{ x = 1000, y = 100, phi = 100 }}
+limits = {{ q_1_1 = ["300 deg", "310 deg"] }}
+[analysis]
+factors = ["delta_1_1_x"]
+samples = 10
+"""
+# What no pose keeps.
+IN_VAIN = STUDY.replace("count = 6", 'select = "interior"\ncount = 20\nlimits = { q_1_3 = ["5 m", "6 m"] }')
+
+
+class PoseSearch(ProgramTest):
+    def stopped(self, number, *options):
+        """What a run says that is stopped when it has said once how far it is."""
+        command = [PROGRAM, "run", "study.toml", "-o", "out.h5", *options]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
+            first = run.stderr.readline()
+            self.assertRegex(first, LINE)
+            run.send_signal(number)
+            _, messages = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 4, messages)
+        return messages
+
+    def test_signals_stop_it(self):
+        self.write("study.toml", NOWHERE)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number.name):
+                messages = self.stopped(number)
+                self.assertIn("interrupted before anything was solved, start again with: ", messages)
+                self.assertEqual([path.name for path in self.folder.iterdir()], ["study.toml"])
+
+    def test_the_command_that_starts_again_starts(self):
+        self.write("study.toml", NOWHERE)
+        command = self.stopped(signal.SIGINT).split("start again with: ")[1]
+        self.write("study.toml", STUDY)
+        done = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(b"there is no checkpoint out.h5.part to resume from: starting from the beginning", done.stderr)
+
+    def test_it_gives_up(self):
+        for select in ("interior", "boundary", "grid"):
+            self.write("study.toml", IN_VAIN.replace('"interior"', f'"{select}"'))
+            for command in ("check", "run"):
+                with self.subTest(select=select, command=command):
+                    done = self.poesy(command, "study.toml")
+                    message = done.stderr.decode().splitlines()[-1]
+                    self.assertEqual(done.returncode, 2, message)
+                    found = re.search(r"the workspace is empty \(q_1_3 below 5000 mm: (\d+) of (\d+) candidates\)", message)
+                    self.assertTrue(found, message)
+                    self.assertLess(int(found[2]), 60000)
+
+
+main()
