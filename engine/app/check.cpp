@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/app/command_line.h"
+#include "engine/app/expected_time.h"
 #include "engine/app/progress.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
@@ -68,14 +69,9 @@ double composing_seconds() {
   return seconds_since(start) / static_cast<double>(kNumbers * sizeof(double));
 }
 
-/// Tries pieces of the study on this machine, for about a quarter of a second.
-std::string time_text(const Outlook& expected, std::size_t threads) {
-  const double shared = measured_seconds(expected.shared, 0.25) / static_cast<double>(threads);
-  const double by_one =
-      measured_seconds(expected.by_one, 0.0) + static_cast<double>(expected.memory.file) * composing_seconds();
-  const std::string most = "about " + readable_duration(shared + by_one);
-  if (expected.least == 1.0) return most;
-  return "at least about " + readable_duration(expected.least * shared + by_one) + ", at most " + most;
+std::string time_text(const ExpectedTime& time) {
+  const std::string most = "about " + readable_duration(time.most);
+  return time.least == time.most ? most : "at least about " + readable_duration(time.least) + ", at most " + most;
 }
 
 /// Bytes that this process has had in memory at its peak: with the model, the poses and a solver, as a run has them.
@@ -88,12 +84,12 @@ double own_peak() {
 
 std::string cost_text(const Outlook& expected) {
   const std::size_t threads = resolved_threads(0);
-  const std::string time = time_text(expected, threads);  // first: a solver has its memory then
+  const ExpectedTime time = expected_time(expected, threads, 0.25);  // first: a solver has its memory then
   return fmt::format(
       "# memory: about {:.3g} MB at the peak, when the result file of about {:.3g} MB is written\n"
-      "# time: {} on {} threads of this machine\n",
+      "# time: {} on {} threads of this machine{}\n",
       (own_peak() + static_cast<double>(expected.memory.peak())) / 1e6, static_cast<double>(expected.memory.file) / 1e6,
-      time, threads);
+      time_text(time), threads, time.least > kLongRun ? "; poesy run asks before it starts, or wants --yes" : "");
 }
 
 int check(const std::string& path) {
@@ -118,6 +114,13 @@ int check(const std::string& path) {
 }
 
 }  // namespace
+
+ExpectedTime expected_time(const Outlook& expected, std::size_t threads, double seconds) {
+  const double shared = measured_seconds(expected.shared, seconds) / static_cast<double>(threads);
+  const double by_one =
+      measured_seconds(expected.by_one, 0.0) + static_cast<double>(expected.memory.file) * composing_seconds();
+  return {.least = expected.least * shared + by_one, .most = shared + by_one};
+}
 
 Command& add_check(Command& program) {
   const auto [command, study] =

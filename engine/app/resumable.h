@@ -97,6 +97,9 @@ class ResumableRun {
   /// Whether an earlier run left a checkpoint.
   bool continues() const { return files_.exist(); }
 
+  /// Whether the run ends by itself within so many seconds.
+  bool ends_within(double seconds) const { return end_ && *end_ <= Clock::now() + duration_of(seconds); }
+
   /// Interrupts the run when its time is over.
   void check_time() const {
     if (end_ && Clock::now() >= *end_) interrupt();

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/app/command_line.h"
+#include "engine/app/expected_time.h"
 #include "engine/app/mpi_ranks.h"
 #include "engine/app/progress.h"
 #include "engine/app/results.h"
@@ -52,6 +53,7 @@ struct RunCommandOptions {
   std::optional<std::uint64_t> seed;
   std::optional<Shard> shard;
   bool quiet = false;
+  bool yes = false;  ///< a long run is not asked about
   ResumeOptions resume;
   std::string program;  ///< as it was called
 };
@@ -70,6 +72,7 @@ std::string resume_command(const RunCommandOptions& options, const Team* team) {
   if (!options.resume.max_wall.empty()) add("--max-wall", options.resume.max_wall);
   if (options.resume.keep_checkpoint) words.emplace_back("--keep-checkpoint");
   if (options.quiet) words.emplace_back("--quiet");
+  if (options.yes) words.emplace_back("--yes");
   words.emplace_back("--resume");
   return shell_command(words);
 }
@@ -183,6 +186,36 @@ int explained_interruption(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
+/// Seconds that the run takes at least by all these threads; 0 where it is short at a glance, because most are.
+double seconds_of_long_run(const RunCommandOptions& options, const Study& study, const Model& model,
+                           const PoseSet& poses, std::size_t threads) {
+  // A solve takes far less than a second, and all but a few of them are draws of these samples.
+  constexpr double kFewDraws = 1e7;
+  constexpr double kShort = kLongRun / 4.0;  // what one piece says may be off
+  constexpr double kTrial = 0.25;            // s
+  const double draws = static_cast<double>(study.analysis.samples) * static_cast<double>(poses.size()) *
+                       static_cast<double>(study.analysis.factors.size());
+  if (draws < kFewDraws) return 0.0;
+  try {
+    const Outlook expected = outlook(study, model, poses);
+    const double shards = options.shard ? static_cast<double>(options.shard->count) : 1.0;
+    const auto seconds = [&](double trial) { return expected_time(expected, threads, trial).least / shards; };
+    return seconds(0.0) < kShort ? 0.0 : seconds(kTrial);
+  } catch (const std::bad_alloc&) {
+    return 0.0;  // the run itself says how much it needs
+  }
+}
+
+/// Asks on a terminal whether a run of so many seconds is meant. Throws InputError without a yes; returns on an
+/// interrupt.
+void ask_about(double seconds, const RunCommandOptions& options, std::size_t threads, const std::atomic<bool>& stop) {
+  if (seconds <= kLongRun) return;
+  const std::string text =
+      fmt::format("this run takes about {} on {} threads of this machine", readable_duration(seconds), threads);
+  if (asked(text + "; start it?").value_or(false) || stop) return;
+  throw InputError({options.study}, text, "give --yes to start it all the same, or ask for fewer samples or poses");
+}
+
 /// In one process, or as rank 0 of a team.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
@@ -198,6 +231,11 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   if (!poses) return explained_interruption(resumable);
   if (options.shard) check_shard(*options.shard, study, poses->poses.size());
   const CheckpointIdentity identity = identity_of(study, poses->poses, options.shard);
+  if (!options.yes && !resumable.continues() && !resumable.ends_within(kLongRun)) {
+    const std::size_t all_threads = threads * (team != nullptr ? team->ranks().size() : 1);
+    ask_about(seconds_of_long_run(options, study, *model, poses->poses, all_threads), options, all_threads, stop);
+    if (stop) return explained_interruption(resumable);
+  }
   resumable.start(identity, options.quiet);
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
@@ -260,6 +298,7 @@ Command& add_run(Command& program) {
       ->type_name("K/N")
       ->group("On a cluster");
   command.add_flag("--quiet", options.quiet, "no progress");
+  command.add_flag("--yes", options.yes, "start a run of more than a day without a question");
   command.notes = {"Ctrl-C or SIGTERM stops a run so that --resume continues it; Ctrl-C again stops at once."};
   command.examples = {
       {"gives study.h5", "poesy run study.toml"},

@@ -1,6 +1,8 @@
 #include "engine/app/terminal.h"
 
+#include <poll.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -67,6 +69,23 @@ void print(const std::string& text) { std::fputs(printable_lines(text).c_str(), 
 
 void say(Message kind, const std::string& text) {
   std::fputs((beginning(kind) + " " + printable_line(text) + "\n").c_str(), stderr);
+}
+
+std::optional<bool> asked(const std::string& question) {
+  constexpr int kLook = 100;  // ms between looks for an interrupt
+  if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0) return std::nullopt;
+  std::fputs(("poesy: " + printable_line(question) + " [y/N] ").c_str(), stderr);
+  std::fflush(stderr);
+  pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+  while (!interrupted) {
+    if (::poll(&input, 1, kLook) <= 0) continue;
+    char first = '\n';
+    if (::read(STDIN_FILENO, &first, 1) < 1) return false;
+    tcflush(STDIN_FILENO, TCIFLUSH);  // what is left of the line
+    return first == 'y' || first == 'Y';
+  }
+  std::fputs("\n", stderr);
+  return std::nullopt;
 }
 
 int complain(const std::string& problem, ExitCode code) {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 /// What the program prints and says, and how it ends.
@@ -40,6 +41,10 @@ enum class Message { note, warning, error };
 /// One line on stderr, as print(): "poesy: TEXT", "poesy: warning: TEXT". What is before the text of a warning or error
 /// is coloured where stderr is a terminal that shows live lines, unless NO_COLOR is set (https://no-color.org).
 void say(Message kind, const std::string& text);
+
+/// Asks on stderr, where stdin and stderr are a terminal, and waits for a line that begins with "y", or another one.
+/// None where there is no terminal, or on an interrupt (catch_interrupts).
+std::optional<bool> asked(const std::string& question);
 
 /// Says what is wrong on stderr; the code. Under a launcher the first process alone speaks, because all have the same
 /// to say.

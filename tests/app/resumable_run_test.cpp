@@ -39,5 +39,14 @@ TEST(ResumableRun, StartsWhereThereIsNothingToResume) {
   EXPECT_TRUE(ResumableRun(options, folder / "r.h5", "").continues());
 }
 
+TEST(ResumableRun, KnowsWhetherItEndsByItself) {
+  const test::TempFolder folder;
+  ResumeOptions options;
+  EXPECT_FALSE(ResumableRun(options, folder / "a.h5", "").ends_within(1e9));
+  options.max_wall = "2 h";
+  EXPECT_TRUE(ResumableRun(options, folder / "b.h5", "").ends_within(7201.0));
+  EXPECT_FALSE(ResumableRun(options, folder / "c.h5", "").ends_within(7000.0));
+}
+
 }  // namespace
 }  // namespace poesy::app

@@ -15,7 +15,7 @@ class Interruption(ProgramTest):
             with self.subTest(number.name):
                 self.write("study.toml", LONG_STUDY)
                 result = self.write("out.h5", AN_OLDER_RESULT)
-                with subprocess.Popen([PROGRAM, "run", "study.toml", "-o", "out.h5"], cwd=self.folder, stderr=subprocess.PIPE) as run:
+                with subprocess.Popen([PROGRAM, "run", "study.toml", "-o", "out.h5", "--yes"], cwd=self.folder, stderr=subprocess.PIPE) as run:
                     time.sleep(1.0)
                     run.send_signal(number)
                     _, message = run.communicate(timeout=60)

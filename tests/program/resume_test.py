@@ -53,7 +53,7 @@ class Resume(ResumptionTest):
 
     def test_second_interrupt_stops_at_once(self):
         self.write("study.toml", SENSITIVITY.replace("12300", "100000000"))
-        command = [PROGRAM, "run", "study.toml", "-o", "out.h5"]
+        command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--yes"]
         for first in (signal.SIGINT, signal.SIGTERM):
             # Both signals are pending when the program is next scheduled, or the first one ends it in time.
             with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE) as run:
@@ -68,7 +68,7 @@ class Resume(ResumptionTest):
 
     def test_one_run_of_a_result_at_a_time(self):
         self.write("study.toml", SENSITIVITY.replace("12300", "100000000"))
-        command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "0.01 s"]
+        command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "0.01 s", "--yes"]
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE) as run:
             while not self.newer.exists():
                 time.sleep(0.01)

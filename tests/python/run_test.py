@@ -18,6 +18,7 @@ from package import HOPELESS, PROGRAM, ROOT, STUDIES, FolderTest, main, poesy, r
 
 RPS3 = (ROOT / "tests" / "data" / "mechanisms" / "rps3.toml").read_text()
 LONG = study({"kind": "sensitivity", "samples": 10**8}, poses=50)
+LONGER_THAN_A_DAY = study({"kind": "sensitivity", "samples": 10**13})
 
 
 class Runs(FolderTest):
@@ -269,12 +270,23 @@ class Interruption(FolderTest):
             raise RuntimeError("enough")
 
         with self.assertRaisesRegex(RuntimeError, "enough") as raised:
-            poesy.run(LONG, output="out.h5", progress=listen)
+            poesy.run(LONG, output="out.h5", progress=listen, yes=True)
         self.assertEqual(len(heard), 1)
         self.assertTrue(0.0 <= heard[0].share < 0.5 and heard[0].stage == 1, heard)
         self.assertRegex(str(heard[0]), r"^[\d.]+ % done, .* solves/s, \d+ not converged.*, .* left$")
         self.assertTrue(Path("out.h5.part").exists())
         self.assertIn("--resume", raised.exception.__notes__[0])
+
+    def test_a_run_of_more_than_a_day_wants_a_yes(self):
+        with self.assertRaisesRegex(poesy.StudyError, "this run takes about .* d.*--yes"):
+            poesy.run(LONGER_THAN_A_DAY)
+
+        def enough(_):
+            raise RuntimeError("enough")
+
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            poesy.run(LONGER_THAN_A_DAY, output="out.h5", progress=enough, yes=True)
+        self.assertTrue(Path("out.h5.part").exists())
 
     def test_progress_of_a_search_for_poses(self):
         fake = self.folder / "poesy"

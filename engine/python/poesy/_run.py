@@ -26,6 +26,7 @@ def run(
     seed: int | None = None,
     progress: Callable[[Progress], object] | bool | None = None,
     resume: bool = False,
+    yes: bool = False,
 ) -> Result:
     """Runs a study to its end and gives its result.
 
@@ -47,6 +48,8 @@ def run(
         Called every five seconds of a long run with a `Progress`; ``True`` prints it.
     resume
         Continues a run of the same study to the same output that was stopped; starts it where it kept no checkpoint.
+    yes
+        Starts a run that is going to take more than a day; without it that is a `StudyError`.
 
     Returns
     -------
@@ -77,7 +80,7 @@ def run(
         else:
             path = Path(study)
         result_path = Path(output) if output is not None else Path(folder or ".") / "study.h5"
-        words = _arguments(path, result_path, threads, seed, progress, resume)
+        words = _arguments(path, result_path, threads, seed, progress, resume, yes)
         done = _program.start(words, on_progress=_listener(progress), unnamed=str(path) if text else None)
         result = _result_of(done, result_path)
     except (Interrupted, KeyboardInterrupt):
@@ -107,6 +110,7 @@ def _arguments(
     seed: int | None,
     progress: Callable[[Progress], object] | bool | None,
     resume: bool,
+    yes: bool,
 ) -> list[str]:
     words = ["run", str(study), "-o", str(result)]
     for option, value in (("--threads", threads), ("--seed", seed)):
@@ -114,6 +118,8 @@ def _arguments(
             words += [option, str(value)]
     if resume:
         words.append("--resume")
+    if yes:
+        words.append("--yes")
     if not progress:
         words.append("--quiet")
     return words
