@@ -43,6 +43,7 @@ std::string line_of_names(const CsvTable& table) {
   for (const CsvText& more : table.more) text += "," + csv_cell(more.heading);
   for (const CsvColumn& column : table.columns) text += "," + csv_cell(column.heading);
   if (!table.last.heading.empty()) text += "," + csv_cell(table.last.heading);
+  for (const CsvText& one : table.rest) text += "," + csv_cell(one.heading);
   return text + "\n";
 }
 
@@ -51,6 +52,7 @@ std::string line_text(const CsvTable& table, std::size_t line) {
   for (const CsvText& more : table.more) text += "," + csv_cell(more.text(line));
   for (const CsvColumn& column : table.columns) text += "," + cell(column.number(line));
   if (!table.last.heading.empty()) text += "," + csv_cell(table.last.text(line));
+  for (const CsvText& one : table.rest) text += "," + csv_cell(one.text(line));
   return text + "\n";
 }
 

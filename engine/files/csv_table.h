@@ -34,6 +34,7 @@ struct CsvTable {
   CsvText last = {};                               ///< a cell after the numbers; none where it has no heading
   std::function<bool(std::size_t line)> has = {};  ///< whether the file has this line; all where empty
   std::vector<CsvText> more = {};                  ///< cells between the first one and the numbers
+  std::vector<CsvText> rest = {};                  ///< cells after the last one
 };
 
 /// Several, in the order in which they are listed.

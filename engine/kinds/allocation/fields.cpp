@@ -44,6 +44,9 @@ const Group<Result> kAllocation{
      {"share", &Result::share, kByPart, "1", "Share of the cost of all parts; NaN likewise"},
      {"mean_square_share", &Result::mean_square_share, kByPart, "1",
       "Share of what all parts add to the mean square under the tightest limit"},
+     {"error_mean_square_share", &Result::error_mean_square_share, kByFactor, "1",
+      "The same of each error, whose sum over a part is that of the part; NaN for an error of no part",
+      Presence::where_computed},
      {"bound", &Result::bound, kByPart, "1",
       "0: T is between its bounds; 1: at the lower one; 2: at the upper one; 3: there is no choice"},
      {"chosen", &Result::chosen, kByPart, "1", "Process or grade of the part; empty where there is none"},
@@ -286,6 +289,8 @@ CsvTable part_table(const Result& found) {
                  found.parts(),
                  {},
                  {"unit", [&found](std::size_t n) { return found.part_unit[n]; }}};
+  table.rest = {{"chosen", [&found](std::size_t n) { return found.chosen[n].empty() ? "none" : found.chosen[n]; }},
+                {"errors", [&found](std::size_t n) { return found.part_members[n]; }}};
   const std::vector<NamedUnit> parts = named_parts(found);
   for (const char* name : {"tolerance", "sigma", "shift"}) {
     const FieldRow<Result>& field = row(name);
@@ -298,6 +303,14 @@ CsvTable part_table(const Result& found) {
   for (const char* name : {"sigmas", "cost", "share", "mean_square_share", "bound", "coarser_yield"}) {
     table.columns.push_back(field_column(name, row(name), found));
   }
+  return table;
+}
+
+/// The share of each error.
+CsvTable error_table(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  CsvTable table = lines_of_factors(result, "allocation_errors");
+  table.columns.push_back(list_column("mean_square_share", found.error_mean_square_share));
   return table;
 }
 
@@ -394,6 +407,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
   const Result& found = allocation_of(result);
   tables.push_back(sigma_table(result));
   tables.push_back(part_table(found));
+  if (!found.error_mean_square_share.empty()) tables.push_back(error_table(result));
   tables.push_back(limit_table(result));
   tables.push_back(pose_use_table(result));
   tables.push_back(stage_table(found));

@@ -229,9 +229,11 @@ StudyWords words(const StoredResult& result) {
 ErrorShares error_shares(const StoredResult& result) {
   const Result& found = allocation_of(result);
   if (found.parts() == 0 || found.poses == 0) return {};
+  const bool by_error = !found.error_mean_square_share.empty();
   ErrorShares shares{.what = "share of the mean square under the tightest limit",
-                     .values = divided_shares(result, found.part_members, found.mean_square_share),
-                     .joined = "part",
+                     .values = by_error ? found.error_mean_square_share
+                                        : divided_shares(result, found.part_members, found.mean_square_share),
+                     .joined = by_error ? "" : "part",
                      .pose_what = "the use of the limits",
                      .at_poses = std::vector<double>(found.poses, kNaN)};
   for (std::size_t at = 0; at < found.limit_use.size(); ++at) {

@@ -119,6 +119,8 @@ struct AllocationResult {
   std::vector<double> cost;               ///< [N] of each part; NaN for an aim without costs
   std::vector<double> share;              ///< [N] of the cost of all
   std::vector<double> mean_square_share;  ///< [N] of what all parts add to the mean square under the tightest limit
+  /// [P] The same of each error, whose sum over a part is that of the part; NaN for an error of no part.
+  std::vector<double> error_mean_square_share;
   std::vector<std::uint8_t> bound;  ///< [N] AtBound: 0 between its bounds, 1 at the lower, 2 at the upper, 3 no choice
   std::vector<std::string> chosen;  ///< [N] name of the process or grade; empty where there is none
   /// [N] predicted share of the design's machines that are good if this part alone is made 5 % coarser, or the next

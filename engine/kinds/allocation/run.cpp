@@ -50,10 +50,25 @@ YieldVerdict verdict_of(const Trial& trial, double yield, double confidence) {
   return verdict;
 }
 
+/// Divides a part's share of the mean square among its errors, which have one variance, by their slopes under this
+/// limit.
+void divide_share(const ToleranceSearch& search, std::size_t limit, std::size_t part, AllocationResult& found) {
+  const std::span<const std::size_t> errors = search.programme().errors(part);
+  const std::span<const double> slopes =
+      std::span(search.squares().slope).subspan(limit * found.error_mean_square_share.size());
+  double sum = 0.0;
+  for (const std::size_t p : errors) sum += slopes[p];
+  for (const std::size_t p : errors) {
+    const double within = sum > 0.0 ? slopes[p] / sum : 1.0 / static_cast<double>(errors.size());
+    found.error_mean_square_share[p] = within * found.mean_square_share[part];
+  }
+}
+
 /// What is said of each part.
 void add_parts(const ToleranceSearch& search, const Study& study, AllocationResult& found) {
   const ToleranceProgramme& programme = search.programme();
   const TolerancePoint& point = search.found();
+  found.error_mean_square_share.assign(study.analysis.factors.size(), kNaN);
   const std::size_t parts = programme.size();
   const std::size_t tightest = worst_use(search.limits(), point.tolerance).limit;
   const double need = search.limits().need(tightest, point.tolerance);
@@ -75,6 +90,7 @@ void add_parts(const ToleranceSearch& search, const Study& study, AllocationResu
     found.cost.push_back(std::isnan(point.cost) ? kNaN : programme.cost(i, tolerance, point.process[i]));
     found.share.push_back(found.cost.back() / point.cost);
     found.mean_square_share.push_back(search.limits().row(tightest)[i] * tolerance * tolerance / need);
+    divide_share(search, tightest, i, found);
     found.bound.push_back(static_cast<std::uint8_t>(programme.at_bound(i, tolerance, point.process[i])));
     found.chosen.push_back(programme.chosen_name(i, point.process[i]));
   }

@@ -55,6 +55,7 @@ class ToleranceSearch {
   /// The last programme under limits on root mean squares, for what its prices say.
   const ToleranceLimits& limits() const { return limits_; }
   const ChosenTolerances& chosen() const { return chosen_; }  ///< Of that programme.
+  const MeanSquares& squares() const { return squares_; }     ///< By which these limits were found.
   double share() const { return share_; }                     ///< Of each limit that its root mean square may take.
   /// The cost of another share, or of wider limits, by the last programme; NaN where it has none.
   double cost_at(double share, double wider) const;

@@ -417,6 +417,7 @@ class Example {
     result.cost = {2.5, 7.0, 0.5};
     result.share = {0.25, 0.7, 0.05};
     result.mean_square_share = {0.5, 0.375, 0.125};
+    result.error_mean_square_share = {0.375, 0.45};  // of the hinge, and of two bars
     result.bound = {0, 2, 3};
     result.chosen = {"", "grinding", "IT7"};
     result.coarser_yield = {0.9965, 0.9971, kNone};

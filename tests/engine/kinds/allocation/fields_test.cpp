@@ -85,9 +85,9 @@ TEST_F(AllocationFile, IsReadBackAsItWas) {
   using Result = AllocationResult;
   for (const auto member :
        {&Result::tolerance, &Result::sigma, &Result::sigmas, &Result::shift, &Result::cost, &Result::share,
-        &Result::mean_square_share, &Result::coarser_yield, &Result::multiplier, &Result::stage_tolerance,
-        &Result::limit_use, &Result::limit, &Result::saving, &Result::curve_yield, &Result::curve_yield_cost,
-        &Result::curve_factor, &Result::curve_factor_cost}) {
+        &Result::mean_square_share, &Result::error_mean_square_share, &Result::coarser_yield, &Result::multiplier,
+        &Result::stage_tolerance, &Result::limit_use, &Result::limit, &Result::saving, &Result::curve_yield,
+        &Result::curve_yield_cost, &Result::curve_factor, &Result::curve_factor_cost}) {
     expect_same(found.*member, written_.*member);
   }
   for (const auto member :
@@ -168,7 +168,7 @@ TEST_F(AllocationFile, SaysWhatFollowsForOtherPrograms) {
 }
 
 TEST_F(AllocationFile, RefusesWrongShapes) {
-  const std::set<std::string> axes{"part", "response", "pose", "stage", "curve_yield", "curve_factor"};
+  const std::set<std::string> axes{"part", "factor", "response", "pose", "stage", "curve_yield", "curve_factor"};
   std::vector<std::string> datasets{"/allocation/certificate_study"};
   {
     const h5::File file = h5::File::open(path_);
@@ -201,12 +201,16 @@ TEST_F(AllocationFile, RefusesWhatNoCertificateHas) {
 }
 
 TEST_F(AllocationFile, IsExportedAsTheDrawingHasIt) {
-  EXPECT_EQ(csv("allocation"),
-            "part,tolerance [m or rad],tolerance [mm or deg],sigma [m or rad],sigma [mm or deg],shift [m or rad],"
-            "shift [mm or deg],sigmas,cost,share,mean_square_share,bound,coarser_yield,unit\n"
-            "bars,1.23456789e-05,0.0123456789,4.11522e-06,0.004115219999999999,0,0,3,2.5,0.25,0.5,0,0.9965,m\n"
-            "hinge,0.0017453292519943296,0.1,0.00058177641733144,0.03333333333333315,0,0,3,7,0.7,0.375,2,0.9971,rad\n"
-            "plate,2.5e-05,0.025,7.5e-06,0.0075,2.5e-06,0.0025,3,0.5,0.05,0.125,3,NaN,m\n");
+  EXPECT_EQ(
+      csv("allocation"),
+      "part,tolerance [m or rad],tolerance [mm or deg],sigma [m or rad],sigma [mm or deg],shift [m or rad],"
+      "shift [mm or deg],sigmas,cost,share,mean_square_share,bound,coarser_yield,unit,chosen,errors\n"
+      "bars,1.23456789e-05,0.0123456789,4.11522e-06,0.004115219999999999,0,0,3,2.5,0.25,0.5,0,0.9965,m,none,delta_1 "
+      "delta_2\n"
+      "hinge,0.0017453292519943296,0.1,0.00058177641733144,0.03333333333333315,0,0,3,7,0.7,0.375,2,0.9971,rad,"
+      "grinding,epsilon_1\n"
+      "plate,2.5e-05,0.025,7.5e-06,0.0075,2.5e-06,0.0025,3,0.5,0.05,0.125,3,NaN,m,IT7,delta_3\n");
+  EXPECT_EQ(csv("allocation_errors"), "factor,mean_square_share\nepsilon_1,0.375\ndelta_1,0.45\n");
   EXPECT_EQ(csv("allocation_limits"),
             "response,limit,saving,largest_limit_use,largest_limit_use_pose,largest_multiplier,"
             "largest_multiplier_pose,unit\nlinear_deformation,3e-05,0.09,1,3,200000,2,m\n");

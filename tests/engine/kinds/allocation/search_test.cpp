@@ -93,6 +93,28 @@ FunctionStudy clutch_study(std::size_t machines, std::vector<std::size_t> fixed 
   return study;
 }
 
+// Of y = 3 a + 4 b + 0 c + 5 d the errors a, b and c have one variance: their squares add as 9 : 16 : 0.
+TEST(SharesWithinAPart, AreThoseOfItsErrors) {
+  const auto linear = [](std::span<const double> x, double, std::span<double> y) {
+    y[0] = 3.0 * x[0] + 4.0 * x[1] + 5.0 * x[3] + x[4];
+  };
+  FunctionStudy study(5, linear, 0.05, 2000);
+  AllocatedPart joined = part_of(0, reciprocal(0.0, 1.0));
+  joined.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
+  study.asked().parts = {joined, part_of(3, reciprocal(0.0, 2.0))};
+  study.study.errors.by_factor[4] = Distribution::normal(1e-4);  // of no part
+  const AllocationResult found = study.find();
+  const std::vector<double>& shares = found.error_mean_square_share;
+  ASSERT_EQ(shares.size(), 5u);
+  const double of_part = found.mean_square_share[0];
+  EXPECT_GT(of_part, 0.1);
+  EXPECT_NEAR(shares[0], of_part * 9.0 / 25.0, 1e-9);
+  EXPECT_NEAR(shares[1], of_part * 16.0 / 25.0, 1e-9);
+  EXPECT_NEAR(shares[2], 0.0, 1e-12);
+  EXPECT_NEAR(shares[3], found.mean_square_share[1], 1e-12);
+  EXPECT_TRUE(std::isnan(shares[4]));
+}
+
 TEST(OverrunningClutch, HasTheLeastCostOfTheLiterature) {
   const AllocationResult found = clutch_study(148'000).find();
   const AllocationStage& linear = found.stages.front();
