@@ -89,6 +89,7 @@ void PoseCollector::fail(const Place& workspace_place) const {
   if (most == rejected_.end()) throw InputError(workspace_place, problem, "make the workspace wider");
   const auto& [reason, rejected] = *most;
   problem += " (" + reason + ": " + std::to_string(rejected.count) + " of " + std::to_string(tested_) + " candidates)";
+  if (kept() == 0) problem += ", or so small that none of these is in it";
   throw InputError(*rejected.last.place, problem, rejected.last.remedy);
 }
 
