@@ -194,11 +194,16 @@ std::string unknown_command(const std::string& word, const Command& program) {
   return fmt::format("no command '{}'; {}{}", printable(word), nearest_text(word, known), see_help(program));
 }
 
-std::optional<std::string> empty_value(const Command& program) {
+std::optional<std::string> impossible_value(const Command& program) {
   for (const CLI::App* command : program.get_subcommands()) {
     for (const CLI::Option* option : command->get_options()) {
-      if (std::ranges::count(option->results(), std::string()) == 0) continue;
-      return fmt::format("{} is empty; write {}, {}", shown_name(*option), heading(*option), see_help(*command));
+      for (const std::string& value : option->results()) {
+        const bool is_name = !option->get_positional() && value.starts_with("--");
+        if (!value.empty() && !is_name) continue;
+        const std::string problem =
+            value.empty() ? "is empty" : "has the option '" + printable(value) + "' for its value";
+        return fmt::format("{} {}; write {}, {}", shown_name(*option), problem, heading(*option), see_help(*command));
+      }
     }
   }
   return std::nullopt;

@@ -112,8 +112,9 @@ std::string command_line_problem(const Command& program, const CLI::ParseError& 
 std::string unknown_command(const std::string& word, const Command& program);
 
 /// What is wrong with a command line that gives an option or an argument an empty text, as a script does whose variable
-/// is not set; none where none does. Precondition: CLI11 took the command line.
-std::optional<std::string> empty_value(const Command& program);
+/// is not set, or an option another option for its value; none where none does. Precondition: CLI11 took the command
+/// line.
+std::optional<std::string> impossible_value(const Command& program);
 
 /// Whether the command line begins with a command that does not exist.
 bool has_unknown_command(const Command& program);

@@ -75,7 +75,7 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return complain(command_line_problem(program, error), kBadInput);
   }
-  if (const auto problem = empty_value(program)) return complain(*problem, kBadInput);
+  if (const auto problem = impossible_value(program)) return complain(*problem, kBadInput);
   const auto& called = dynamic_cast<const Command&>(*program.get_subcommands().front());
   if (called.get_group() != kAboutTheProgram) expect_memory();
   // Nothing else knows how to share its work; under a launcher the first process does it.

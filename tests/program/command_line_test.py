@@ -48,6 +48,19 @@ class CommandLine(ProgramTest):
                 self.assertIn("is empty", message)
         self.assertEqual([path.name for path in self.folder.iterdir()], ["study.toml"])
 
+    def test_options_in_the_place_of_values(self):
+        self.write("study.toml", STUDY)
+        self.refuses("run study.toml -o --quiet", "--output has the option '--quiet' for its value; write -o, --output RESULT.h5, "
+                                                  "see poesy run --help")
+        self.refuses("run study.toml --output=--quiet", "--output has the option '--quiet' for its value; write -o, --output "
+                                                        "RESULT.h5, see poesy run --help")
+        done = self.poesy("export", "r.h5", "-d", "--quiet")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"--directory has the option '--quiet' for its value", done.stderr)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["study.toml"])
+        self.write("--study.toml", STUDY)  # a file of such a name is one
+        self.succeeds("check", "--", "--study.toml")
+
     def test_too_many_results(self):
         self.refuses("report a b c", "poesy report takes at most 2 results, not 3; write poesy report RESULT.h5 ... [options], "
                                      "see poesy report --help")
