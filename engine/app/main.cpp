@@ -1,7 +1,11 @@
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "engine/app/command_line.h"
 #include "engine/app/mpi_ranks.h"
@@ -59,6 +63,24 @@ void expect_memory() {
   throw error;
 }
 
+/// Libraries do not say that this limit was met.
+void expect_open_files() {
+  constexpr std::size_t kLeast = 16;
+  std::vector<int> files;
+  bool few = false;
+  while (!few && files.size() < kLeast) {
+    const int file = ::open("/", O_PATH | O_CLOEXEC);
+    if (file >= 0) files.push_back(file);
+    few = file < 0;
+  }
+  for (const int file : files) ::close(file);
+  if (!few) return;
+  throw FileError("",
+                  "this takes " + std::to_string(kLeast) + " open files at once, and this process may have " +
+                      std::to_string(files.size()) + " more",
+                  "raise the limit on open files (ulimit -n)");
+}
+
 int parse_and_run(int argc, char** argv) {
   Command program("", "which manufacturing and assembly errors of a parallel robot matter, how much, and where");
   describe_program(program);
@@ -77,7 +99,10 @@ int parse_and_run(int argc, char** argv) {
   }
   if (const auto problem = impossible_value(program)) return complain(*problem, kBadInput);
   const auto& called = dynamic_cast<const Command&>(*program.get_subcommands().front());
-  if (called.get_group() != kAboutTheProgram) expect_memory();
+  if (called.get_group() != kAboutTheProgram) {
+    expect_memory();
+    expect_open_files();
+  }
   // Nothing else knows how to share its work; under a launcher the first process does it.
   if (called.get_name() != "run" && !is_first_process()) return kDone;
   return called.action();

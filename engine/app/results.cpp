@@ -227,6 +227,7 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
   };
   for (const std::string_view end : kBeside) {
     const std::string file = beside(end);
+    check_name_length(file);
     std::error_code ignored;  // a path that cannot be looked at is none of these
     for (const std::string& input : inputs) {
       if (!std::filesystem::equivalent(file, input, ignored)) continue;

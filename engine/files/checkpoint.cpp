@@ -257,7 +257,7 @@ Checkpoint decode_checkpoint(std::span<const std::byte> file) {
 }
 
 CheckpointFiles::CheckpointFiles(const std::string& result_path)
-    : result_(result_path), newer_(result_path + ".part"), older_(newer_ + ".1") {}
+    : result_(result_path), newer_(result_path + ".part"), older_(result_path + std::string(kOlderEnd)) {}
 
 bool CheckpointFiles::exist() const { return stands(newer_) || stands(older_); }
 

@@ -90,6 +90,9 @@ struct FoundCheckpoint {
   std::string passed_over;  ///< why the newer one could not be taken; empty when this is the newer one
 };
 
+/// What the name of the older checkpoint adds to that of the result; no file of a run adds more.
+inline constexpr std::string_view kOlderEnd = ".part.1";
+
 /// The checkpoints of an unfinished run beside its result: RESULT.h5.part, and the one before it as RESULT.h5.part.1.
 /// Each has its own digest and comes into being whole: written under a temporary name (FileWriter) and synced; then the
 /// newer one gets the older one's name as well, and the new one is renamed to take its place. Once there is a

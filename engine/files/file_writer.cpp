@@ -202,11 +202,23 @@ std::string check_output_path(const std::string& named, const OutputKind& kind, 
   if (!fs::path(path).has_filename()) {
     throw InputError({.file = path}, "names no file", fmt::format("name a file for the {}", kind.name));
   }
+  check_name_length(path + std::string(kind.longest_end));
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     const std::string reason = std::generic_category().message(errno);
     throw FileError(path, "cannot be written into its folder (" + reason + ")", "choose another folder");
   }
   return path;
+}
+
+void check_name_length(const std::string& path) {
+  const std::size_t bytes = fs::path(path).filename().string().size() + kTemporary.size() + 2 * kRandomBytes;
+  const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
+  if (most < 0 || bytes <= static_cast<std::size_t>(most)) return;  // where it is not known, the system will say
+  throw InputError({.file = path},
+                   fmt::format("has too long a name: with what is added while it is written it takes {} bytes, and "
+                               "names in its folder have {} at the most",
+                               bytes, most),
+                   fmt::format("give a name with -o that is shorter by {}", bytes - static_cast<std::size_t>(most)));
 }
 
 bool fill_randomly(std::span<std::byte> bytes) { return ::getentropy(bytes.data(), bytes.size()) == 0; }
@@ -333,6 +345,12 @@ std::string FileWriter::remedy(int error) const {
       return "raise the limit on file sizes" + (size == 0 ? "" : " to " + std::to_string(size) + " bytes") +
              " or choose another folder";
     }
+    case ENAMETOOLONG:
+      return "give it a shorter name, or choose a folder with a shorter path";
+    case EMFILE:
+      return "raise the limit on open files (ulimit -n)";
+    case ENFILE:
+      return "end other programs, which have too many files open";
     case ENOENT:
     case ENOTDIR:
       return "make the folder or choose another one";

@@ -16,7 +16,11 @@ namespace poesy {
 struct OutputKind {
   std::string_view name;                             ///< "result"
   bool (*may_be_replaced)(const std::string& path);  ///< whether a file that stands there is of this kind, or empty
+  std::string_view longest_end = {};                 ///< of the names of files beside it that begin with its own
 };
+
+/// Throws InputError where a FileWriter can give no file this name, because its folder takes none that is so long.
+void check_name_length(const std::string& path);
 
 /// Whether a plain file has this mark in its first 64 KiB.
 bool has_mark(const std::string& path, std::string_view mark);
@@ -26,7 +30,7 @@ bool is_marked(const std::string& path, std::string_view mark);
 /// Gives the path to write to: where a symbolic link leads, whether there is a file yet or not; else the path itself.
 /// A link that another user made is refused. Throws when no such file can come into being there, before anything is
 /// computed: InputError when its folder does not exist, when what stands there is one of the inputs or must not be
-/// replaced, or for links in a circle, FileError when the folder cannot be written.
+/// replaced, for a name that is too long, or for links in a circle, FileError when the folder cannot be written.
 std::string check_output_path(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs);
 
 bool stands(const std::string& path);  ///< Whether anything has this name, a link that leads nowhere too.

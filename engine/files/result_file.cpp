@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/base/error.h"
+#include "engine/files/checkpoint.h"
 #include "engine/files/content_hash.h"
 #include "engine/files/file_writer.h"
 #include "engine/files/output_folder.h"
@@ -298,7 +299,7 @@ void write_result(const std::string& path, std::string_view name, const FileKind
 }
 
 std::string check_result_path(const std::string& path, std::span<const std::string> inputs) {
-  return check_output_path(path, {"result", may_be_replaced}, inputs);
+  return check_output_path(path, {"result", may_be_replaced, kOlderEnd}, inputs);
 }
 
 StoredResult read_result(const std::string& path, FindFileKind find_kind) {

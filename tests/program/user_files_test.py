@@ -148,5 +148,44 @@ class UserFiles(ProgramTest):
         self.ends(0, "run", "a.toml", "--quiet")
         self.assertTrue(theirs.exists())
 
+    def test_names_that_are_too_long(self):
+        """Looked at before anything is computed, with all that a run adds to the name of its result."""
+        most = os.pathconf(self.folder, "PC_NAME_MAX")
+        for study, added in ((QUICK, ".part.1"), (ALLOCATION, "_certificate_mechanism.toml")):
+            end = ".h5" if added.startswith(".") else ""  # the certificate has no end but its own
+            longest = most - len(end + added + ".tmp.123456789012")
+            self.write("study.toml", study)
+            for length, code in ((longest + 1, 2), (longest + 30, 2), (longest, 0)):
+                with self.subTest(added=added, length=length):
+                    before = sorted(self.folder.iterdir())
+                    said = self.ends(code, "run", "study.toml", "-o", length * "a" + ".h5", "--quiet")
+                    if code == 2:
+                        self.assertIn("has too long a name", said)
+                        if length == longest + 1:
+                            self.assertIn("give a name with -o that is shorter by 1", said)
+                        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_few_open_files(self):
+        self.write("study.toml", ALLOCATION)
+        limit = resource.getrlimit(resource.RLIMIT_NOFILE)
+
+        def run(files):
+            return subprocess.run([PROGRAM, "run", "study.toml", "--quiet"], cwd=self.folder, capture_output=True,
+                                  timeout=SECONDS, check=False,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, limit[1])))
+
+        for files in (4, 8, 18):
+            done = run(files)
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertIn(b"raise the limit on open files (ulimit -n)", done.stderr)
+            self.assertEqual({path.name for path in self.folder.iterdir()}, {"quick.toml", "study.toml"})
+        for files in range(19, 64):  # what is enough to begin is enough to end
+            done = run(files)
+            if done.returncode == 0:
+                break
+            self.assertIn(b"raise the limit on open files (ulimit -n)", done.stderr)
+            self.assertEqual({path.name for path in self.folder.iterdir()}, {"quick.toml", "study.toml"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
 
 main()

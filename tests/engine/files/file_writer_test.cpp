@@ -18,6 +18,7 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "tests/support/input_error.h"
 #include "tests/support/temp_folder.h"
 
 namespace poesy::test {
@@ -54,6 +55,30 @@ TEST(FileWriter, GivesTheRightsThatTheUmaskAllows) {
   struct stat facts {};
   ASSERT_EQ(::stat((folder / "f").c_str(), &facts), 0);
   EXPECT_EQ(facts.st_mode & 0777U, 0644U);
+}
+
+TEST(NameLength, IsWhatAFileTakesWhileItIsWritten) {
+  const TempFolder folder;
+  std::size_t longest = 0;
+  for (std::size_t length = 200; length <= 255; ++length) {
+    const std::string path = folder / std::string(length, 'a');
+    bool written = true;
+    try {
+      FileWriter(path).commit();
+      longest = length;
+    } catch (const FileError& error) {
+      written = false;
+      EXPECT_NE(std::string(error.what()).find("; give it a shorter name"), std::string::npos) << error.what();
+    }
+    if (written) {
+      check_name_length(path);
+    } else {
+      expect_input_error([&] { check_name_length(path); }, {path, 0, 0},
+                         {"too long a name", "shorter by " + std::to_string(length - longest)});
+    }
+  }
+  EXPECT_GT(longest, 200U);
+  EXPECT_LT(longest, 255U);
 }
 
 /// The only name in a folder.
