@@ -205,7 +205,7 @@ std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t
   return list;
 }
 
-std::string index_change_text(const StoredResult& result, std::size_t response) {
+std::string index_change_text(const StoredResult& result, std::size_t response, std::span<const std::size_t> unnamed) {
   const std::span<const double> changes = changes_of(result, response);
   const std::vector<std::size_t> changing = changing_errors(result, response);
   std::size_t effects = 0;
@@ -222,6 +222,7 @@ std::string index_change_text(const StoredResult& result, std::size_t response) 
   if (unknown > 0) text += fmt::format("; not known for {}", unknown);
   std::vector<std::string> list;
   for (const std::size_t p : changing) {
+    if (std::ranges::find(unnamed, p) != unnamed.end()) continue;
     list.push_back(fmt::format("{} ({})", result.factors[p].name, change_text(changes[p])));
   }
   return list.empty() ? text : text + "; not for " + some_names(list, kMostNames);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,9 @@ std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t
 
 /// For how many of the errors that have an effect the response's index holds, and for which not, the largest change
 /// first: "the index on gap holds at a tenth of the size, within 2 %: 15 of 25 errors with an effect; not for
-/// epsilon_3_4_z (-99.1 %), ...".
-std::string index_change_text(const StoredResult& result, std::size_t response);
+/// epsilon_3_4_z (-99.1 %), ...". unnamed: errors that are counted there and not named.
+std::string index_change_text(const StoredResult& result, std::size_t response,
+                              std::span<const std::size_t> unnamed = {});
 
 /// What negligible errors add to a mean square together is at most this share of it.
 inline constexpr double kNegligible = 1e-3;

@@ -214,11 +214,15 @@ void warn_of_small_errors(const StoredResult& result, std::vector<std::string>& 
                   counted(small.size(), "error is", "errors are"), some_names(small)));
 }
 
+/// Errors that add next to nothing to the mean square are no reason to warn.
 void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
   const std::size_t response = response_named(result, default_ranking(result));
-  if (changing_errors(result, response).empty()) return;
+  const MeanSquare square = mean_square(response_study(sensitivity_of(result), result.factor_sigma, response));
+  const std::vector<std::size_t> negligible =
+      negligible_errors(result, response, square, square.growth(result.factor_sigma));
+  if (changing_errors(result, response).size() == negligible.size()) return;
   list.push_back(fmt::format("Some indices say something about the size of the errors in this study and no other: {}.",
-                             index_change_text(result, response)));
+                             index_change_text(result, response, negligible)));
 }
 
 void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>& list) {
