@@ -97,8 +97,8 @@ std::string holds_text(const StudyKey& key) {
 
 std::string row(const StudyKey& key, bool chosen) {
   return fmt::format("| `{}` | {}{}{} | {} |{} {} |\n", key.name, key.type, key.bounds.empty() ? "" : ", ", key.bounds,
-                     key.required ? "*required*" : cell(key.usual), chosen ? fmt::format(" {} |", holds_text(key)) : "",
-                     cell(key.meaning));
+                     (key.required ? "*required*" : "") + cell(key.usual),
+                     chosen ? fmt::format(" {} |", holds_text(key)) : "", cell(key.meaning));
 }
 
 /// The words of each key that takes some.
@@ -167,10 +167,11 @@ bool holds_for(std::span<const std::string_view> only_for, std::string_view word
 std::string explanation(const StudyTable& table, const StudyKey& key) {
   std::string text(key.meaning);
   if (!key.bounds.empty()) text += " " + as_sentence(key.bounds);
-  if (key.required || !(key.only_for.empty() || key.may_stay)) text += " " + as_sentence(condition(table, key));
-  if (key.usual.empty()) return text;
   std::string usual = key.usual;
   std::erase(usual, '`');
+  if (key.required) return text + " " + as_sentence(condition(table, key) + usual);
+  if (!(key.only_for.empty() || key.may_stay)) text += " " + as_sentence(condition(table, key));
+  if (usual.empty()) return text;
   return text + " Default: " + usual + ".";
 }
 

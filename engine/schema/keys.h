@@ -169,8 +169,8 @@ struct Key {
   bool required = false;     ///< for keys that other rules than this row require
   /// The default, where it is not the value of a default-constructed object; empty: there is none.
   std::optional<std::string> usual = {};
-  std::string besides = {};                     ///< what is said of the default after its value
-  std::string example = {};                     ///< as StudyKey has it
+  std::string besides = {};  ///< what is said of the default after its value, or after that the key is required
+  std::string example = {};  ///< as StudyKey has it
   std::vector<std::string_view> only_for = {};  ///< as StudyKey has it
   bool may_stay = false;                        ///< likewise
   std::string_view meaning;                     ///< likewise

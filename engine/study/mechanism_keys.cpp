@@ -100,6 +100,7 @@ const StudyRows& mechanism_keys() {
           StudyRow{.name = "model",
                    .value = {.type = "text"},
                    .missing = "write model = \"NAME\"; 'poesy models' lists the names",
+                   .besides = " without `file`",
                    .meaning = "Name of the mechanism; 'poesy models' lists them.",
                    .reader = read_model,
                    .lines = model_line},
