@@ -195,7 +195,7 @@ Command& add_evaluate(Command& program) {
   CLI::Option* errors = command.add_value(
       "--errors", options.errors, "E.csv",
       "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
-      "names the rows");
+      "names the rows, other columns of text are passed over");
   errors->required();
   command
       .add_value(

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include "engine/base/text.h"
 #include "engine/study/study.h"
@@ -32,18 +33,20 @@ struct KnownColumns {
   std::vector<KnownColumn> numbers;  ///< what is read
   Names facts = {};                  ///< other columns that `poesy export` writes: passed over
   Names labels = {};                 ///< of which one may name the rows
+  bool has_texts = false;            ///< whether it may have columns of text besides, which are passed over
   std::string_view what;             ///< a column of numbers, for messages: "pose coordinate"
 };
 
 /// A column of a table that is being read.
 struct TableColumn {
   /// What its cells are.
-  enum class Role { number, fact, label };
+  enum class Role { number, fact, label, text };
   Role role;                                ///< of its cells
   std::string_view name;                    ///< KnownColumn::meant, or one of KnownColumns::labels; refers to these
   std::string_view title;                   ///< as the header has it, with its unit; refers to the lines
   Dimension dimension = Dimension::number;  ///< of its numbers
   double si = 1.0;                          ///< by which its numbers are multiplied
+  Place place = {};                         ///< of a text: of the title
 
   /// "z [mm]": how the header may say the unit in which people read such numbers.
   std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
@@ -74,7 +77,12 @@ double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
                    fmt::format("write one of: {}, or leave it out for SI", unit_names(dimension)));
 }
 
-[[noreturn]] void refuse_unknown(const CsvCell& cell, const Title& title, const KnownColumns& known) {
+[[noreturn]] void refuse_unknown(const Place& place, std::string_view name, const KnownColumns& known) {
+  throw InputError(place, fmt::format("column '{}' is no {} of the model", printable(name), known.what),
+                   suggestion(name, names(known.numbers)));
+}
+
+void refuse_other_tables(const CsvCell& cell) {
   if (cell.text.find('"') != std::string_view::npos) {
     throw InputError(cell.place, "column " + printable(cell.text) + " is in quotes, which poesy does not read",
                      "save the table without quotes");
@@ -83,8 +91,6 @@ double size_of(const CsvCell& cell, const Title& title, Dimension dimension) {
     throw InputError(cell.place, "columns are separated by tabs, but poesy reads commas",
                      "save the table with commas between columns");
   }
-  throw InputError(cell.place, fmt::format("column '{}' is no {} of the model", printable(title.name), known.what),
-                   suggestion(title.name, names(known.numbers)));
 }
 
 TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
@@ -96,7 +102,9 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   }
   if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
   if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};
-  refuse_unknown(cell, title, known);
+  refuse_other_tables(cell);
+  if (!known.has_texts) refuse_unknown(cell.place, title.name, known);
+  return {.role = text, .name = title.name, .title = cell.text, .place = cell.place};
 }
 
 /// Reads the first line. A name may be followed by the unit of its numbers in brackets, "z [mm]"; without one they are
@@ -176,6 +184,7 @@ struct Rows {
   std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
   std::vector<std::string> labels;  ///< of each row; empty without a column of labels
   std::map<std::string_view, std::size_t, std::less<>> line_of;  ///< each label's; refers to the lines
+  std::set<std::string_view> texts;                              ///< columns of text in which there is some
 };
 
 double number(const CsvCell& cell, const TableColumn& column) {
@@ -184,6 +193,21 @@ double number(const CsvCell& cell, const TableColumn& column) {
       cell.place,
       fmt::format("'{}' in column '{}' {}", printable(cell.text), printable(column.title), number_problem(cell.text)),
       fmt::format("write a plain number, in SI units unless the first line names another: '{}'", column.with_unit()));
+}
+
+/// Whether a cell begins as a number does, or is one that is not finite.
+bool is_like_a_number(std::string_view cell) {
+  const std::string_view body = cell.substr(std::min(cell.find_first_not_of("+-."), cell.size()));
+  if (!body.empty() && body.front() >= '0' && body.front() <= '9') return true;
+  const std::string word = lower_case(body);
+  return word == "nan" || word == "inf" || word == "infinity";
+}
+
+/// Whether there is a letter of any language.
+bool has_letter(std::string_view cell) {
+  return std::ranges::any_of(cell, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) > 127;
+  });
 }
 
 /// Appends a row's label.
@@ -204,7 +228,8 @@ void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
 using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
 
 /// Appends one line.
-void read_row(CsvLines& lines, std::span<const TableColumn> columns, const CheckCell& check, Rows& rows) {
+void read_row(CsvLines& lines, std::span<const TableColumn> columns, const KnownColumns& known, const CheckCell& check,
+              Rows& rows) {
   const Place line = lines.next_place();
   const std::vector<CsvCell> cells = lines.next();
   if (cells.size() != columns.size()) {
@@ -215,6 +240,10 @@ void read_row(CsvLines& lines, std::span<const TableColumn> columns, const Check
   std::size_t n = 0;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     if (columns[k].role == TableColumn::Role::label) read_label(cells[k], columns[k], rows);
+    if (columns[k].role == TableColumn::Role::text) {
+      if (is_like_a_number(cells[k].text)) refuse_unknown(columns[k].place, columns[k].name, known);
+      if (has_letter(cells[k].text)) rows.texts.insert(columns[k].name);
+    }
     if (columns[k].role != TableColumn::Role::number) continue;
     rows.values.push_back(number(cells[k], columns[k]));
     if (check) check(cells[k].place, n, columns[k], rows.values.back());
@@ -223,13 +252,19 @@ void read_row(CsvLines& lines, std::span<const TableColumn> columns, const Check
 }
 
 /// All lines below the header.
-Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const CheckCell& check) {
+Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const KnownColumns& known,
+               const CheckCell& check) {
   if (lines.done()) {
     throw InputError(lines.next_place(), "there is no data below the column names",
                      "write at least one line of numbers");
   }
   Rows rows;
-  while (!lines.done()) read_row(lines, columns, check, rows);
+  while (!lines.done()) read_row(lines, columns, known, check, rows);
+  for (const TableColumn& column : columns) {
+    if (column.role == TableColumn::Role::text && !rows.texts.contains(column.name)) {
+      refuse_unknown(column.place, column.name, known);
+    }
+  }
   return rows;
 }
 
@@ -281,7 +316,7 @@ TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDes
   for (const std::string_view name : headers[kind]) {
     order.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
   }
-  const std::vector<double> written = read_rows(lines, all, {}).values;
+  const std::vector<double> written = read_rows(lines, all, known, {}).values;
   TimedPoints points;
   std::vector<double> values;
   for (std::size_t row = 0; row < written.size(); row += columns.size()) {
@@ -316,7 +351,11 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 ErrorTable read_errors(const std::string& path, const Model& model) {
   const ModelDescription& description = model.description();
   CsvLines lines(path, "table of errors");
-  KnownColumns known{.numbers = {}, .facts = {"sample", "pose", "case"}, .labels = {"part", "name"}, .what = "factor"};
+  KnownColumns known{.numbers = {},
+                     .facts = {"sample", "pose", "case"},
+                     .labels = {"part", "name"},
+                     .has_texts = true,
+                     .what = "factor"};
   for (const Factor& factor : description.factors)
     known.numbers.push_back({factor.name, factor.dimension, factor.name});
   const std::vector<TableColumn> columns = read_header(lines, known);
@@ -332,7 +371,7 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
                            column.with_unit() + "'");
     }
   };
-  Rows rows = read_rows(lines, columns, check);
+  Rows rows = read_rows(lines, columns, known, check);
   const auto label = std::ranges::find(columns, TableColumn::Role::label, &TableColumn::role);
   if (label != columns.end()) table.labels = {std::string(label->name), std::move(rows.labels)};
   table.values = std::move(rows.values);
@@ -360,7 +399,7 @@ std::vector<double> read_column(const std::string& path, std::string_view column
     columns.push_back({TableColumn::Role::number, title.name, cell.text, dimension, size_of(cell, title, dimension)});
   }
   if (!found) throw InputError(header, "no column is '" + printable(column) + "'", suggestion(column, known));
-  return read_rows(lines, columns, {}).values;
+  return read_rows(lines, columns, {}, {}).values;
 }
 
 std::optional<std::string> label_problem(std::string_view label) {

@@ -40,7 +40,8 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 
 /// Reads errors from CSV: the first line names factors of the model, any subset in any order, with units as in
 /// read_poses; then one sample a line. A column "part" or "name" labels the rows (label_problem(), all different);
-/// columns "sample", "pose" and "case", which `poesy export` writes into errors.csv, are passed over. Errors as
+/// columns "sample", "pose" and "case", which `poesy export` writes into errors.csv, are passed over, and so are other
+/// columns of text ("operator"): there is a letter in some cell, and none begins as a number does. Errors as
 /// read_poses; an unknown factor is an InputError too, and so is an error that makes no sense (Model::error_bound).
 ErrorTable read_errors(const std::string& path, const Model& model);
 

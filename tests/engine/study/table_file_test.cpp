@@ -113,6 +113,14 @@ TEST(ReadErrors, PassOverWhatAnExportSaysOfThem) {
   }
 }
 
+TEST(ReadErrors, PassOverTexts) {
+  const test::TempFolder folder;
+  const ErrorTable table = read_errors(
+      folder.write("e.csv", "part,operator,delta_1 [mm],remark\n17,B. Meier,250,-\n18,A,125,nan or so\n"), kMechanism);
+  EXPECT_EQ(table.values, (std::vector{0.25, 0.125}));
+  EXPECT_EQ(table.labels.names, (std::vector<std::string>{"17", "18"}));
+}
+
 struct BadTable {
   const char* name;
   std::string text;  ///< the place of the mistake marked with ^
@@ -217,6 +225,11 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadErrors,
     testing::Values(
         BadTable{"UnknownFactor", "delta_1,^delta_9\n0,0\n", {"'delta_9'", "did you mean 'delta_1'?"}},
+        BadTable{"UnknownFactorWithAUnit", "delta_1,^delta_9\n0,0.1 mm\n", {"'delta_9'", "did you mean 'delta_1'?"}},
+        BadTable{"UnknownFactorFurtherDown", "delta_1,^delta_9\n0,none\n0,-.5\n", {"'delta_9'", "no factor"}},
+        BadTable{"UnknownFactorWithoutValues", "delta_1,^delta_9\n0,\n", {"'delta_9'", "no factor"}},
+        BadTable{"UnknownFactorThatIsNoNumber", "delta_1,^delta_9\n0,nan\n", {"'delta_9'", "no factor"}},
+        BadTable{"RepeatedText", "delta_1,operator,^operator\n0,a,b\n", {"'operator'", "second time"}},
         BadTable{"RepeatedFactor", "delta_1,^delta_1\n0,0\n", {"'delta_1'", "second time"}},
         BadTable{"Word", "delta_1\n^x\n", {"'x'", "'delta_1'"}}, BadTable{"HeaderOnly", "delta_1\n^", {"no data"}},
         BadTable{"Empty", "^", {"empty"}}, BadTable{"OnlyLabels", "^part\n1\n", {"no column of errors"}},
