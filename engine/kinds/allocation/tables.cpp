@@ -212,7 +212,7 @@ Table stages_table(const Result& found) {
   if (has_costs(found)) {
     columns.push_back(
         {number_column("cost", "cost"), [=](std::size_t k) { return number_cell(stage(k).cost, kCostDigits); }});
-    columns.push_back({number_column("gap", "gap"),
+    columns.push_back({number_column("gap", "above the bound"),
                        [=](std::size_t k) { return number_cell(stage(k).cost - stage(k).lower_bound); }});
   }
   columns.push_back(
@@ -232,7 +232,8 @@ Table stages_table(const Result& found) {
                     count_text(found.design_rejects), counted(found.design_machines, "machine", "machines"),
                     count_text(found.design_most)));
   }
-  if (has_costs(found)) table.notes.emplace_back("gap: cost above what no tolerances of this step's problem go below");
+  if (has_costs(found))
+    table.notes.emplace_back("above the bound: cost above what no tolerances of this step's problem go below");
   fill(table, positions(found.stages.size()), columns);
   return table;
 }

@@ -151,15 +151,15 @@ TEST_F(AllocationReport, SaysWhatEachLimitAsksForAndWhere) {
 TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
   EXPECT_EQ(text_of(table("stages"), kUnlimitedWidth),
             "How the tolerances were found, step by step\n"
-            "                                  rms over\n"
-            "stage                cost    gap     limit  machines  rejects\n"
-            "linear                  9  0.25     0.3333         -        -\n"
-            "scaled to the yield    10  0.005    0.3       20 000       48\n"
+            "                           above the  rms over\n"
+            "stage                cost      bound     limit  machines  rejects\n"
+            "linear                  9      0.25     0.3333         -        -\n"
+            "scaled to the yield    10      0.005    0.3       20 000       48\n"
             "rms over limit: the limit on a root mean square over the limit on a value; rejects: of the machines\n"
             "that were tried at these tolerances\n"
             "at the end 48 of the design's 20 000 machines are rejects; with up to 49 the certificate will\n"
             "probably hold\n"
-            "gap: cost above what no tolerances of this step's problem go below\n");
+            "above the bound: cost above what no tolerances of this step's problem go below\n");
   EXPECT_EQ(text_of(table("cost_of_yield"), kUnlimitedWidth),
             "What another yield would cost\n"
             "yield  cost  change\n"
@@ -221,7 +221,7 @@ TEST_F(AllocationReport, LeavesCostsOutWhereThereAreNone) {
   drop_costs();
   EXPECT_EQ(names(tables()), (Texts{"yield", "drawing", "allocation_limits", "stages"}));
   const std::string text = text_of(tables(), kUnlimitedWidth);
-  for (const char* word : {"cost", "saves", "saved", "gap", "nan"})
+  for (const char* word : {"cost", "saves", "saved", "bound:", "nan"})
     EXPECT_EQ(text.find(word), std::string::npos) << word;
   EXPECT_NE(text.find("each with the same share of the limit that it uses most"), std::string::npos);
   const std::string page = html();
