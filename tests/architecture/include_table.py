@@ -45,7 +45,7 @@ LIBRARIES = {
     "threads": ("atomic", "barrier", "condition_variable", "future", "latch", "mutex", "semaphore", "shared_mutex",
                 "stop_token", "thread", "pthread.h"),
     "files": ("filesystem", "fstream", "fcntl.h", "poll.h", "unistd.h", "dirent.h", "stdlib.h", "malloc.h", "sys/*"),
-    "terminal": ("iostream",),
+    "terminal": ("iostream", "termios.h"),
     "std-random": ("random",),
 }
 STANDARD = frozenset("""
