@@ -16,6 +16,7 @@
 #include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/files/file_writer.h"
+#include "engine/files/result_parts.h"
 #include "engine/files/shard_file.h"
 #include "engine/kinds/confirming_study.h"
 #include "engine/kinds/result_file.h"
@@ -95,6 +96,12 @@ ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::str
     say(Message::warning, fmt::format("{}: {}, which does not tell whether it is {}; take more samples, whose number "
                                       "may grow with --resume if the checkpoint is kept",
                                       study_path, found, percent_text(yield.asked)));
+  }
+  if (yield.decision == kept && yield.with_parts && !(yield.with_parts->low >= yield.asked)) {
+    say(Message::warning,
+        fmt::format("{}: the machines keep a yield of {}, but the parts on which errors were measured do not show it; "
+                    "measure more parts, or state a distribution",
+                    study_path, percent_text(yield.asked)));
   }
   if (yield.decision != not_kept) return kDone;
   say(Message::error,
@@ -178,6 +185,7 @@ StoredResult with_verdicts(const Study& study, const SelectedPoses& poses, const
   }
   result.row_names = row_names;
   result.verdicts = verdicts;
+  result.measured = measured_errors(study);
   return result;
 }
 

@@ -60,6 +60,22 @@ struct NamedUnit {
 
 const Unit& display(const NamedUnit& named);  ///< The unit in which people read it: mm for m.
 
+/// Errors of a result that are drawn as parts were measured: E of them, SI.
+struct MeasuredErrors {
+  std::vector<std::string> names;            ///< [E]
+  std::vector<std::size_t> factors;          ///< [E] positions among all errors of the result
+  std::vector<std::uint64_t> parts;          ///< [E] that were measured
+  std::vector<double> mean;                  ///< [E] of the parts, and of the draws
+  std::vector<double> sigma_of_parts;        ///< [E] standard deviation of the parts, with n - 1
+  std::vector<double> sigma;                 ///< [E] of the draws
+  std::vector<double> least_part;            ///< [E]
+  std::vector<double> greatest_part;         ///< [E]
+  std::vector<double> least;                 ///< [E] no draw is below
+  std::vector<double> greatest;              ///< [E] no draw is above
+  std::vector<std::string> most_correlated;  ///< [E] the error with which it is correlated most; "-" for none
+  std::vector<double> correlation;           ///< [E] with that one, of their normal scores; 0 for none
+};
+
 /// What a result file of any kind says, read back. Members that the file does not have are empty.
 struct StoredResult {
   std::string kind;                          ///< name of the kind of study
@@ -84,6 +100,7 @@ struct StoredResult {
   std::vector<std::size_t> constant;         ///< positions of responses that do not vary (stats/indices.h)
   RunFacts facts;                            ///< of the run, no part of the content
 
+  MeasuredErrors measured;                       ///< of the errors that were drawn
   std::vector<double> factor_sigma;              ///< [P] standard deviations of errors that were drawn, SI
   std::vector<std::string> factor_distribution;  ///< [P] of these errors: "normal", ...
   /// What the samples varied, one after the other: the errors, or kAllFactors. Empty where nothing was drawn.

@@ -1,5 +1,6 @@
 #include "engine/files/result_parts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/study/study_kind.h"
@@ -98,7 +99,93 @@ CsvTable end_table(const StoredResult& result, const CourseWords& words, const C
   return table;
 }
 
+constexpr std::string_view kUncorrelated = "-";
+
+const Axes kMeasured{"measured_error"};
+
+const Group<MeasuredErrors> kMeasuredErrors{
+    "/measured_errors",
+    "Errors that are drawn as parts were measured: each value is as likely as any other, and is spread over a range "
+    "around it so that mean and standard deviation are those of the parts",
+    {},
+    {},
+    {{"parts", &MeasuredErrors::parts, kMeasured, "1", "Parts that were measured"},
+     {"mean", &MeasuredErrors::mean, kMeasured, kFactorUnit, "Mean of the parts, and of the draws"},
+     {"sigma_of_parts", &MeasuredErrors::sigma_of_parts, kMeasured, kFactorUnit,
+      "Standard deviation of the parts, with n - 1"},
+     {"sigma", &MeasuredErrors::sigma, kMeasured, kFactorUnit, "Standard deviation of the draws, as /factors/sigma"},
+     {"least_part", &MeasuredErrors::least_part, kMeasured, kFactorUnit, "The smallest part"},
+     {"greatest_part", &MeasuredErrors::greatest_part, kMeasured, kFactorUnit, "The largest part"},
+     {"least", &MeasuredErrors::least, kMeasured, kFactorUnit, "No draw is below"},
+     {"greatest", &MeasuredErrors::greatest, kMeasured, kFactorUnit, "No draw is above"},
+     {"most_correlated", &MeasuredErrors::most_correlated, kMeasured, "1",
+      "The error with which it is correlated most; \"-\" for none"},
+     {"correlation", &MeasuredErrors::correlation, kMeasured, "1",
+      "With that one, of their normal scores; 0 for none"}}};
+
+/// The error with which one is correlated most.
+void append_correlation(const Study& study, FactorIndex factor, MeasuredErrors& found) {
+  std::string name(kUncorrelated);
+  double largest = 0.0;
+  for (const CorrelatedErrors& block : study.errors.correlated) {
+    const auto place = std::ranges::find(block.factors, factor);
+    if (place == block.factors.end()) continue;
+    const std::size_t size = block.factors.size();
+    const auto row = static_cast<std::size_t>(place - block.factors.begin()) * size;
+    for (std::size_t j = 0; j < size; ++j) {
+      const double own = block.correlation[row + j];
+      if (block.factors[j] == factor || !(std::abs(own) > std::abs(largest))) continue;
+      largest = own;
+      name = study.model().factors[block.factors[j].value].name;
+    }
+  }
+  found.most_correlated.push_back(std::move(name));
+  found.correlation.push_back(largest);
+}
+
+double sample_deviation(std::span<const double> values, double mean) {
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+/// Its unit is that of the error, which stands at the end of the row.
+CsvTable measured_table(const StoredResult& result) {
+  const MeasuredErrors& found = result.measured;
+  CsvTable table{"measured_errors",
+                 {"factor", [&](std::size_t e) { return found.names[e]; }},
+                 found.names.size(),
+                 {},
+                 {"unit", [&](std::size_t e) { return result.factors[found.factors[e]].unit; }}};
+  for (const FieldRow<MeasuredErrors>& field : kMeasuredErrors.fields) {
+    if (field.name != "most_correlated") table.columns.push_back(field_column(field.name, field, found, 0));
+  }
+  return table;
+}
+
 }  // namespace
+
+MeasuredErrors measured_errors(const Study& study) {
+  MeasuredErrors found;
+  for (std::size_t p = 0; p < study.analysis.factors.size(); ++p) {
+    const FactorIndex factor = study.analysis.factors[p];
+    const auto& parts = study.errors.by_factor[factor.value].parts();
+    if (!parts) continue;
+    const auto [least, greatest] = std::ranges::minmax(parts->values());
+    found.names.push_back(study.model().factors[factor.value].name);
+    found.factors.push_back(p);
+    found.parts.push_back(parts->values().size());
+    found.mean.push_back(parts->mean());
+    found.sigma_of_parts.push_back(sample_deviation(parts->values(), parts->mean()));
+    found.sigma.push_back(parts->standard_deviation());
+    found.least_part.push_back(least);
+    found.greatest_part.push_back(greatest);
+    found.least.push_back(parts->least());
+    found.greatest.push_back(parts->greatest());
+    append_correlation(study, factor, found);
+  }
+  return found;
+}
 
 void add_sigma(ResultBuilder& result, const Study& study) {
   result.add("/factors/sigma", {"factor"}, standard_deviations(study),
@@ -106,20 +193,34 @@ void add_sigma(ResultBuilder& result, const Study& study) {
   const auto shapes = texts(study.analysis.factors,
                             [&](FactorIndex factor) { return name(study.errors.by_factor[factor.value].shape()); });
   result.add("/factors/distribution", {"factor"}, shapes, {"1", "Distribution of the error, as set in the study"});
+  const MeasuredErrors measured = measured_errors(study);
+  if (measured.names.empty()) return;
+  result.add_axis("measured_error", measured.names, {"1", "Errors that are drawn as parts were measured"});
+  write_group(result, kMeasuredErrors, measured);
 }
 
 void read_sigma(const h5::File& file, StoredResult& result) {
   result.factor_sigma = read_along<double>(file, "/factors/sigma", {"factor"});
   result.factor_distribution = read_along<std::string>(file, "/factors/distribution", {"factor"});
   check_names(result.factor_distribution, "/factors/distribution");
+  if (!file.exists("/measured_errors")) return;
+  result.measured.names = file.read<std::string>("/measured_error");
+  check_names(result.measured.names, "/measured_error");
+  for (const std::string& name : result.measured.names) {
+    result.measured.factors.push_back(
+        position_in(result.factors, name, "/measured_error has '" + name + "', which is no error", &NamedUnit::name));
+  }
+  read_group(file, kMeasuredErrors, result.measured);
+  check_names(result.measured.most_correlated, "/measured_errors/most_correlated");
 }
 
-CsvTable sigma_table(const StoredResult& result) {
+void append_sigma_tables(CsvTables& tables, const StoredResult& result) {
   CsvTable table = lines_of_factors(result, "factors");
   table.columns = {list_column(with_unit("sigma", si_units(result.factors)), result.factor_sigma),
                    {with_unit("sigma", display_units(result.factors)),
                     [&](std::size_t p) { return result.factor_sigma[p] / display(result.factors[p]).si; }}};
-  return table;
+  tables.push_back(std::move(table));
+  if (!result.measured.names.empty()) tables.push_back(measured_table(result));
 }
 
 std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies) {

@@ -63,11 +63,15 @@ RunFacts read_facts(const h5::File& file);                     ///< What composi
 std::string stored_hash(const h5::File& file);    ///< The hash that the file carries; empty where it has none.
 CsvTable pose_table(const StoredResult& result);  ///< poses.csv.
 
+/// The measured ones among the errors that a study varies.
+MeasuredErrors measured_errors(const Study& study);
 /// The standard deviations of the errors that the study varies, as /factors/sigma, and what their distributions are
-/// called, as /factors/distribution.
+/// called, as /factors/distribution; where some are measured, /measured_errors.
 void add_sigma(ResultBuilder& result, const Study& study);
-void read_sigma(const h5::File& file, StoredResult& result);  ///< Fills in `factor_sigma` and `factor_distribution`.
-CsvTable sigma_table(const StoredResult& result);             ///< factors.csv: the standard deviation of each error.
+/// Fills in `factor_sigma`, `factor_distribution` and `measured`.
+void read_sigma(const h5::File& file, StoredResult& result);
+/// factors.csv: the standard deviation of each error; measured_errors.csv where some are measured.
+void append_sigma_tables(CsvTables& tables, const StoredResult& result);
 
 /// Positions of the responses that do not vary. varies: [R] 0 or 1, or empty where all do.
 std::vector<std::size_t> constant_responses(const std::vector<std::uint8_t>& varies);

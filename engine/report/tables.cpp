@@ -72,6 +72,20 @@ void add_share(std::vector<Cell>& row, std::uint64_t good, const YieldVerdict& y
   row.push_back(count_cell(yield.machines));
 }
 
+std::string with_parts_text(const YieldVerdict& yield) {
+  if (std::isnan(yield.with_parts->low)) {
+    return "What few measured parts leave open of the yield is not known: fewer than 10 machines are rejects or good, "
+           "or errors are correlated that were not all measured on the same parts";
+  }
+  return fmt::format(
+      "Interval of machines and measured parts: {} to {} (resampled parts, {}); low, high count machines "
+      "alone",
+      percent_text(yield.with_parts->low), percent_text(yield.with_parts->high), percent_text(yield.conf_level));
+}
+
+/// What tolerances usually are for: three sigma of a normal error.
+constexpr double kUsualYield = 0.9973;
+
 constexpr std::size_t kMostShown = 5;
 
 /// Positions among [R x P] of the quantities that count for the end and did not reach it, the widest first.
@@ -159,6 +173,7 @@ std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& res
   if (limits && std::ranges::find(tables, limits->name, &Table::name) == tables.end()) {
     tables.insert(tables.begin(), *std::move(limits));
   }
+  if (auto measured = measured_table(result)) tables.push_back(*std::move(measured));
   if (kind.settling == nullptr) return tables;
   if (auto convergence = convergence_table(result, kind.settling(result))) tables.push_back(*std::move(convergence));
   return tables;
@@ -209,7 +224,58 @@ Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts) {
         yield.unsolved == 1 ? "it" : "them",
         percent_text(share_of(yield.machines - yield.rejects + yield.unsolved, yield.machines))));
   }
+  if (yield.with_parts) table.notes.push_back(with_parts_text(yield));
+  if (!result.measured.names.empty()) table.notes.push_back(few_parts_text(result, yield.conf_level, yield.asked));
   return table;
+}
+
+std::optional<Table> measured_table(const StoredResult& result) {
+  const MeasuredErrors& found = result.measured;
+  if (found.names.empty()) return std::nullopt;
+  const auto number = [&](std::string name, std::string heading, const std::vector<double>& values, int dispensable) {
+    return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable), [&](std::size_t e) {
+                          return value_cell(values[e], result.factors[found.factors[e]], kDigits);
+                        }};
+  };
+  Table table{.name = "measured_errors",
+              .caption = "Errors as measured: mean and standard deviation of the draws are those of the parts",
+              .columns = {},
+              .notes = {"sigma of the parts: with n - 1; least, greatest: of the parts, and of what is drawn; "
+                        "correlation: of normal scores, with the error that goes most with it"}};
+  fill(table, positions(found.names.size()),
+       {{text_column("error", "error"), [&](std::size_t e) { return text_cell(found.names[e]); }},
+        {text_column("unit", "unit"),
+         [&](std::size_t e) { return text_cell(unit_text(result.factors[found.factors[e]])); }},
+        {number_column("parts", "parts"), [&](std::size_t e) { return count_cell(found.parts[e]); }},
+        number("mean", "mean", found.mean, 0),
+        number("sigma_of_parts", "sigma of the parts", found.sigma_of_parts, 0),
+        number("sigma", "of the draws", found.sigma, 0),
+        number("least_part", "least part", found.least_part, 2),
+        number("greatest_part", "greatest part", found.greatest_part, 2),
+        number("least", "least draw", found.least, 3),
+        number("greatest", "greatest draw", found.greatest, 3),
+        {number_column("correlation", "correlation", "", 1),
+         [&](std::size_t e) { return number_cell(found.correlation[e], 3); }},
+        {text_column("most_correlated", "with", 1),
+         [&](std::size_t e) { return text_cell(found.most_correlated[e]); }}});
+  return table;
+}
+
+std::string few_parts_text(const StoredResult& result, double conf_level, double asked) {
+  const MeasuredErrors& found = result.measured;
+  const std::uint64_t fewest = *std::ranges::min_element(found.parts);
+  const double target = asked > 0.0 ? asked : kUsualYield;
+  // All of n parts are good with this probability where the yield is the n-th root.
+  const double shown = std::pow(1.0 - conf_level, 1.0 / static_cast<double>(fewest));
+  std::string text = fmt::format(
+      "{} drawn from {} measured parts{}: where one such error alone makes the rejects, {} good parts show a yield of "
+      "{} at {}",
+      counted(found.names.size(), "error is", "errors are"), count_text(fewest),
+      found.parts.size() > 1 && std::ranges::max(found.parts) > fewest ? " or more" : "", count_text(fewest),
+      percent_text(shown), percent_text(conf_level));
+  if (!(shown < target && target < 1.0 && conf_level < 1.0)) return text;  // numbers of a file may be any
+  return text + fmt::format(", and cannot show {}, which takes {}", percent_text(target),
+                            count_text(trials_without_failure(target, conf_level)));
 }
 
 std::optional<Table> limits_table(const StoredResult& result) {

@@ -73,6 +73,13 @@ const LimitVerdict* verdict_on(const StoredResult& result, std::size_t response)
 /// verdicts.yield is there.
 Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts);
 
+/// Errors that are drawn as parts were measured: from how many, and how parts and draws scatter; none where there are
+/// none.
+std::optional<Table> measured_table(const StoredResult& result);
+
+/// What the fewest of the measured parts can show of a yield, in sentences. Precondition: errors are measured.
+std::string few_parts_text(const StoredResult& result, double conf_level, double asked);
+
 /// PASS or FAIL for each limit, with the value that was found and the limit; none where the study states none. By
 /// Judge::yield it is yield_table.
 std::optional<Table> limits_table(const StoredResult& result);

@@ -11,6 +11,7 @@
 #include "engine/base/bytes.h"
 #include "engine/base/index.h"
 #include "engine/model/status.h"
+#include "engine/stats/moments.h"
 #include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
@@ -156,6 +157,8 @@ struct YieldVerdict {
   std::uint64_t machines = 0;               ///< tried
   std::uint64_t rejects = 0;                ///< of these, those that are not within every limit at every pose
   std::uint64_t unsolved = 0;               ///< of the rejects, those that no solved pose rejects
+  /// Where errors are measured: the interval that counts how few parts there are as well; NaN where it is not known.
+  std::optional<Interval> with_parts = {};
 };
 
 /// All limits of a study.

@@ -131,6 +131,42 @@ class Correlated(ResumptionTest):
         self.succeeds("report", "out.h5", "-o", "report.html")
         self.succeeds("export", "out.h5", "-d", "tables")
 
+    def test_results_say_how_parts_and_draws_scatter(self):
+        said = self.poesy("run", "study.toml", "-o", "out.h5").stdout.decode()
+        self.assertIn("40 good parts show a yield of", " ".join(said.split()))
+        table = [line.split(",") for line in parts().splitlines()[1:]]
+        measured = [numpy.array([float(row[1]) for row in table]) * 1e-3, numpy.array([float(row[3]) for row in table]) * 1e-6]
+        with h5py.File(self.folder / "out.h5") as file:
+            names = list(file["factors/name"].asstr())
+            self.assertEqual(list(file["measured_error"].asstr()), list(NAMES[:2]))
+            found = file["measured_errors"]
+            self.assertEqual(list(found["parts"]), [40, 40])
+            self.assertEqual(list(found["most_correlated"].asstr()), [NAMES[1], NAMES[0]])
+            for at, values in enumerate(measured):
+                sigma = values.std(ddof=1)
+                self.assertAlmostEqual(file["factors/sigma"][names.index(NAMES[at])] / sigma, 1, places=12)
+                self.assertAlmostEqual(found["sigma"][at] / sigma, 1, places=12)
+                self.assertAlmostEqual(found["sigma_of_parts"][at] / sigma, 1, places=12)
+                self.assertAlmostEqual((found["mean"][at] - values.mean()) / sigma, 0, places=12)
+                self.assertEqual(found["least_part"][at], values.min())
+                self.assertLess(found["least"][at], values.min())
+                self.assertGreater(found["greatest"][at], values.max())
+            low, high = (file["yield"][name][()] for name in ("ci_low", "ci_high"))
+            of_parts = [file["yield/parts"][name][()] for name in ("ci_low", "ci_high")]
+        self.assertLess(of_parts[0], low)
+        self.assertGreater(of_parts[1], high)
+        shown = " ".join(self.succeeds("show", "out.h5").split())
+        self.assertIn("Interval of machines and measured parts", shown)
+        self.assertIn("40 good parts show a yield of 92.78 % at 95 %, and cannot show 99.73 %, which takes 1 109", shown)
+        tables = json.loads(self.succeeds("show", "out.h5", "--json"))["tables"]
+        (one,) = [each for each in tables if each["name"] == "measured_errors"]
+        self.assertEqual([row["parts"] for row in one["rows"]], [40, 40])
+        self.succeeds("export", "out.h5", "-d", "tables")
+        header = (self.folder / "tables/measured_errors.csv").read_text(encoding="utf-8").splitlines()[0]
+        self.assertIn("sigma_of_parts,sigma,", header)
+        self.succeeds("report", "out.h5", "-o", "report.html")
+        self.assertIn("cannot show 99.73", (self.folder / "report.html").read_text(encoding="utf-8"))
+
     def test_one_part_that_stands_apart(self):
         """Ten parts, nine of them nearly right: the response has the mean and the deviation of the parts."""
         sizes = [0.0] * 5 + [0.001] * 4 + [0.5]
@@ -140,9 +176,12 @@ version = 1
 mechanism = {{ model = "3-prs", fidelity = "first-order" }}
 poses = {{ count = 1 }}
 errors.override.q_1 = {{ distribution = "measured", values = [{values}] }}
-analysis = {{ kind = "monte-carlo", factors = ["q_1"], samples = 40000, draws = "per machine", limits = {{ position = "0.1 mm" }} }}
+analysis = {{ kind = "monte-carlo", factors = ["q_1"], samples = 40000, draws = "per machine", limits = {{ position = "0.1 mm" }}, yield = 0.85 }}
 """)
-        self.run_study()
+        done = self.poesy("run", "study.toml", "-o", "out.h5", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("PASS", done.stdout.decode())
+        self.assertIn("the parts on which errors were measured do not show it", done.stderr.decode())
         with h5py.File(self.folder / "out.h5") as file:
             at = list(file["responses/name"].asstr()).index("position")
             mean, deviation = (file["monte_carlo"][name][at, 0] for name in ("mean", "std"))

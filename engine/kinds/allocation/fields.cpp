@@ -405,7 +405,7 @@ CsvTable certificate_failures(const Result& found) {
 
 void append_tables(CsvTables& tables, const StoredResult& result) {
   const Result& found = allocation_of(result);
-  tables.push_back(sigma_table(result));
+  append_sigma_tables(tables, result);
   tables.push_back(part_table(found));
   if (!found.error_mean_square_share.empty()) tables.push_back(error_table(result));
   tables.push_back(limit_table(result));

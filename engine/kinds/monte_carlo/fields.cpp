@@ -202,7 +202,7 @@ void read(const h5::File& file, StoredResult& result) {
 
 void append_tables(CsvTables& tables, const StoredResult& result) {
   const MonteCarlo& found = monte_carlo_of(result);
-  tables.push_back(sigma_table(result));
+  append_sigma_tables(tables, result);
   for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(response_table(result, r));
   tables.push_back(overall_table(result));
   for (std::size_t r = 0; r < found.responses; ++r) tables.push_back(histogram_table(result, r));

@@ -143,6 +143,7 @@ MachineResult MachineCollector::machines(const MachineSums& sums, std::span<cons
   leave_out_correlated(table_->plan(), found.effects_on_largest);
   if (!sums.scores) return found;
   found.yield = yield_of(counts_.machines, *sums.scores, analysis_->limits, analysis_->conf_level);
+  if (sums.parts) found.yield->parts = parts_yield(*sums.parts, *found.yield);
   set_first_order(*table_, sums.fit ? &*sums.fit : nullptr, counts_.rejected, analysis_->conf_level, *found.yield);
   return found;
 }

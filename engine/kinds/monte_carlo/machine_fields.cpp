@@ -118,6 +118,16 @@ const Group<YieldResult> kYield{
       "The part of that mean square that is linear in the errors: the rest belongs to no error alone",
       Presence::where_computed}}};
 
+const Group<PartsYield> kPartsYield{
+    "/yield/parts",
+    "What the yield may be as far as the parts tell on which errors were measured (resampled parts, to first order, on "
+    "the scale of normal scores): it holds the interval of the machines. NaN where fewer than ten machines are rejects "
+    "or good, and where errors that are correlated were not all measured on the same parts",
+    {},
+    {},
+    {{"ci_low", &PartsYield::ci_low, {}, "1", "Lower end of the interval at the conf_level of /yield"},
+     {"ci_high", &PartsYield::ci_high, {}, "1", "Upper end of the interval at the conf_level of /yield"}}};
+
 /// S1, its interval.
 Fields<MainEffects> index_fields(const std::string& what) {
   return {{"S1", &MainEffects::s1, kByResponseFactor, "1", "First-order index " + what},
@@ -207,6 +217,11 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
   for (const FieldRow<YieldResult>& field : kYield.fields) {
     if (field.axes.empty()) all.columns.push_back(field_column(field.name, field, found, 0));
   }
+  if (found.parts) {
+    for (const FieldRow<PartsYield>& field : kPartsYield.fields) {
+      all.columns.push_back(field_column("parts_" + field.name, field, *found.parts, 0));
+    }
+  }
   tables.push_back(std::move(all));
   CsvTable each{"yield_by_response",
                 {"response", [&](std::size_t r) { return result.responses[r].name; }},
@@ -287,6 +302,7 @@ void write_machines(ResultBuilder& result, const MachineResult& found) {
   write_group(result, kLargest, found.largest);
   write_group(result, kRms, found.rms);
   if (found.yield) write_group(result, kYield, *found.yield);
+  if (found.yield && found.yield->parts) write_group(result, kPartsYield, *found.yield->parts);
   write_indices(result, "/machines/largest", kIndicesOfLargest, found.effects_on_largest, found.conf_level);
   write_group(result, kCurvesOfLargest, found.effects_on_largest);
 }
@@ -308,7 +324,10 @@ std::optional<MachineResult> read_machines(const h5::File& file) {
   found.conf_level = file.attribute<double>("/machines/largest/S1", "conf_level").at(0);
   read_group(file, kLargest, found.largest);
   read_group(file, kRms, found.rms);
-  if (file.exists("/yield")) read_group(file, kYield, found.yield.emplace());
+  if (file.exists("/yield")) {
+    read_group(file, kYield, found.yield.emplace());
+    if (file.exists("/yield/parts")) read_group(file, kPartsYield, found.yield->parts.emplace());
+  }
   read_fields(file, "/machines/largest", kIndicesOfLargest, found.effects_on_largest);
   read_group(file, kCurvesOfLargest, found.effects_on_largest);
   return found;

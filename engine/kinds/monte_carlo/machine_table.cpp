@@ -65,6 +65,7 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
   for (const ResponseLimit& limit : analysis.limits) limits_[limit.response] = limit.most;
   for (std::size_t r = 0; r < responses_; ++r) rounding_.push_back(model.rounding(r));
+  if (has_limits_) parts_ = part_groups(plan);
   effect_poses_ = poesy::effect_poses(plan.poses().size(), responses_, errors());
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/kinds/monte_carlo/limited_vectors.h"
+#include "engine/kinds/monte_carlo/part_groups.h"
 #include "engine/model/model.h"
 #include "engine/stats/error_scores.h"
 #include "engine/stats/main_effects.h"
@@ -52,6 +53,10 @@ class MachineTable {
   /// The first machines of the study, of which it is kept whether they are rejected: as many as the gradient of the
   /// yield by a linear map looks at, which takes time for each error at each pose. 0 where none is wanted.
   std::size_t kept() const { return kept_; }
+  /// What is known of the parts that errors were measured on, where there are limits.
+  const PartGroups& parts() const { return parts_; }
+  /// Whether errors were measured on parts, and there are limits.
+  bool has_parts() const { return !parts_.each.empty() || !parts_.known; }
 
   /// The poses at which main effects are added up (engine/run/effect_poses.h).
   std::span<const PoseIndex> effect_poses() const { return effect_poses_; }
@@ -68,6 +73,7 @@ class MachineTable {
   LimitedVectors vectors_;
   std::vector<double> rounding_;
   std::size_t kept_;
+  PartGroups parts_;
   std::vector<PoseIndex> effect_poses_;
 };
 

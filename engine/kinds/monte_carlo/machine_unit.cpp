@@ -43,6 +43,7 @@ MachineSums::MachineSums(const MachineTable& table)
       largest(table.responses()),
       rms(table.responses()) {
   if (table.has_limits()) scores.emplace(table.scores());
+  if (table.has_parts()) parts.emplace(table.parts());
   effects.assign(table.effects(), MainEffectSums(table.errors(), table.responses()));
 }
 
@@ -54,6 +55,7 @@ void MachineSums::merge(const MachineSums& later) {
   if (scores) scores->merge(*later.scores);
   if (later.fit && fit) fit->merge(*later.fit);
   if (later.fit && !fit) fit = later.fit;
+  if (parts) parts->merge(*later.parts);
   merge_each(effects, later.effects);
 }
 
@@ -62,6 +64,7 @@ void MachineSums::write(ByteWriter& to) const {
   if (scores) scores->write(to);
   to.number(fit ? 1 : 0);
   if (fit) fit->write(to);
+  if (parts) parts->write(to);
   write_each(effects, to);
 }
 
@@ -73,6 +76,7 @@ MachineSums MachineSums::read(ByteReader& from, const MachineTable& table) {
   if (from.number_up_to(table.vectors().rows() > 0 ? 1 : 0) == 1) {
     sums.fit = LinearFitSums::read(from, table.errors(), table.vectors().rows() * table.plan().poses().size());
   }
+  if (sums.parts) sums.parts = PartSums::read(from, table.parts());
   sums.effects.clear();
   for (std::size_t k = 0; k < table.effects(); ++k) {
     sums.effects.push_back(MainEffectSums::read(from, table.errors(), table.responses()));
@@ -172,7 +176,9 @@ void MachineUnitEvaluator::add_machines(const MachineBlock& block, const EffectB
   found.sums->effects[at_poses + 1].add(bins, largest, block.solved());
   if (!found.sums->scores) return;
   const std::vector<std::uint8_t> rejected = block.rejected();
-  found.sums->scores->add(std::span(values_).first(table_->errors() * machines), rejected);
+  const std::span errors = std::span(values_).first(table_->errors() * machines);
+  found.sums->scores->add(errors, rejected);
+  if (found.sums->parts) found.sums->parts->add(errors, rejected);
   if (is_fitted_) add_fit(block.solved(), found);
   found.rejected = rejected;
 }

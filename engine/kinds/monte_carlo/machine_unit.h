@@ -8,6 +8,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/kinds/monte_carlo/machine_table.h"
+#include "engine/kinds/monte_carlo/part_sums.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/stats/linear_fit.h"
@@ -28,6 +29,7 @@ struct MachineSums {
   std::vector<Moments> rms;             ///< [R] of the machines' root mean squares
   std::optional<ScoreSums> scores;      ///< where there are limits
   std::optional<LinearFitSums> fit;     ///< of the limited vectors at all poses, over the machines that are fitted
+  std::optional<PartSums> parts;        ///< where errors were measured on parts as well
   std::vector<MainEffectSums> effects;  ///< as MachineTable::effects() counts them
 
   /// Of no machines.

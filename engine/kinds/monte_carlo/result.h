@@ -39,6 +39,13 @@ struct MachineValues {
   std::vector<std::uint64_t> histogram_counts;  ///< [R x B]
 };
 
+/// What a yield may be, as far as the few parts tell on which errors were measured: an interval that holds the one of
+/// the machines. NaN where the rejects do not say how much a part weighs (PartSums::interval).
+struct PartsYield {
+  double ci_low = 0.0;   ///< of the yield
+  double ci_high = 0.0;  ///< of it
+};
+
 /// The share of machines that are within every limit at every pose. A machine that is not solved at a pose is a reject,
 /// unless said otherwise. Intervals: Clopper and Pearson, two-sided, at conf_level. NaN for a response without a limit.
 struct YieldResult {
@@ -79,6 +86,7 @@ struct YieldResult {
            !linear_share.empty();
   }
   /// @}
+  std::optional<PartsYield> parts = {};  ///< where errors are measured
 };
 
 /// How much of the scatter of each response an error makes alone: P errors, E bins.

@@ -1,6 +1,7 @@
 #include "engine/kinds/monte_carlo/yield.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/base/nan.h"
@@ -92,6 +93,12 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
   return found;
 }
 
+PartsYield parts_yield(const PartSums& parts, const YieldResult& found) {
+  const Interval interval = parts.interval(found.conf_level);
+  if (std::isnan(interval.low)) return {kNaN, kNaN};
+  return {std::min(interval.low, found.ci_low), std::max(interval.high, found.ci_high)};
+}
+
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level) {
   MainEffects effects;
@@ -166,6 +173,7 @@ YieldVerdict judge_yield(const YieldResult& found, double asked) {
                        .machines = found.machines,
                        .rejects = found.rejects,
                        .unsolved = found.rejects - found.unsolved_pass_rejects};
+  if (found.parts) verdict.with_parts = Interval{found.parts->ci_low, found.parts->ci_high};
   if (asked == 0.0) return verdict;
   const std::uint64_t good = found.machines - found.rejects;
   verdict.decision = undecided;

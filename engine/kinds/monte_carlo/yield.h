@@ -24,6 +24,9 @@ MachineValues machine_values(std::span<const Moments> moments, std::span<const Q
 YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::span<const ResponseLimit> limits,
                      double conf_level);
 
+/// The interval of the parts, which holds that of the machines. parts: of the same machines as `found`.
+PartsYield parts_yield(const PartSums& parts, const YieldResult& found);
+
 /// First-order indices and curves of all errors: the indices added up over the poses that `at_poses` are of, the curves
 /// of `curve`. errors: [P].
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,

@@ -197,7 +197,7 @@ void read(const h5::File& file, StoredResult& result) {
 
 void append_tables(CsvTables& tables, const StoredResult& result) {
   const Indices& found = sensitivity_of(result);
-  tables.push_back(sigma_table(result));
+  append_sigma_tables(tables, result);
   tables.push_back(global_table(result));
   tables.push_back(index_change_table(result));
   append_local_tables(tables, result);

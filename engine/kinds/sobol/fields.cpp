@@ -241,7 +241,7 @@ CsvTable pairs_table(const StoredResult& result, std::size_t r) {
 void append_tables(CsvTables& tables, const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   const Layout& rows = layout(found.joined);
-  tables.push_back(sigma_table(result));
+  append_sigma_tables(tables, result);
   for (std::size_t r = 0; r < found.responses; ++r) {
     CsvTable table = indices_table(result, "sobol_" + result.responses[r].name, rows.aggregated, found.aggregated, r);
     if (!found.Sh.empty()) append_shapley(table, found, r);

@@ -212,6 +212,7 @@ void add_glossary(const StoredResult& result, Page& page) {
   Section& section = page.add_section("names", "What the names mean");
   section.table(table_of("coordinates", "coordinate", "Coordinates of a pose", result.pose_coordinates));
   section.table(table_of("errors", "error", "Errors", result.factors));
+  if (const auto measured = measured_table(result)) section.table(*measured);
 }
 
 void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page) {

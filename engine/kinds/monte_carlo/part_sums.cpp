@@ -1,0 +1,105 @@
+#include "engine/kinds/monte_carlo/part_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/contract.h"
+#include "engine/base/nan.h"
+#include "engine/random/distribution.h"
+
+namespace poesy {
+namespace {
+
+double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
+
+double share_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+double square_sum(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum;
+}
+
+}  // namespace
+
+PartSums::PartSums(const PartGroups& groups) : groups_(&groups), squares_(groups.each.size(), 0.0) {
+  for (const PartGroup& group : groups.each) sums_.emplace_back(group.size(), 0.0);
+}
+
+void PartSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
+  const std::size_t count = rejected.size();
+  machines_ += count;
+  for (std::size_t b = 0; b < count; ++b) {
+    if (rejected[b] == 0) continue;
+    ++rejects_;
+    for (std::size_t g = 0; g < sums_.size(); ++g) {
+      const PartGroup& group = groups_->each[g];
+      std::vector<double> influence(group.size(), 0.0);
+      std::vector<double> x;
+      for (const std::size_t p : group.errors) x.push_back(errors[p * count + b]);
+      add_influence(group, x, influence);
+      for (std::size_t i = 0; i < influence.size(); ++i) {
+        sums_[g][i] += influence[i];
+        squares_[g] += influence[i] * influence[i];
+      }
+    }
+  }
+}
+
+void PartSums::merge(const PartSums& later) {
+  POESY_EXPECTS(later.sums_.size() == sums_.size());
+  machines_ += later.machines_;
+  rejects_ += later.rejects_;
+  for (std::size_t g = 0; g < sums_.size(); ++g) {
+    for (std::size_t i = 0; i < sums_[g].size(); ++i) sums_[g][i] += later.sums_[g][i];
+    squares_[g] += later.squares_[g];
+  }
+}
+
+Interval PartSums::interval(double conf_level) const {
+  if (!groups_->known || rejects_ < kLeast || machines_ - rejects_ < kLeast) return {kNaN, kNaN};
+  const auto machines = static_cast<double>(machines_);
+  const double yield = 1.0 - static_cast<double>(rejects_) / machines;
+  double of_parts = 0.0;
+  double squares = 0.0;  // of each group's variance, over its degrees of freedom
+  for (std::size_t g = 0; g < sums_.size(); ++g) {
+    const auto n = static_cast<double>(sums_[g].size());
+    // without what the squares of sums of few machines are too large by
+    const double variance = (square_sum(sums_[g]) - squares_[g]) / (machines * machines * n * (n - 1.0));
+    of_parts += variance;
+    squares += variance * variance / (n - 1.0);
+  }
+  of_parts = std::max(of_parts, 0.0);
+  const double freedom = squares > 0.0 ? std::max(of_parts * of_parts / squares, 1.0) : machines;
+  const double z = normal_quantile(1.0, yield);
+  const double deviation = std::sqrt(of_parts + yield * (1.0 - yield) / machines) / density(z);
+  const double half = two_sided_student_quantile(freedom, conf_level) * deviation;
+  return {share_below(z - half), share_below(z + half)};
+}
+
+void PartSums::write(ByteWriter& to) const {
+  to.number(machines_);
+  to.number(rejects_);
+  for (const std::vector<double>& sums : sums_) to.reals(sums);
+  to.reals(squares_);
+}
+
+PartSums PartSums::read(ByteReader& from, const PartGroups& groups) {
+  PartSums sums(groups);
+  sums.machines_ = from.number();
+  sums.rejects_ = from.number_up_to(sums.machines_);
+  for (std::vector<double>& each : sums.sums_) from.reals(each);
+  from.reals(sums.squares_);
+  const auto rejects = static_cast<double>(sums.rejects_);
+  constexpr double kRounding = 1.0 + 1e-9;
+  for (std::size_t g = 0; g < sums.sums_.size(); ++g) {
+    const double square = square_sum(sums.sums_[g]);
+    if (!std::isfinite(sums.squares_[g]) || !(square <= rejects * sums.squares_[g] * kRounding)) {
+      throw BytesError("has sums over parts that no machines give");
+    }
+  }
+  return sums;
+}
+
+}  // namespace poesy
