@@ -233,7 +233,8 @@ StudyRow correlated_row() {
   return {.name = "correlated",
           .value = {.type = "list of tables, or text",
                     .words = {{kAsMeasured,
-                               "errors in errors.override that are columns of one file keep their rank correlation"}}},
+                               "all columns of one file that errors.override takes keep their rank correlation; "
+                               "for some of them, write a block"}}},
           .usual = "none",
           .meaning =
               "Errors that depend on each other, in blocks [[errors.correlated]]; studies in which errors vary "
