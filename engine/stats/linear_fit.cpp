@@ -88,7 +88,9 @@ std::optional<LinearFit> LinearFitSums::fit() const {
   const auto n = static_cast<double>(machines_);
   const auto size = static_cast<Eigen::Index>(errors_);
   const Eigen::Map<const Eigen::VectorXd> x(x_.data(), size);
-  LinearFit found{.errors = errors_, .machines = machines_};
+  LinearFit found;
+  found.errors = errors_;
+  found.machines = machines_;
   found.products.resize(errors_ * errors_);
   Eigen::Map<Matrix> products(found.products.data(), size, size);
   products = Eigen::Map<const Matrix>(xx_.data(), size, size).selfadjointView<Eigen::Lower>();
