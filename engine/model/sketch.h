@@ -19,8 +19,9 @@ struct SketchedJoint {
   SketchVector axis;   ///< its first axis
   bool has_errors;     ///< whether there are errors of the frame to the next joint, or the platform; of the first also
                        ///< those of the base
-  std::size_t first = 1;  ///< of its limb's frames, the one of its first axis
-  std::size_t frame = 1;  ///< of its limb's frames, the one at whose origin it stands
+  std::size_t first = 1;   ///< of its limb's frames, the one of its first axis
+  std::size_t frame = 1;   ///< of its limb's frames, the one at whose origin it stands
+  std::string drive = {};  ///< name of the drive that holds it; empty where it has no name
 };
 
 /// A frame of a limb: of the base, of each axis of a joint after it has moved, of the platform.

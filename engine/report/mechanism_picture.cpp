@@ -8,6 +8,7 @@
 
 #include "engine/base/text.h"
 #include "engine/report/html/page.h"
+#include "engine/report/sketch_words.h"
 #include "engine/report/svg_shapes.h"
 
 namespace poesy {
@@ -202,10 +203,14 @@ class ViewPanel {
   }
 
   std::string joint_glyph(const SketchedJoint& joint, Pixel middle, std::string_view colour) const {
-    std::string text = fmt::format("<g><title>{}</title>\n", escaped(joint.name));
+    std::string text = fmt::format("<g><title>{}</title>\n", escaped(name_words(joint)));
     if (joint.has_errors)
       text += svg_circle(middle, 1.7 * kGlyph, "fill=\"none\" stroke=\"#b3261e\" stroke-width=\"0.8\"");
-    return text + svg_glyph(joint.type, joint.actuated, middle, {colour}) + "</g>\n";
+    text += svg_glyph(joint.type, joint.actuated, middle, {colour});
+    if (!joint.drive.empty()) {
+      text += svg_text({middle.x + 2 * kGlyph, middle.y - kGlyph}, joint.drive, fmt::format("fill=\"{}\"", colour));
+    }
+    return text + "</g>\n";
   }
 
   const SketchView* view_;

@@ -12,6 +12,10 @@ std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t join
   return type == 'F' ? fmt::format("fixed frame {}", joint) : fmt::format("{} joint {}", type, joint);
 }
 
+std::string name_words(const SketchedJoint& joint) {
+  return joint.drive.empty() ? joint.name : fmt::format("{}, driven by {}", joint.name, joint.drive);
+}
+
 std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before) {
   if (after == before) return "inside " + joint_words(sketch, limb, after);
   return fmt::format("between {} and {}", joint_words(sketch, limb, after), joint_words(sketch, limb, before));

@@ -12,6 +12,9 @@ namespace poesy {
 /// for one more than there are joints.
 std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint);
 
+/// "q", "q, driven by motor_1": the joint's name, and the drive's where it has one.
+std::string name_words(const SketchedJoint& joint);
+
 /// "between the base and U joint 1", "inside U joint 1": where joints count as in SketchedError.
 std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before);
 

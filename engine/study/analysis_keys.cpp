@@ -257,8 +257,9 @@ std::vector<StudyRow> shared_rows() {
                .value = {.type = "true or false"},
                .usual = "`false`",
                .meaning = "Whether responses are what the best correction of the actuators leaves of the platform's "
-                          "displacement, each pose by itself; for mechanisms of which sensitivity studies say what "
-                          "calibration can remove.",
+                          "displacement, each pose by itself, the best that any choice of drive offsets at each pose "
+                          "could do, which no real calibration reaches; for mechanisms of which sensitivity studies "
+                          "say what calibration can remove.",
                .reader = read_calibrated,
                .lines = calibrated_line,
                .shown = shown_calibrated},

@@ -168,9 +168,7 @@ std::string held_errors_text(const Study& study) {
 }
 
 std::string calibration_text(const Study& study) {
-  return study.mechanism.calibrated
-             ? "calibrated: responses are what the best correction of the actuators leaves, each pose by itself"
-             : "";
+  return study.mechanism.calibrated ? fmt::format("calibrated: responses are {}", kLeftByCalibration) : "";
 }
 
 }  // namespace poesy

@@ -19,6 +19,9 @@ struct Joint {
   bool actuated;         ///< else passive: it gives way to errors
   double advance = 0.0;  ///< of a revolute joint: m per rad along its axis; not zero in a helical joint
   bool fixed = false;    ///< actuated, but by no drive: a frame between parts that do not move against each other
+  /// Of an actuated joint: those of one number, in any limbs, have one drive, which moves all by the same displacement;
+  /// 0: a drive of its own.
+  std::size_t drive = 0;
 };
 
 /// A serial limb in local product-of-exponentials form (Du et al. 2022, Eq. 13): n joints between n + 1 fixed

@@ -1,5 +1,8 @@
 #include "models/chain/separation.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,15 +29,27 @@ constexpr double kDependent = 1e-9;
 
 /// A limb where the perfect mechanism holds its platform.
 struct LimbJoints {
-  Vector3 end = Vector3::Zero();  ///< where its last joint is (m)
-  Columns passive;                ///< twists of the platform by the passive joints
-  Columns driven;                 ///< and by the drives
+  Vector3 end = Vector3::Zero();         ///< where its last joint is (m)
+  Columns passive;                       ///< twists of the platform by the passive joints
+  Columns driven;                        ///< and by the drives, each with all joints that it moves in this limb
+  std::vector<std::size_t> drives = {};  ///< of these columns: Joint::drive
 };
 
 /// Room for one column more.
 auto next_column(Columns& columns) {
   columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
   return columns.rightCols<1>();
+}
+
+/// Adds a driven joint's twist to what its drive does in the limb.
+void add_driven(std::size_t drive, const Screw& twist, LimbJoints& limb) {
+  const auto known = drive == 0 ? limb.drives.end() : std::ranges::find(limb.drives, drive);
+  if (known != limb.drives.end()) {
+    limb.driven.col(known - limb.drives.begin()) += twist;
+  } else {
+    next_column(limb.driven) = twist;
+    limb.drives.push_back(drive);
+  }
 }
 
 LimbJoints joints_of(const Limb& limb, std::span<const double> displacements) {
@@ -44,7 +59,11 @@ LimbJoints joints_of(const Limb& limb, std::span<const double> displacements) {
     const Joint& joint = limb.joints[j];
     if (!joint.fixed) {
       found.end = g.p;
-      next_column(joint.actuated ? found.driven : found.passive) = spatial_column(joint, g);
+      if (joint.actuated) {
+        add_driven(joint.drive, spatial_column(joint, g), found);
+      } else {
+        next_column(found.passive) = spatial_column(joint, g);
+      }
     }
     move_joint(joint, displacements[j], g);
     g = g * limb.home[j + 1];
@@ -99,17 +118,23 @@ class LimbSeparation {
     passive.colwise().normalize();
     beyond_passive_ = beyond(passive);
     Columns driven = lengths_ * joints.driven;
+    driven_lengths_ = driven.colwise().norm();
     driven.colwise().normalize();
     driven = beyond_passive_ * driven;
     for (auto column : driven.colwise()) {
       if (column.norm() < kDependent) column.setZero();
     }
     beyond_drives_ = beyond(driven);
-    drives_ = from_lengths_ * driven;
+    motions_ = from_lengths_ * driven;
+    drives_ = joints.drives;
   }
 
+  /// Of each column of motions(): Joint::drive.
+  const std::vector<std::size_t>& drives() const { return drives_; }
   /// B_i A_i, each column over |A_i|_i.
-  const Columns& drives() const { return drives_; }
+  const Columns& motions() const { return motions_; }
+  /// |A_i|_i of each column.
+  double driven_length(Eigen::Index column) const { return driven_lengths_[column]; }
 
   /// Of an error that moves the limb's platform by this twist.
   Parts parts(const Screw& xi) const {
@@ -123,7 +148,9 @@ class LimbSeparation {
   Matrix6 from_lengths_;    ///< to displacements of the platform
   Matrix6 beyond_passive_;  ///< what passive joints leave
   Matrix6 beyond_drives_;   ///< what drives leave of that
-  Columns drives_;
+  Columns motions_;
+  Eigen::RowVectorXd driven_lengths_;
+  std::vector<std::size_t> drives_;
 };
 
 /// Twists of the platform times this have the root mean square displacement of its points as their norm.
@@ -144,13 +171,59 @@ std::vector<LimbSeparation> limb_separations(const DeformationModel& model, std:
   return limbs;
 }
 
+/// What drives of several limbs do in all of them, as columns that are comparable with LimbSeparation::motions().
+class SharedDrives {
+ public:
+  /// Adds what a limb does, in its column. Returns whether the drive is new.
+  bool add(const LimbSeparation& limb, Eigen::Index column) {
+    const auto [place, is_new] = sums_.try_emplace(limb.drives()[static_cast<std::size_t>(column)]);
+    const double length = limb.driven_length(column);
+    place->second.motion += length * limb.motions().col(column);
+    place->second.square += length * length;
+    return is_new;
+  }
+
+  /// Sum of B_k A_k over the limbs, over the root of the sum of |A_k|_k^2; zero where limbs cancel each other.
+  Screw motion(std::size_t drive) const {
+    const Sum& sum = sums_.at(drive);
+    const Screw motion = sum.motion / std::sqrt(sum.square);
+    return motion.norm() < kDependent ? Screw::Zero().eval() : motion;
+  }
+
+ private:
+  struct Sum {
+    Screw motion = Screw::Zero();
+    double square = 0.0;
+  };
+  std::map<std::size_t, Sum> sums_;
+};
+
 /// What corrections of all drives leave of a displacement.
 Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
-  Columns drives;
+  Columns motions;
+  SharedDrives shared;
+  std::vector<std::pair<std::size_t, Eigen::Index>> places;  // of shared drives among the columns
   for (const LimbSeparation& limb : limbs) {
-    for (const auto column : limb.drives().colwise()) next_column(drives) = column;
+    for (Eigen::Index c = 0; c < limb.motions().cols(); ++c) {
+      const std::size_t drive = limb.drives()[static_cast<std::size_t>(c)];
+      if (drive > 0 && !shared.add(limb, c)) continue;
+      if (drive > 0) places.emplace_back(drive, motions.cols());
+      next_column(motions) = limb.motions().col(c);
+    }
   }
-  return beyond(drives);
+  for (const auto& [drive, column] : places) motions.col(column) = shared.motion(drive);
+  return beyond(motions);
+}
+
+/// Whether the limb's drives move no other limb, so that they can take all of the drive part of its errors.
+bool drives_are_its_own(const std::vector<LimbSeparation>& limbs, std::size_t limb) {
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    for (const std::size_t drive : limbs[i].drives()) {
+      const std::vector<std::size_t>& own = limbs[limb].drives();
+      if (i != limb && drive > 0 && std::ranges::find(own, drive) != own.end()) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -172,8 +245,8 @@ Separation separation(const DeformationModel& model, std::span<const double> pos
     found.drive.push_back(drive.norm());
     found.constraint.push_back(constraint.norm());
     found.effect.push_back((drive + constraint).norm());
-    // Corrections take all of the drive part.
-    found.residual.push_back(left_of(constraint, uncorrected).norm());
+    const Screw left = drives_are_its_own(limbs, slot.limb) ? constraint : Screw(drive + constraint);
+    found.residual.push_back(left_of(left, uncorrected).norm());
   }
   return found;
 }

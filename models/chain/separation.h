@@ -17,6 +17,9 @@ namespace poesy::chain {
 ///     drive = |B_i A_i a|, constraint = |B_i n|, effect = |B_i xi|
 ///     residual = min over dq of |B_i xi + sum over all limbs of B_k A_k dq_k|
 ///
+/// A_i and dq have a column and an entry for each drive, and a drive that moves joints of several limbs (Joint::drive)
+/// has one entry of dq in all of them: what enters through it in one limb it may not take away.
+///
 /// Passive joints give way: B_i V_i = 0. |x| is the root mean square displacement of the model's platform->points under
 /// the twist x. |n|_i is that of the limb's end: |n|_i^2 = |v + omega x c|^2 + rho^2 |omega|^2, with c the place of the
 /// limb's last joint and rho the points' distance from their middle. It decides what counts as drive and what as

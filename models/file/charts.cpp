@@ -14,17 +14,6 @@ namespace {
 /// Displacements that differ by less are the same, rad or reaches; tracking leaves a millionth of it.
 constexpr double kSame = 1e-6;
 
-/// Of all joints that move.
-std::vector<const Joint*> moving_joints(const Mechanism& mechanism) {
-  std::vector<const Joint*> list;
-  for (const Limb& limb : mechanism.limbs) {
-    for (const Joint& joint : limb.joints) {
-      if (joint.moves()) list.push_back(&joint);
-    }
-  }
-  return list;
-}
-
 /// With the platform's frame elsewhere on the platform.
 Mechanism with_platform_at(Mechanism mechanism, const Transform& platform_T_new) {
   mechanism.platform = mechanism.platform * platform_T_new;
@@ -52,16 +41,10 @@ Chart tip_chart(const Mechanism& mechanism) {
 
 Chart actuators_chart(const Mechanism& mechanism) {
   PoseChart description{"actuators", {}, "take displacements nearer to home, where all are 0"};
-  const std::vector<const Joint*> joints = moving_joints(mechanism);
   const std::vector<JointDisplacement> displacements = displacement_names(mechanism);
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < mechanism.limbs.size(); ++i) {
-    for (const std::size_t end = k + mechanism.limbs[i].moving(); k < end; ++k) {
-      if (!joints[k]->actuated) continue;
-      description.coordinates.push_back(
-          {displacements[k].name, displacements[k].dimension,
-           "displacement of joint " + joints[k]->name + " of limb " + std::to_string(i + 1) + " from home"});
-    }
+  for (const Drive& drive : drives_of(mechanism)) {
+    description.coordinates.push_back({drive.name, displacements[drive.joints.front()].dimension,
+                                       "displacement of " + joints_text(mechanism, drive) + " from home"});
   }
   return {std::move(description), mechanism, mechanism, Given::drives, Transform()};
 }
@@ -119,8 +102,7 @@ std::vector<Chart> charts_of(const Mechanism& mechanism) {
   std::vector<Chart> charts;
   const auto is_length = [](const Coordinate& coordinate) { return coordinate.dimension() == Dimension::length; };
   if (mechanism.tool && std::ranges::any_of(mechanism.coordinates, is_length)) charts.push_back(tip_chart(mechanism));
-  const auto drives = std::ranges::count_if(moving_joints(mechanism), &Joint::actuated);
-  if (drives == std::ssize(mechanism.coordinates)) charts.push_back(actuators_chart(mechanism));
+  if (drives_of(mechanism).size() == mechanism.coordinates.size()) charts.push_back(actuators_chart(mechanism));
   std::erase_if(charts, [&](const Chart& chart) { return !names_are_new(chart, mechanism); });
   return charts;
 }

@@ -53,6 +53,39 @@ Motion motion_of(JointKind kind, std::size_t position) {
   }
 }
 
+/// A drive's name in the n-th copy of a limb.
+std::string of_copy(const std::string& drive, std::size_t n) {
+  std::string name;
+  for (const char letter : drive) name += letter == '*' ? std::to_string(n) : std::string(1, letter);
+  return name;
+}
+
+/// Throws where a drive would turn one joint and slide another, or where its name, a column of files of poses, is that
+/// of another column.
+void check_drives(const Mechanism& mechanism) {
+  const std::vector<const Joint*> joints = moving_joints(mechanism);
+  const std::vector<JointDisplacement> displacements = displacement_names(mechanism);
+  for (const Drive& drive : drives_of(mechanism)) {
+    const Joint& first = *joints[drive.joints.front()];
+    if (first.drive.empty()) continue;
+    for (const std::size_t k : drive.joints) {
+      if (displacements[k].dimension == displacements[drive.joints.front()].dimension) continue;
+      throw InputError(
+          joints[k]->place,
+          "drive '" + drive.name + "' turns one of its joints and slides another, joint '" + joints[k]->name + "'",
+          "give them drives of different names, because joints of one drive have one displacement");
+    }
+    const bool is_coordinate =
+        std::ranges::find(mechanism.coordinates, drive.name, &Coordinate::name) != mechanism.coordinates.end();
+    const bool is_joint = std::ranges::find(displacements, drive.name, &JointDisplacement::name) != displacements.end();
+    if (!is_coordinate && !is_joint) continue;
+    throw InputError(first.place,
+                     "the drive of joint '" + first.name + "' has the name '" + drive.name + "' of a " +
+                         (is_coordinate ? "coordinate" : "joint's displacement"),
+                     "give it another name, because files of poses may have columns of both");
+  }
+}
+
 class Builder {
  public:
   Builder(const MechanismFile& file, std::span<const double> values) : file_(file), values_(values) {}
@@ -72,6 +105,7 @@ class Builder {
     if (lines.x) made.platform.R = platform_axes(*lines.x, *lines.z);
     for (std::size_t n = 0; n < file_.limbs.size(); ++n) add_limbs(file_.limbs[n], points[n], made);
     for (const CoordinateLines& coordinate : lines.coordinates) made.coordinates.push_back(coordinate_of(coordinate));
+    check_drives(made);
     if (lines.tool) made.tool = point(*lines.tool);
     add_metric_points(made);
     add_factors(file_, values_, made);
@@ -254,7 +288,8 @@ class Builder {
                         element.motion,
                         actuated,
                         pitch_of(lines),
-                        {frame_of(x, element.z), element.point}});
+                        {frame_of(x, element.z), element.point},
+                        lines.drive ? lines.drive->name : ""});
     }
     return joints;
   }
@@ -281,6 +316,7 @@ class Builder {
       Transform before;
       for (Joint& joint : limb.joints) {
         if (copy > 0) joint.at_home = turn * joint.at_home;
+        joint.drive = of_copy(joint.drive, copy + 1);
         limb.home.push_back(before.inverse() * joint.at_home);
         before = joint.at_home;
       }
@@ -377,6 +413,34 @@ Mechanism in_reaches(Mechanism mechanism) {
   mechanism.platform.p /= unit;
   mechanism.reach = 1.0;
   return mechanism;
+}
+
+std::vector<const Joint*> moving_joints(const Mechanism& mechanism) {
+  std::vector<const Joint*> list;
+  for (const Limb& limb : mechanism.limbs) {
+    for (const Joint& joint : limb.joints) {
+      if (joint.moves()) list.push_back(&joint);
+    }
+  }
+  return list;
+}
+
+std::vector<Drive> drives_of(const Mechanism& mechanism) {
+  const std::vector<const Joint*> joints = moving_joints(mechanism);
+  const std::vector<JointDisplacement> displacements = displacement_names(mechanism);
+  std::vector<Drive> drives;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (!joints[k]->actuated) continue;
+    const std::string& name = joints[k]->drive;
+    const auto known = std::ranges::find_if(
+        drives, [&](const Drive& drive) { return !name.empty() && joints[drive.joints.front()]->drive == name; });
+    if (known != drives.end()) {
+      known->joints.push_back(k);
+    } else {
+      drives.push_back({name.empty() ? displacements[k].name : name, {k}});
+    }
+  }
+  return drives;
 }
 
 std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism) {

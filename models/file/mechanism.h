@@ -23,12 +23,13 @@ enum class Motion { fixed, revolute, prismatic, helical };
 
 /// An elementary joint, or a fixed frame.
 struct Joint {
-  std::string name;   ///< of the joint that it belongs to
-  Place place;        ///< of that joint in the file
-  Motion motion;      ///< fixed: it has a frame and errors, and no displacement
-  bool actuated;      ///< a drive holds it
-  double pitch;       ///< of a helical one, m/rad; positive is right-handed
-  Transform at_home;  ///< base_T_joint at home
+  std::string name;        ///< of the joint that it belongs to
+  Place place;             ///< of that joint in the file
+  Motion motion;           ///< fixed: it has a frame and errors, and no displacement
+  bool actuated;           ///< a drive holds it
+  double pitch;            ///< of a helical one, m/rad; positive is right-handed
+  Transform at_home;       ///< base_T_joint at home
+  std::string drive = {};  ///< name of the drive, where the file names it; joints of one name move together
 
   /// Whether it has a displacement.
   bool moves() const { return motion != Motion::fixed; }
@@ -41,6 +42,15 @@ struct Limb {
 
   /// That have a displacement.
   std::size_t moving() const;
+};
+
+/// What moves one actuated joint, or several by the same displacement from home (rad or m).
+struct Drive {
+  std::string name;                 ///< as the file has it; of a drive without a name that of its joint's displacement
+  std::vector<std::size_t> joints;  ///< places among all joints that move, ascending
+
+  /// Whether it moves several joints.
+  bool is_shared() const { return joints.size() > 1; }
 };
 
 /// x, y, z of P in the base frame (m), and rx, ry, rz from home (rad).
@@ -99,6 +109,12 @@ Mechanism in_reaches(Mechanism mechanism);
 /// The displacements q_i_j of all joints that move, limb by limb: limbs count from 1, j is the joint's place among all
 /// joints and fixed frames of the limb.
 std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism);
+
+/// The joints that have a displacement, limb by limb.
+std::vector<const Joint*> moving_joints(const Mechanism& mechanism);
+
+/// The drives of all limbs, in the order of their first joints.
+std::vector<Drive> drives_of(const Mechanism& mechanism);
 
 /// base_T_platform for R = Rot(rx, ry, rz) R_home and P = (x, y, z).
 Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pose);

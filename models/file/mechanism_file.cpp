@@ -161,15 +161,33 @@ void read_at(const StudyValue& value, JointLines& joint) {
   }
 }
 
-/// true for joints with one axis and for both of C; 1 or 2 for one of C or U.
+/// The name of a drive, in which * may be in the place of a copy's number.
+void read_drive(const StudyValue& value, JointLines& joint) {
+  if (elements(joint.kind) > 1) {
+    value.fail("is a text, but a joint of type " + std::string(name(joint.kind)) + " has two axes",
+               "write two joints of one axis each, of which the driven one names its drive");
+  }
+  Reference drive = reference(value);
+  for (const std::string_view answer : {"true", "false", "yes", "no"}) {
+    if (drive.name == answer) value.fail("is the text '" + drive.name + "'", "write true or false without quotes");
+  }
+  Reference of_copy = drive;
+  std::ranges::replace(of_copy.name, '*', '1');
+  check_name(of_copy);
+  joint.drive = std::move(drive);
+  joint.actuated[0] = true;
+}
+
+/// true for joints with one axis and for both of C; 1 or 2 for one of C or U; a drive's name for joints with one axis.
 void read_actuated(const StudyValue& value, JointLines& joint) {
+  if (value.is_text()) return read_drive(value, joint);
   const std::size_t axes = elements(joint.kind);
   if (const std::optional<bool> all = value.boolean()) {
     if (*all && joint.kind == JointKind::universal) value.fail("is true", "write 1 or 2, for its first or second axis");
     joint.actuated = {*all, *all && axes == 2};
     return;
   }
-  if (axes == 1) value.fail("is no truth value", "write true or false");
+  if (axes == 1) value.fail("is no truth value", "write true, false, or the name of its drive");
   joint.actuated[static_cast<std::size_t>(value.whole_number(1, 2) - 1)] = true;
 }
 
@@ -213,8 +231,11 @@ const Keys<JointLines, Nothing>& joint_keys() {
           needed("pitch", kept("length", expression, &J::pitch), "\"5 mm\"",
                  "By how much it slides in one turn; positive for a right-handed thread.", {"H"}),
           optional(
-              "actuated", read_by("true, 1 or 2", read_actuated), "`false`",
-              "Whether a drive holds it; of U the axis that is held, of C the turn (1), the slide (2) or both (true).",
+              "actuated", read_by("true, 1, 2 or text", read_actuated), "`false`",
+              "Whether a drive holds it; of U the axis that is held, of C the turn (1), the slide (2) or both (true). "
+              "Of R, P and H a text is the name of its drive: joints of one name, in any limbs, are moved by one "
+              "drive, all by the same displacement from home. A * in the name is the number of the limb's copy; "
+              "without it all copies have one drive.",
               {"R", "P", "H", "C", "U"})}};
   return keys;
 }

@@ -59,6 +59,7 @@ struct JointLines {
   std::optional<Triple> x;               ///< of its first frame
   std::optional<Expression> pitch;       ///< of H, per turn
   std::array<bool, 2> actuated{};        ///< its elementary joints
+  std::optional<Reference> drive;        ///< that holds it and others; "*" in it: the number of the limb's copy
 };
 
 /// A limb as written, and how often.

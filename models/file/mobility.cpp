@@ -70,6 +70,30 @@ Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   return made;
 }
 
+/// With one column for the joints of one drive, in the place of the first: its motion is the sum of theirs.
+Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drives) {
+  std::vector<Index> kept;
+  std::vector<bool> follows(all.joints.size(), false);
+  for (const Drive& drive : drives) {
+    const auto first = static_cast<Index>(drive.joints.front());
+    for (const std::size_t other : std::span(drive.joints).subspan(1)) {
+      all.loops.col(first) += all.loops.col(static_cast<Index>(other));
+      all.platform.col(first) += all.platform.col(static_cast<Index>(other));
+      follows[other] = true;
+    }
+  }
+  Jacobians made{{}, {}, {}, {}};
+  for (std::size_t k = 0; k < follows.size(); ++k) {
+    if (follows[k]) continue;
+    kept.push_back(static_cast<Index>(k));
+    made.joints.push_back(all.joints[k]);
+    made.limbs.push_back(all.limbs[k]);
+  }
+  made.loops = all.loops(Eigen::all, kept);
+  made.platform = all.platform(Eigen::all, kept);
+  return made;
+}
+
 /// The columns of joints that no drive holds.
 Matrix passive(const Matrix& matrix, const Jacobians& all) {
   Matrix made(matrix.rows(), matrix.cols());
@@ -145,16 +169,25 @@ void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Mat
   if (found.coordinates_rank < unit.coordinates.size()) found.dependent = dependent_of(unit, chosen, rank);
 }
 
+/// What singular values of the loops are compared with where drives move several joints, whose motions may cancel;
+/// 0: the largest of their own.
+double largest_of(const Matrix& loops_by_joint, const std::vector<Drive>& drives) {
+  if (std::ranges::none_of(drives, &Drive::is_shared)) return 0.0;
+  return linalg::singular_values(loops_by_joint)[0];
+}
+
 /// Lengths in units of the reach.
 Mobility mobility_of(const Mechanism& unit, std::span<const double> q, const PlatformPose& pose) {
-  const Jacobians all = jacobians(unit, q);
-  const Decomposed loops = decomposed(all.loops);
+  const Jacobians of_joints = jacobians(unit, q);
+  const std::vector<Drive> drives = drives_of(unit);
+  const Jacobians all = with_one_column_a_drive(of_joints, drives);
+  const Decomposed loops = decomposed(all.loops, largest_of(of_joints.loops, drives));
   const Matrix twists = all.platform * loops.null;
-  Mobility found{.joints = all.joints.size(), .loop_equations = size(all.loops.rows())};
-  found.actuated = size(std::ranges::count_if(all.joints, [](const Joint* joint) { return joint->actuated; }));
+  Mobility found{.joints = of_joints.joints.size(), .drives = drives.size(), .loop_equations = size(all.loops.rows())};
+  for (const Drive& drive : drives) found.actuated += drive.joints.size();
   found.singular_values.assign(loops.values.begin(), loops.values.end());
   found.rank = size(loops.rank);
-  found.freedoms = found.joints - found.rank;
+  found.freedoms = all.joints.size() - found.rank;
   found.over_constraints = found.loop_equations - found.rank;
   found.platform_freedoms = size(decomposed(twists, 1.0).rank);
   found.platform_rotates = size(decomposed(twists.topRows(3), 1.0).rank);
@@ -250,8 +283,8 @@ void check_held(const Mechanism& mechanism, const Mobility& found, const std::st
   throw InputError(
       found.loose_place,
       "the drives do not hold the platform" + where + ", which has " + count_text(found.platform_freedoms, "freedom") +
-          " and " + count_text(found.actuated, "drive") + ": " + found.loose_text,
-      found.actuated < found.platform_freedoms
+          " and " + count_text(found.drives, "drive") + ": " + found.loose_text,
+      found.drives < found.platform_freedoms
           ? "write actuated = true at one more joint" + limb_without_drive(mechanism) + ", or correct the axes"
           : "correct the axes, drive another joint, or draw it at a pose that is not singular");
 }
@@ -268,7 +301,9 @@ void check_mobility(const Mechanism& mechanism, const Mobility& home) {
   if (home.coordinates_rank < named) {
     fail("platform.coordinates are not independent: " + home.dependent +
              " follows from the others, and the platform has " + count_text(home.platform_freedoms, "freedom"),
-         "remove it, take another, or correct the axes of the joints");
+         home.drives < home.actuated
+             ? "remove it, take another, correct the axes of the joints, or let fewer joints share a drive"
+             : "remove it, take another, or correct the axes of the joints");
   }
   if (named < home.platform_freedoms) {
     fail("platform.coordinates has " + std::to_string(named) + ", but the platform has " +

@@ -13,14 +13,15 @@ namespace poesy::file {
 inline constexpr double kRankThreshold = 1e-6;
 
 /// How a mechanism can move at one configuration, by the singular values of its loop Jacobian: 6 (limbs - 1) rows, the
-/// twists of limb k's platform less those of limb 1's at the base's origin, and a column for each joint that moves;
-/// lengths are in units of the reach.
+/// twists of limb k's platform less those of limb 1's at the base's origin, and a column for each motion: of a joint
+/// that moves, or of all joints of one drive together; lengths are in units of the reach.
 struct Mobility {
   std::size_t joints = 0;             ///< that move
   std::size_t actuated = 0;           ///< of them
+  std::size_t drives = 0;             ///< that move these
   std::size_t loop_equations = 0;     ///< 6 (limbs - 1)
   std::size_t rank = 0;               ///< of the loop Jacobian
-  std::size_t freedoms = 0;           ///< joints - rank
+  std::size_t freedoms = 0;           ///< motions - rank
   std::size_t over_constraints = 0;   ///< loop_equations - rank
   std::size_t platform_freedoms = 0;  ///< of its twists
   std::size_t platform_rotates = 0;   ///< of its angular velocities

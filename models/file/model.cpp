@@ -25,17 +25,31 @@
 namespace poesy::file {
 namespace {
 
-/// Joints that move as they are; a fixed frame is a joint that a drive holds where it is.
-chain::Limb chain_limb(const Limb& limb) {
+/// Joints that move as they are; a fixed frame is a joint that a drive holds where it is. drives: of each joint that
+/// moves, as chain::Joint has it; those of the limb are taken off.
+chain::Limb chain_limb(const Limb& limb, std::span<const std::size_t>& drives) {
   chain::Limb of_chain;
   for (const Joint& joint : limb.joints) {
     const bool turns = joint.motion == Motion::revolute || joint.motion == Motion::helical;
     of_chain.joints.push_back({turns ? chain::JointType::revolute : chain::JointType::prismatic,
                                joint.actuated || !joint.moves(), joint.motion == Motion::helical ? joint.pitch : 0.0,
-                               !joint.moves()});
+                               !joint.moves(), joint.moves() ? drives.front() : 0});
+    if (joint.moves()) drives = drives.subspan(1);
   }
   of_chain.home = limb.home;
   return of_chain;
+}
+
+/// Of each joint that moves, the number of its drive where that moves others too, else 0.
+std::vector<std::size_t> shared_drives(const Mechanism& mechanism) {
+  std::vector<std::size_t> numbers(mechanism.moving(), 0);
+  std::size_t number = 0;
+  for (const Drive& drive : drives_of(mechanism)) {
+    ++number;
+    if (!drive.is_shared()) continue;
+    for (const std::size_t joint : drive.joints) numbers[joint] = number;
+  }
+  return numbers;
 }
 
 /// A displacement for each joint and fixed frame, from those of the joints that move.
@@ -53,7 +67,9 @@ std::vector<double> with_fixed(const Mechanism& mechanism, std::span<const doubl
 chain::DeformationModel chain_model(const Mechanism& mechanism, std::shared_ptr<const Tracker> tracker,
                                     const Mobility& home, std::vector<Vector3> points) {
   chain::DeformationModel model;
-  for (const Limb& limb : mechanism.limbs) model.chain.limbs.push_back(chain_limb(limb));
+  const std::vector<std::size_t> drives = shared_drives(mechanism);
+  std::span<const std::size_t> left = drives;
+  for (const Limb& limb : mechanism.limbs) model.chain.limbs.push_back(chain_limb(limb, left));
   model.chain.pairs = chain::pairs_of(mechanism.limbs.size());
   model.chain.idle = home.idle;
   model.chain.meets = home.passive_rank == home.loop_equations;

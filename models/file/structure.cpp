@@ -1,6 +1,7 @@
 #include "models/file/structure.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +66,18 @@ std::string pose_text(std::span<const Coordinate> coordinates, std::span<const d
 
 SketchVector sketched(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
+/// A line for each drive that has a name.
+std::string drive_lines(const Mechanism& mechanism) {
+  std::string text;
+  const std::vector<const Joint*> joints = moving_joints(mechanism);
+  for (const Drive& drive : drives_of(mechanism)) {
+    if (joints[drive.joints.front()]->drive.empty()) continue;
+    text += fmt::format("  Drive {} moves {}{}.\n", drive.name, joints_text(mechanism, drive),
+                        drive.is_shared() ? ", all by the same displacement from home" : "");
+  }
+  return text;
+}
+
 /// Of elementary joints that make one.
 char type_of(std::span<const Joint> joints) {
   const auto count = [&](Motion motion) { return std::ranges::count(joints, motion, &Joint::motion); };
@@ -102,7 +115,7 @@ Sketch sketch_of(const Mechanism& mechanism) {
       const bool actuated = std::ranges::any_of(one, &Joint::actuated);
       limb.push_back({one.front().name, type_of(one), actuated, sketched(one.front().at_home.p),
                       sketched(one.front().at_home.R.col(2)), has_errors(mechanism, i, j == 0 ? 0 : end, end), j + 1,
-                      j + 1});
+                      j + 1, one.front().drive});
       j = end;
     }
     sketch.limbs.push_back(std::move(limb));
@@ -123,6 +136,19 @@ std::vector<std::string> home_outside(const Mechanism& mechanism) {
   return list;
 }
 
+std::string joints_text(const Mechanism& mechanism, const Drive& drive) {
+  std::vector<std::string> list;
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < mechanism.limbs.size(); ++i) {
+    for (const Joint& joint : mechanism.limbs[i].joints) {
+      if (!joint.moves()) continue;
+      if (std::ranges::find(drive.joints, k++) == drive.joints.end()) continue;
+      list.push_back(fmt::format("joint {} of limb {}", joint.name, i + 1));
+    }
+  }
+  return fmt::format("{}", fmt::join(list, " and "));
+}
+
 std::string structure_text(const Mechanism& mechanism) {
   std::string text =
       fmt::format("  {:<8} {:<10} {:<12} {:<32} {:<32} {}\n", "frame", "joint", "type", "point (mm)", "z", "x");
@@ -133,7 +159,7 @@ std::string structure_text(const Mechanism& mechanism) {
     }
   }
   text += frame_line("platform", "P", "", mechanism.platform);
-  return text +
+  return text + drive_lines(mechanism) +
          "  Frame i_j is that of joint j of limb i, with z about or along the joint and x towards the next joint's\n"
          "  point, made perpendicular to z; S is three R, of which the first lies along the line from the joint "
          "before.\n"
@@ -144,9 +170,10 @@ std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobili
                                         std::span<const PoseMobility> poses) {
   constexpr std::size_t kMostPoses = 3;
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("{} ({} actuated), rank {} of {} loop equations: {}, {}",
-                              counted(home.joints, "joint", "joints"), home.actuated, home.rank, home.loop_equations,
-                              counted(home.freedoms, "freedom", "freedoms"),
+  const std::string by = home.drives == home.actuated ? "" : " by " + counted(home.drives, "drive", "drives");
+  lines.push_back(fmt::format("{} ({} actuated{}), rank {} of {} loop equations: {}, {}",
+                              counted(home.joints, "joint", "joints"), home.actuated, by, home.rank,
+                              home.loop_equations, counted(home.freedoms, "freedom", "freedoms"),
                               counted(home.over_constraints, "over-constraint", "over-constraints")));
   lines.push_back(
       fmt::format("the platform has {}, of which {} rotate; {}; locking the drives leaves {}",
@@ -154,8 +181,9 @@ std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobili
                   counted(home.idle, "idle freedom", "idle freedoms"),
                   home.left_when_locked == 0 ? std::string("none") : fmt::format("{} idle", home.left_when_locked)));
   const std::optional<double> below = home.below_gap();
-  lines.push_back(fmt::format("singular values around the gap, lengths in units of the reach: {:.3g} | {}",
-                              home.above_gap(), below ? fmt::format("{:.1e}", *below) : "none"));
+  lines.push_back(fmt::format("singular values around the gap, lengths in units of the reach: {} | {}",
+                              home.rank > 0 ? fmt::format("{:.3g}", home.above_gap()) : "none",
+                              below ? fmt::format("{:.1e}", *below) : "none"));
   std::size_t different = 0;
   for (const PoseMobility& at : poses) {
     const std::string what = difference(home, at);

@@ -10,9 +10,12 @@
 /// What was understood of a mechanism's file, for people.
 namespace poesy::file {
 
-/// Every elementary joint and fixed frame with its frame at home (mm, in the base frame), a line each, and the rule by
-/// which the frames were chosen.
+/// Every elementary joint and fixed frame with its frame at home (mm, in the base frame), a line each, the drives that
+/// have names, and the rule by which the frames were chosen.
 std::string structure_text(const Mechanism& mechanism);
+
+/// The joints that a drive moves: "joint q of limb 1 and joint q of limb 4".
+std::string joints_text(const Mechanism& mechanism, const Drive& drive);
 
 /// What a coordinate is.
 std::string coordinate_text(const Coordinate& coordinate);

@@ -59,30 +59,38 @@ Tracker::Tracker(const Mechanism& mechanism, Given given)
     given_.push_back(place);
     units_.push_back(is_length ? reach_ : 1.0);
   };
+  const std::vector<const Joint*> joints = moving_joints(unit_);
+  std::vector<bool> is_given(joints.size(), false);
+  std::vector<bool> follows(joints.size() + 6, false);
+  std::vector<bool> is_settled(joints.size(), true);
+  for (const Drive& drive : drives_of(unit_)) {
+    const std::size_t first = drive.joints.front();
+    if (given == Given::drives) give(first, joints[first]->motion == Motion::prismatic);
+    for (const std::size_t place : drive.joints) {
+      follows[place] = place != first;
+      is_given[place] = given == Given::drives;
+      is_settled[place] = !is_given[place] && !drive.is_shared();
+    }
+    if (drive.is_shared()) shared_.push_back(drive);
+  }
   std::size_t begin = 0;
   for (const Limb& limb : unit_.limbs) {
+    const std::size_t moving = limb.moving();
     std::vector<std::size_t> free;
-    std::size_t k = 0;
-    for (const Joint& joint : limb.joints) {
-      if (!joint.moves()) continue;
-      if (given == Given::drives && joint.actuated) {
-        give(begin + k, joint.motion == Motion::prismatic);
-      } else {
-        free.push_back(k);
-      }
-      ++k;
+    for (std::size_t k = 0; k < moving; ++k) {
+      if (is_settled[begin + k]) free.push_back(k);
     }
-    Columns columns(6, index(k));
-    limb_transform(limb, std::vector<double>(k, 0.0), &columns);
+    Columns columns(6, index(moving));
+    limb_transform(limb, std::vector<double>(moving, 0.0), &columns);
     limb_ranks_.push_back(linalg::rank(columns(Eigen::all, free), kRankThreshold));
     limb_joints_.push_back(std::move(free));
-    begin += k;
+    begin += moving;
   }
   if (given == Given::coordinates) {
     for (const Coordinate& coordinate : unit_.coordinates) give(begin + coordinate.component, coordinate.component < 3);
   }
   for (std::size_t place = 0; place < begin + 6; ++place) {
-    if (std::ranges::find(given_, place) == given_.end()) free_.push_back(place);
+    if (!follows[place] && std::ranges::find(given_, place) == given_.end()) free_.push_back(place);
   }
 }
 
@@ -109,7 +117,19 @@ Tracker::System Tracker::system(const State& state) const {
     begin += limb.moving();
     row += 6;
   }
+  for (const Drive& drive : shared_) {
+    for (const std::size_t other : std::span(drive.joints).subspan(1)) {
+      all.col(index(drive.joints.front())) += all.col(index(other));
+    }
+  }
   return {all(Eigen::all, free_), residual};
+}
+
+/// Gives all joints of a drive the displacement of its first.
+void Tracker::move_together(State& state) const {
+  for (const Drive& drive : shared_) {
+    for (const std::size_t place : drive.joints) state[index(place)] = state[index(drive.joints.front())];
+  }
 }
 
 /// Newton's method, as long as every step is a fraction of the one before: then the root is the one on the way.
@@ -121,6 +141,7 @@ Tracker::Ending Tracker::close(State& state) const {
     const double size = change.lpNorm<Eigen::Infinity>();
     if (!(size <= most)) return Ending::slow;
     state(free_) += change;
+    move_together(state);
     if (size <= kRest || equations.residual.lpNorm<Eigen::Infinity>() <= kRounding) {
       const bool closed = system(state).residual.lpNorm<Eigen::Infinity>() <= kClosed;
       return closed ? Ending::closed : Ending::open;
@@ -184,12 +205,10 @@ bool Tracker::settle(State& state) const {
 }
 
 std::string Tracker::why(const State& state, Ending ending, double share) const {
-  std::size_t joints = 0;  // that are solved for
   std::size_t idle = 0;
-  for (std::size_t i = 0; i < unit_.limbs.size(); ++i) {
-    joints += limb_joints_[i].size();
-    idle += limb_joints_[i].size() - limb_ranks_[i];
-  }
+  for (std::size_t i = 0; i < unit_.limbs.size(); ++i) idle += limb_joints_[i].size() - limb_ranks_[i];
+  // That are solved for; components of the platform's pose come behind them.
+  const auto joints = std::ranges::count_if(free_, [&](std::size_t place) { return place < unit_.moving(); });
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";
   const Matrix matrix = system(state).matrix;
@@ -200,7 +219,7 @@ std::string Tracker::why(const State& state, Ending ending, double share) const 
   }
   const Vector weakest = svd.V.col(last);
   Index column = 0;
-  weakest.head(index(joints)).cwiseAbs().maxCoeff(&column);
+  weakest.head(joints).cwiseAbs().maxCoeff(&column);
   std::size_t place = free_[static_cast<std::size_t>(column)];
   std::string blamed;
   for (std::size_t i = 0; i < unit_.limbs.size() && blamed.empty(); ++i) {
@@ -237,6 +256,7 @@ Tracked Tracker::track(std::span<const double> numbers) const {
       const double wanted = numbers[n] / units_[n];
       trial[place] = next < 1.0 ? home[place] + next * (wanted - home[place]) : wanted;
     }
+    move_together(trial);
     const Ending ended = close(trial);
     if (ended == Ending::closed && settle(trial)) {
       state = std::move(trial);

@@ -25,21 +25,21 @@ struct Tracked {
 };
 
 /// What says where the mechanism is: the coordinates of its platform (inverse kinematics), or the displacements of its
-/// actuated joints from home, limb by limb (forward kinematics).
+/// drives from home, in the order of drives_of() (forward kinematics).
 enum class Given { coordinates, drives };
 
 /// Nominal joint displacements at a pose. Tracked from home along the straight line in the given numbers, by Newton's
 /// method on all other joints and components of the platform's pose, in steps that are halved until Newton converges at
 /// once: so the limbs stay in the working mode of home. Steps are of least norm in the rank that the mechanism has at
-/// home, so redundant loop equations do no harm. Of all displacements at a pose those are taken whose squares (rad, and
-/// lengths in units of the reach) have the least sum nearby, so that idle freedoms do not depend on the way. A result
-/// depends on nothing but the mechanism and the pose.
+/// home, so redundant loop equations do no harm. The joints of one drive are one unknown. Of all displacements at a
+/// pose those are taken whose squares (rad, and lengths in units of the reach) have the least sum nearby, so that idle
+/// freedoms do not depend on the way. A result depends on nothing but the mechanism and the pose.
 class Tracker {
  public:
   /// The mechanism is copied. Precondition for drives: held, they leave the platform no freedom.
   explicit Tracker(const Mechanism& mechanism, Given given = Given::coordinates);
 
-  /// numbers: [mechanism.coordinates], or [actuated joints], SI. Physics never throws.
+  /// numbers: [mechanism.coordinates], or [drives], SI. Physics never throws.
   Tracked track(std::span<const double> numbers) const;
 
  private:
@@ -50,18 +50,21 @@ class Tracker {
 
   PlatformPose pose_of(const State& state) const;
   System system(const State& state) const;
+  void move_together(State& state) const;
   Ending close(State& state) const;
   bool settle(State& state) const;
   std::string why(const State& state, Ending ending, double share) const;
 
-  Mechanism unit_;                                     ///< lengths in units of the reach
-  double reach_;                                       ///< m
-  Given by_;                                           ///< what is given
-  std::vector<std::size_t> given_;                     ///< places in a state of the given numbers
-  std::vector<double> units_;                          ///< [given] theirs, SI
-  std::vector<std::size_t> free_;                      ///< places in a state of all others, ascending
-  std::vector<std::vector<std::size_t>> limb_joints_;  ///< places among each limb's moving joints of those not given
-  std::vector<std::size_t> limb_ranks_;                ///< of their columns at home
+  Mechanism unit_;                  ///< lengths in units of the reach
+  double reach_;                    ///< m
+  Given by_;                        ///< what is given
+  std::vector<std::size_t> given_;  ///< places in a state of the given numbers
+  std::vector<double> units_;       ///< [given] theirs, SI
+  std::vector<std::size_t> free_;   ///< places in a state of all others, ascending
+  std::vector<Drive> shared_;       ///< drives of several joints, of which the first is an unknown
+  /// Places among each limb's moving joints of those that are not given, and have no drive in common with others.
+  std::vector<std::vector<std::size_t>> limb_joints_;
+  std::vector<std::size_t> limb_ranks_;  ///< of their columns at home
 };
 
 }  // namespace poesy::file

@@ -25,7 +25,9 @@ program_test(metric regression)
 set_property(TEST program.metric APPEND PROPERTY ENVIRONMENT
              POESY_METRIC_ORACLE=${CMAKE_CURRENT_SOURCE_DIR}/data/metric_2upr_rpu.json)
 program_test(mechanism_file regression)
-set_property(TEST program.mechanism_file APPEND PROPERTY ENVIRONMENT POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
+program_test(shared_drive statistical)
+set_property(TEST program.mechanism_file program.shared_drive APPEND PROPERTY ENVIRONMENT
+             POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
 program_test(determinism determinism)
 program_test(adaptive determinism)
 program_test(fidelity unit)

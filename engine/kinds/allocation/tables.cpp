@@ -9,6 +9,7 @@
 #include "engine/base/units.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
+#include "engine/model/calibrated.h"
 #include "engine/report/display.h"
 
 namespace poesy {
@@ -29,7 +30,7 @@ Table certificate_table(const StoredResult& result) {
       "fresh machines: drawn with the seed {}, which nothing before used; how many was set before; a machine that is "
       "not solved at a pose is rejected",
       found.certificate_seed));
-  if (found.calibrated) table.notes.emplace_back("limits are on what the best correction of the actuators leaves");
+  if (found.calibrated) table.notes.push_back(fmt::format("limits are on {}", kLeftByCalibration));
   return table;
 }
 

@@ -38,7 +38,7 @@ metric      "platform" or "published": how mismatch of angle is weighed against 
 fidelity    "exact", or "first-order" where the mechanism has it.
 factors     the errors that are given, in the order of the rows of an array: a factor set, "all", or a list of names.
             The others are zero.
-calibrated  True: responses are what the best correction of the actuators leaves.
+calibrated  True: responses are what the best correction of the actuators leaves, each pose by itself.
 
 Raises InputError and FileError with the program's sentence.)";
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/base/contract.h"
+#include "engine/model/calibrated.h"
 #include "engine/report/display.h"
 #include "engine/report/report_kind.h"
 
@@ -77,6 +78,11 @@ void warn_of_fidelity(const StoredResult& result, const SolveTally& tally, Warni
   }
 }
 
+void warn_of_calibration(const StoredResult& result, Warnings& list) {
+  if (readable_setting(result.study_text, "analysis", "calibrated").empty()) return;
+  list.push_back(fmt::format("Calibrated: responses are {}.", kLeftByCalibration));
+}
+
 /// What a reader of this result must not miss, a sentence or two each.
 std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& result) {
   const StoredResult& stored = result.stored;
@@ -85,6 +91,7 @@ std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& 
   warn_of_changes(result, list);
   warn_of_unsolved(stored, tally, list);
   warn_of_unsolved_poses(tally, list);
+  warn_of_calibration(stored, list);
   if (kind.warn != nullptr) kind.warn(stored, list);
   warn_of_poses(stored, list);
   warn_of_fidelity(stored, tally, list);

@@ -162,7 +162,7 @@ class Drawing {
     if (joint.type != 'S' && joint.type != 'F') {
       add_line(plus(place, -metres(kTick), joint.axis), plus(place, metres(kTick), joint.axis), "class=\"tick\"");
     }
-    const std::string name = joint_words(*sketch_, i, j + 1) + (joint.name.empty() ? "" : " " + joint.name);
+    const std::string name = joint_words(*sketch_, i, j + 1) + (joint.name.empty() ? "" : " " + name_words(joint));
     const std::string content = element("title", fmt::format("limb {}, {}", i + 1, name)) +
                                 svg_glyph(joint.type, joint.actuated, {0, 0}, {"var(--part)", "var(--paper)"});
     add_group(place,

@@ -23,13 +23,12 @@ std::vector<std::string> names_of(const Chart& chart) {
   return list;
 }
 
-/// Positions of the chart's joints among all that move.
+/// Positions of the chart's joints, the first of each drive, among all that move.
 std::vector<std::size_t> places_of(const Chart& actuators, const Mechanism& mechanism) {
-  const std::vector<JointDisplacement> joints = displacement_names(mechanism);
+  const std::vector<Drive> drives = drives_of(mechanism);
   std::vector<std::size_t> list;
   for (const std::string& name : names_of(actuators)) {
-    const auto found = std::ranges::find(joints, name, &JointDisplacement::name);
-    list.push_back(static_cast<std::size_t>(found - joints.begin()));
+    list.push_back(std::ranges::find(drives, name, &Drive::name)->joints.front());
   }
   return list;
 }
@@ -118,19 +117,18 @@ TEST_P(Charts, OrderOfPosesMakesNoDifference) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, Charts,
-                         testing::Values(Mechanisms{"rps3", 500, 2}, Mechanisms{"ups6", 500, 2},
-                                         Mechanisms{"upr2-rpu", 500, 2}, Mechanisms{"sps6", 100, 2},
-                                         Mechanisms{"mixed6", 5, 1}, Mechanisms{"odd6", 10, 1},
-                                         Mechanisms{"press", 20, 1}, Mechanisms{"3-rps", 500, 2},
-                                         Mechanisms{"3-prs", 500, 2}, Mechanisms{"2upr-rpu", 500, 2},
-                                         Mechanisms{"tripteron", 500, 1}, Mechanisms{"3-rrr", 500, 1},
-                                         Mechanisms{"6-ups", 500, 1}),
-                         [](const auto& instance) {
-                           std::string name = instance.param.name;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Files, Charts,
+    testing::Values(Mechanisms{"rps3", 500, 2}, Mechanisms{"ups6", 500, 2}, Mechanisms{"upr2-rpu", 500, 2},
+                    Mechanisms{"sps6", 100, 2}, Mechanisms{"mixed6", 5, 1}, Mechanisms{"odd6", 10, 1},
+                    Mechanisms{"press", 20, 1}, Mechanisms{"3-rps", 500, 2}, Mechanisms{"3-prs", 500, 2},
+                    Mechanisms{"2upr-rpu", 500, 2}, Mechanisms{"tripteron", 500, 1}, Mechanisms{"3-rrr", 500, 1},
+                    Mechanisms{"6-ups", 500, 1}, Mechanisms{"delta6", 200, 1}, Mechanisms{"geared3", 200, 1}),
+    [](const auto& instance) {
+      std::string name = instance.param.name;
+      std::ranges::replace(name, '-', '_');
+      return name;
+    });
 
 /// The file with every `from` written as `to`.
 Mechanism changed(const std::string& name, const std::string& from, const std::string& to) {
@@ -154,6 +152,27 @@ TEST(ChartsOf, AreThoseThatDetermineThePose) {
       changed("3-rrr", "at = \"elbow\", axis = \"z\"", "at = \"elbow\", axis = \"z\", actuated = true");
   EXPECT_EQ(find(charts_of(redundant), "actuators"), nullptr);
   EXPECT_EQ(charts_of(changed("3-rrr", "phi =", "q_1_1 =")).size(), 0u) << "the name is taken";
+}
+
+/// One number a motor; where each carriage is, a sphere about its rods' ends: the platform lies on all three.
+TEST(ChartsOf, HaveANumberForEachDrive) {
+  const Mechanism mechanism = from_file("delta6");
+  const std::vector<Chart> charts = charts_of(mechanism);
+  ASSERT_EQ(charts.size(), 1u);
+  const PoseChart& motors = charts[0].description();
+  EXPECT_EQ(names_of(charts[0]), (std::vector<std::string>{"motor_1", "motor_2", "motor_3"}));
+  EXPECT_EQ(motors.coordinates[1].description, "displacement of joint q of limb 2 and joint q of limb 5 from home");
+  EXPECT_EQ(motors.coordinates[1].dimension, Dimension::length);
+  const std::vector<double> moved{0.03, -0.005, 0.012};
+  const Tracked found = charts[0].track(moved);
+  ASSERT_EQ(found.unreachable, "");
+  const double level = std::sqrt(0.217 * 0.217 - 0.095 * 0.095);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
+    const Vector3 carriage(0.095 * std::cos(angle), 0.095 * std::sin(angle), level + moved[k]);
+    EXPECT_NEAR((carriage - found.platform.p).norm(), 0.217, 1e-13);
+    EXPECT_NEAR(found.displacements[7 * (k + 3)], moved[k], 1e-15);
+  }
 }
 
 /// The smallest singular value of the platform's equations of 3-RRR with its drives held, by hand: every point C turns

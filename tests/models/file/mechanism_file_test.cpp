@@ -12,7 +12,7 @@ namespace {
 struct Wrong {
   std::string from;
   std::string to;
-  std::string message;
+  std::string message = {};
 };
 
 /// What reading says of the text, and of its mobility at home.
@@ -41,6 +41,26 @@ void expect_refused(const std::string& name, const std::vector<Wrong>& list) {
     EXPECT_EQ(problem, wrong.message) << wrong.to;
     EXPECT_NE(problem.find("; "), std::string::npos) << "no remedy: " << problem;
   }
+}
+
+/// A star is the number of the copy; a name without one is that of all copies, and of joints of other limbs.
+TEST(MechanismFile, DrivesAreNamed) {
+  const Mechanism delta = from_file("delta6");
+  const std::vector<Drive> drives = drives_of(delta);
+  ASSERT_EQ(drives.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(drives[k].name, "motor_" + std::to_string(k + 1));
+    EXPECT_EQ(drives[k].joints, (std::vector<std::size_t>{7 * k, 7 * (k + 3)}));
+  }
+  std::string text = replaced(text_of("rps3"), {"actuated = true", "actuated = \"belt\""});
+  text = replaced(text, {"[\"rx\", \"ry\", \"z\"]", "[\"z\"]"});
+  text = replaced(text, {"rx = [\"-20 deg\", \"20 deg\"], ry = [\"-20 deg\", \"20 deg\"], ", ""});
+  EXPECT_EQ(problem_of(text), "read") << "three jacks on one belt";
+  const MechanismFile file = read_mechanism_file(text, "m.toml");
+  const std::vector<Drive> belt = drives_of(mechanism(file, default_geometry(file)));
+  ASSERT_EQ(belt.size(), 1u);
+  EXPECT_EQ(belt[0].joints, (std::vector<std::size_t>{1, 6, 11}));
+  EXPECT_EQ(drives_of(from_file("rps3")).size(), 3u) << "those without a name are one for each joint";
 }
 
 TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
@@ -162,7 +182,11 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", x = \"-y\"",
            "m.toml:21:33: limb[0].joints[0].x is parallel to the joint's axis; give another direction"},
           {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"R\", actuated = 2",
-           "m.toml:21:40: limb[0].joints[0].actuated is no truth value; write true or false"},
+           "m.toml:21:40: limb[0].joints[0].actuated is no truth value; write true, false, or the name of its drive"},
+          {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"C\", actuated = \"motor\"",
+           "m.toml:21:40: limb[0].joints[0].actuated is a text, but a joint of type C has two axes; write two joints "
+           "of "
+           "one axis each, of which the driven one names its drive"},
           {"{ name = \"A\", type = \"R\"", "{ name = \"A\", type = \"U\", axis2 = \"x\", actuated = true",
            "m.toml:21:53: limb[0].joints[0].actuated is true; write 1 or 2, for its first or second axis"},
           {"at = [\"a\", 0, 0], axis = \"y\"", "axis = \"y\"",
@@ -201,7 +225,24 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "is loose, and the platform turns about (-0.35, -0.94, 0); write actuated = true at one more joint, or "
            "correct the axes"},
           {"actuated = true", "actuated = \"yes\"",
-           "m.toml:22:62: limb[0].joints[1].actuated is no truth value; write true or false"},
+           "m.toml:22:62: limb[0].joints[1].actuated is the text 'yes'; write true or false without quotes"},
+          {"actuated = true", "actuated = \"motor 1\"",
+           "m.toml:22:62: limb[0].joints[1].actuated 'motor 1' is no name; write letters, digits, _ and -, and do not "
+           "begin with -"},
+          {"actuated = true", "actuated = \"z\"",
+           "m.toml:22:3: the drive of joint 'q' has the name 'z' of a coordinate; give it another name, because files "
+           "of poses may have columns of both"},
+          {"actuated = true", "actuated = \"q_2_1\"",
+           "m.toml:22:3: the drive of joint 'q' has the name 'q_2_1' of a joint's displacement; give it another name, "
+           "because files of poses may have columns of both"},
+          {"actuated = true", "actuated = \"motor\"",
+           "m.toml:14:15: platform.coordinates are not independent: rx follows from the others, and the platform has 1 "
+           "freedom; remove it, take another, correct the axes of the joints, or let fewer joints share a drive"},
+          {"type = \"R\", at = [\"a\", 0, 0], axis = \"y\" }",
+           "type = \"R\", at = [\"a\", 0, 0], axis = \"y\", actuated = \"m\" }, { name = \"p\", type = \"P\", from = "
+           "\"A\", to = \"S\", actuated = \"m\" }",
+           "m.toml:21:77: drive 'm' turns one of its joints and slides another, joint 'p'; give them drives of "
+           "different names, because joints of one drive have one displacement"},
           {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [\"c\", 0, \"h\"], axis = \"z\" }",
            "m.toml:23:49: limb[0].joints[2].axis does not belong to type = \"S\"; remove it"},
           {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [\"c\", 0, \"h\"], actuated = true }",

@@ -42,7 +42,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Row{"rps3", {15, 12, 12, 3, 0, 3, 2, 0, 0}}, Row{"ups6", {36, 30, 30, 6, 0, 6, 3, 0, 0}},
                     Row{"upr2-rpu", {12, 9, 12, 3, 3, 3, 2, 0, 0}}, Row{"tripteron", {12, 9, 12, 3, 3, 3, 0, 0, 0}},
                     Row{"rrr3", {9, 6, 12, 3, 6, 3, 1, 0, 0}}, Row{"sps6", {42, 30, 30, 12, 0, 6, 3, 6, 6}},
-                    Row{"mixed6", {36, 30, 30, 6, 0, 6, 3, 0, 0}}, Row{"press", {5, 4, 12, 1, 8, 1, 0, 0, 0}}),
+                    Row{"mixed6", {36, 30, 30, 6, 0, 6, 3, 0, 0}}, Row{"press", {5, 4, 12, 1, 8, 1, 0, 0, 0}},
+                    Row{"delta6", {42, 30, 30, 9, 0, 3, 0, 6, 6}}, Row{"geared3", {12, 6, 12, 3, 6, 3, 1, 0, 0}}),
     [](const auto& instance) {
       std::string name = instance.param.name;
       std::erase(name, '-');

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "models/chain/limb.h"
+#include "models/file/mobility.h"
 #include "tests/models/file/files.h"
 #include "tests/models/file/poses.h"
 
@@ -48,7 +49,7 @@ TEST_P(Everywhere, OrderOfPosesMakesNoDifference) {
 
 INSTANTIATE_TEST_SUITE_P(Files, Everywhere,
                          testing::Values("rps3", "ups6", "upr2-rpu", "tripteron", "rrr3", "sps6", "mixed6", "odd6",
-                                         "press"),
+                                         "press", "delta6", "geared3"),
                          [](const auto& instance) {
                            std::string name = instance.param;
                            std::erase(name, '-');
@@ -63,6 +64,47 @@ TEST(Tracker, ScrewsTurnByTheirLead) {
   EXPECT_NEAR(found.displacements[2], 0.03, 1e-14);
   EXPECT_NEAR(found.displacements[3], 0.0, 1e-12);
   EXPECT_NEAR(found.displacements[4], 0.03, 1e-14);
+}
+
+/// By hand: a rod of length L reaches down from its carriage. Both rods of a carriage have one displacement in every
+/// bit, the platform does not turn, and no rod spins.
+TEST(Tracker, JointsOfOneDriveMoveTogether) {
+  const Mechanism mechanism = from_file("delta6");
+  const Tracker tracker(mechanism);
+  const double rod = 0.217;
+  const double level = std::sqrt(rod * rod - 0.095 * 0.095);
+  for (const std::vector<double>& pose : random_poses(mechanism, 30)) {
+    const Tracked found = tracker.track(pose);
+    ASSERT_EQ(found.unreachable, "");
+    for (std::size_t c = 3; c < 6; ++c) EXPECT_NEAR(found.pose[c], 0.0, 1e-13);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
+      const double across = std::hypot(0.095 * std::cos(angle) - pose[0], 0.095 * std::sin(angle) - pose[1]);
+      EXPECT_NEAR(found.displacements[7 * k], pose[2] + std::sqrt(rod * rod - across * across) - level, 1e-13);
+      EXPECT_EQ(found.displacements[7 * (k + 3)], found.displacements[7 * k]);
+    }
+  }
+}
+
+/// Two axes of a limb that are geared.
+TEST(Tracker, JointsOfOneLimbMayHaveOneDrive) {
+  const Mechanism mechanism = from_file("geared3");
+  const Tracker tracker(mechanism);
+  for (const std::vector<double>& pose : random_poses(mechanism, 20)) {
+    const Tracked found = tracker.track(pose);
+    ASSERT_EQ(found.unreachable, "");
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(found.displacements[4 * i + 1], found.displacements[4 * i]);
+  }
+}
+
+/// Without the names the drives of a carriage move apart, and the platform has six freedoms.
+TEST(Tracker, JointsWithoutADriveInCommonMoveApart) {
+  std::string text = text_of("delta6");
+  for (std::size_t at = text.find("\"motor_*\""); at != std::string::npos; at = text.find("\"motor_*\"")) {
+    text.replace(at, 9, "true");
+  }
+  const MechanismFile file = read_mechanism_file(text, "m.toml");
+  EXPECT_EQ(home_mobility(mechanism(file, default_geometry(file))).platform_freedoms, 6u);
 }
 
 /// Left-handed screws: a leg grows by -q lead / 2 pi, however its hinges stand.
