@@ -15,6 +15,7 @@
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/run_options.h"
+#include "engine/study/bare_numbers.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -96,6 +97,7 @@ int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = find_poses(study, *model, {}).value();
+  for (const std::string& doubt : doubts_of(study, poses)) say(Message::warning, doubt);
   print(resolved_text(study));
   const Outlook expected = outlook(study, *model, poses.poses);
   print(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)));

@@ -25,6 +25,7 @@
 #include "engine/run/evaluation.h"
 #include "engine/run/outlook.h"
 #include "engine/run/run_options.h"
+#include "engine/study/bare_numbers.h"
 #include "engine/study/study_file.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
@@ -55,6 +56,11 @@ void warn_of_singular_poses(const std::string& path, const SelectedPoses& poses,
   }
 }
 
+/// Of a line that says something.
+void warn_of(const std::string& doubt) {
+  if (!doubt.empty()) say(Message::warning, doubt);
+}
+
 SelectedPoses read_reachable_poses(const std::string& path, const Model& model) {
   PoseSelection selection;
   const double max_condition = std::exchange(selection.max_condition, std::numeric_limits<double>::infinity());
@@ -64,6 +70,7 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   selection.place = {path, 2, 0};
   SelectedPoses poses = select_poses(selection, model);
   warn_of_singular_poses(path, poses, max_condition);
+  warn_of(bare_pose_text(path, selection.from_file, poses.poses, model.description()));
   return poses;
 }
 
@@ -162,6 +169,7 @@ int evaluate(const EvaluateOptions& options) {
   const SelectedPoses poses = read_reachable_poses(options.poses, *model);
   if (!options.frames.empty()) return print_frames(options, *model, poses.poses);
   const ErrorTable errors = read_errors(options.errors, *model);
+  warn_of(bare_error_text(options.errors, errors, study));
   if (options.paired && poses.poses.size() != errors.rows) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses.poses.size()),
                      "--paired needs one row of errors for each pose");

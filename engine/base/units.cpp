@@ -13,10 +13,15 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-constexpr std::array<Unit, 13> kUnits{{{"m", Dimension::length, 1.0},
+constexpr double kInch = 0.0254;
+
+constexpr std::array<Unit, 16> kUnits{{{"m", Dimension::length, 1.0},
                                        {"cm", Dimension::length, 1e-2},
                                        {"mm", Dimension::length, 1e-3},
                                        {"um", Dimension::length, 1e-6},
+                                       {"in", Dimension::length, kInch},
+                                       {"mil", Dimension::length, 1e-3 * kInch},
+                                       {"thou", Dimension::length, 1e-3 * kInch},
                                        {"rad", Dimension::angle, 1.0},
                                        {"mrad", Dimension::angle, 1e-3},
                                        {"deg", Dimension::angle, kDegree},

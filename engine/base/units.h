@@ -18,13 +18,13 @@ struct Unit {
   double si;              ///< its size
 };
 
-std::span<const Unit> units();  ///< m, cm, mm, um, rad, mrad, deg, arcmin, arcsec, s, ms, min, h.
+std::span<const Unit> units();  ///< m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h.
 
 /// The unit of this name, or of another spelling of it: a micro sign (U+00B5) or Greek mu (U+03BC) before the m, a
 /// degree sign (U+00B0). Null where there is none.
 const Unit* find_unit(std::string_view spelling);
 
-/// The names of the units of one dimension, or of all: "m, cm, mm, um".
+/// The names of the units of one dimension, or of all: "m, cm, mm, um, in, mil, thou".
 std::string unit_names(std::optional<Dimension> dimension = std::nullopt);
 
 std::string_view name(Dimension dimension);        ///< "length", "angle", "time" or "number".

@@ -41,12 +41,16 @@ void write_files_beside(const std::string& folder, const Study& confirming, cons
   }
   if (confirming.poses.select != PoseSelection::Select::file) return;
   const std::vector<PoseCoordinate>& coordinates = confirming.model().pose_coordinates;
+  const auto title = [](const PoseCoordinate& named) {
+    const std::string unit = " [" + std::string(si_unit(named.dimension)) + "]";
+    return named.dimension == Dimension::number ? named.name : named.name + unit;
+  };
   const auto coordinate = [&](std::size_t m, std::size_t c) { return poses[PoseIndex(m)][c]; };
   CsvTable table{std::filesystem::path(confirming.poses.file).stem().string(),
-                 {coordinates.front().name, [&](std::size_t m) { return shortest(coordinate(m, 0)); }},
+                 {title(coordinates.front()), [&](std::size_t m) { return shortest(coordinate(m, 0)); }},
                  poses.size()};
   for (std::size_t c = 1; c < coordinates.size(); ++c) {
-    table.columns.push_back({coordinates[c].name, [&coordinate, c](std::size_t m) { return coordinate(m, c); }});
+    table.columns.push_back({title(coordinates[c]), [&coordinate, c](std::size_t m) { return coordinate(m, c); }});
   }
   write_csv(folder, table);
 }

@@ -276,11 +276,11 @@ NumberBounds above_one(std::string_view example) {
 }
 
 NumberBounds between_0_and_1(std::string_view example) {
-  return {0.0, 1.0, false, "between 0 and 1", fmt::format("it must lie between 0 and 1, e.g. {}", example)};
+  return {0.0, 1.0, false, "between 0 and 1", fmt::format("it must lie between 0 and 1, e.g. {}", example), true};
 }
 
 double read_number(const StudyValue& value, const NumberBounds& bounds) {
-  const double number = value.number();
+  const double number = bounds.percent && value.is_text() ? value.percent() : value.number();
   const bool inside = bounds.ends_included ? bounds.least <= number && number <= bounds.most
                                            : bounds.least < number && number < bounds.most;
   if (!inside) value.fail("is " + shortest(number), bounds.remedy);

@@ -141,11 +141,12 @@ struct NumberBounds {
   bool ends_included;      ///< whether the ends are inside
   std::string_view words;  ///< "between 0 and 1"
   std::string remedy;      ///< for a number outside: "it must lie between 0 and 1, e.g. 0.95"
+  bool percent = false;    ///< whether a text such as "95 %" is one too
 };
 
 NumberBounds above_zero(std::string_view example);       ///< Greater than zero.
 NumberBounds above_one(std::string_view example);        ///< Greater than one.
-NumberBounds between_0_and_1(std::string_view example);  ///< Between 0 and 1, both excluded.
+NumberBounds between_0_and_1(std::string_view example);  ///< Between 0 and 1, both excluded, or in percent.
 
 /// A number inside the bounds. Throws InputError at the value's place.
 double read_number(const StudyValue& value, const NumberBounds& bounds);

@@ -97,12 +97,25 @@ double StudyValue::number() const {
   return number;
 }
 
+double StudyValue::percent() const {
+  const std::string written(trimmed(printable(text())));
+  // The exponent keeps the digits: 99.73 % is the double next to 0.9973.
+  const auto share = written.ends_with('%')
+                         ? parse_number(std::string(trimmed(written.substr(0, written.size() - 1))) + "e-2")
+                         : std::nullopt;
+  if (!share) wrong_type("write a number, or a text in percent: \"95 %\"");
+  return *share;
+}
+
 double StudyValue::quantity(Dimension dimension) const {
   if (dimension == Dimension::number) return number();
   if (node_->is_number())
     fail("is the bare number " + shortest(number()), "write it with a unit, e.g. " + example(dimension));
   if (!is_text()) wrong_type("write a number and a unit in quotes, e.g. " + example(dimension));
-  const std::string written = printable(text());
+  return quantity_of(printable(text()), dimension);
+}
+
+double StudyValue::quantity_of(const std::string& written, Dimension dimension) const {
   try {
     const Quantity quantity = parse_quantity(written, dimension);
     if (quantity.dimension == dimension) return quantity.si;
@@ -116,8 +129,19 @@ double StudyValue::quantity(Dimension dimension) const {
 
 bool StudyValue::is_zero() const { return node_->is_number() && number() == 0.0; }
 
-double StudyValue::positive_quantity(Dimension dimension) const {
-  const double value = quantity(dimension);
+double StudyValue::half_width(Dimension dimension) const {
+  if (!is_text()) return positive_quantity(dimension);
+  const std::string written = printable(text());
+  for (const std::string_view sign : {"+-", "+/-", "\xC2\xB1"}) {
+    if (!written.starts_with(sign)) continue;
+    return positive(quantity_of(written.substr(sign.size()), dimension));
+  }
+  return positive_quantity(dimension);
+}
+
+double StudyValue::positive_quantity(Dimension dimension) const { return positive(quantity(dimension)); }
+
+double StudyValue::positive(double value) const {
   if (value > 0.0) return value;
   fail(is_text() ? "is '" + printable(text()) + "'" : "is " + described(*node_), "it must be greater than zero");
 }

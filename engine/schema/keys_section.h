@@ -43,6 +43,8 @@ class StudyValue {
   /// Whether it is the number 0, which needs no unit.
   bool is_zero() const;
   double positive_quantity(Dimension dimension) const;              ///< SI, above zero.
+  double half_width(Dimension dimension) const;                     ///< The same, perhaps as on a drawing: "+-0.02 mm".
+  double percent() const;                                           ///< A share, from a text such as "99.73 %".
   std::size_t word(std::span<const std::string_view> words) const;  ///< The position among these words.
   StudySection section() const;                                     ///< A table.
   /// The elements of a list, named with their positions.
@@ -55,6 +57,8 @@ class StudyValue {
 
  private:
   [[noreturn]] void wrong_type(std::string_view remedy) const;
+  double quantity_of(const std::string& written, Dimension dimension) const;
+  double positive(double value) const;
 
   const toml::node* node_;
   std::string name_;

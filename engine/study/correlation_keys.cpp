@@ -69,7 +69,7 @@ std::vector<double> correlation_of(const MeasuredTogether& table, const StudySec
   const std::size_t size = table.factors.size();
   std::vector<std::vector<double>> columns;
   for (std::size_t k = 0; k < size; ++k) {
-    columns.push_back(read_column(path, table.columns[k], model.factors[table.factors[k].value].dimension));
+    columns.push_back(read_column(path, table.columns[k], model.factors[table.factors[k].value].dimension).values);
   }
   std::vector<double> correlation(size * size, 1.0);
   for (std::size_t i = 0; i < size; ++i) {

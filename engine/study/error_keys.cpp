@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "engine/base/text.h"
+#include "engine/study/bare_numbers.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 
@@ -30,6 +31,7 @@ struct Parameters {
   std::string file = {};            ///< of measured values
   std::string column = {};          ///< of the file
   std::vector<double> values = {};  ///< that were measured, SI
+  std::string doubt = {};           ///< about their unit
 };
 
 /// Without its shift.
@@ -57,9 +59,10 @@ Distribution centred_distribution_of(const Parameters& parameters) {
   return measured;
 }
 
-KeyValue<Parameters> size_at(double Parameters::*member) {
+/// read: StudyValue::positive_quantity or half_width.
+KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*read_size)(Dimension) const) {
   const auto read = [=](const StudyValue& value, Parameters& parameters) {
-    parameters.*member = value.positive_quantity(parameters.dimension);
+    parameters.*member = (value.*read_size)(parameters.dimension);
     if (parameters.*member >= kSmallest) return;
     value.fail("is '" + printable(value.text()) + "', so small that squares of it lose their digits",
                "it must be at least 1e-30 m or 1e-30 rad");
@@ -108,16 +111,17 @@ const InnerRows<Parameters>& distribution_keys() {
                    .example = "\"normal\"",
                    .meaning = "Shape of the distribution."},
                InnerRow<Parameters>{.name = "sigma",
-                                    .value = size_at(&Parameters::sigma),
+                                    .value = size_at(&Parameters::sigma, &StudyValue::positive_quantity),
                                     .required = true,
                                     .only_for = {name(Shape::normal), name(Shape::truncated_normal)},
                                     .meaning = "Standard deviation, before it is cut off."},
                InnerRow<Parameters>{
                    .name = "half_width",
-                   .value = size_at(&Parameters::half_width),
+                   .value = size_at(&Parameters::half_width, &StudyValue::half_width),
                    .required = true,
                    .only_for = {name(Shape::truncated_normal), name(Shape::uniform), name(Shape::triangular)},
-                   .meaning = "Largest possible size of the error, but for its shift."},
+                   .meaning = "Largest possible size of the error, but for its shift; a +- before it, as on a "
+                              "drawing, may stay."},
                InnerRow<Parameters>{.name = "shift",
                                     .value = shift_value(),
                                     .usual = "none",
@@ -147,7 +151,8 @@ const InnerRows<Parameters>& distribution_keys() {
 Distribution default_distribution(Dimension dimension) { return Distribution::normal(display_unit(dimension).si); }
 
 /// The values of a file, where the study names one; whether there are any values. Files are opened to run alone.
-bool take_values(const StudySection& section, StudyUse use, Parameters& parameters) {
+/// usual: how other errors of this dimension scatter.
+bool take_values(const StudySection& section, StudyUse use, const Distribution& usual, Parameters& parameters) {
   if (section.find("values")) {
     for (const std::string_view key : {"file", "column"}) section.refuse(key, "a distribution with values");
     return true;
@@ -156,7 +161,9 @@ bool take_values(const StudySection& section, StudyUse use, Parameters& paramete
   static_cast<void>(section.require("column", "name the column of the file that has the values"));
   if (use != StudyUse::run) return false;
   const std::string path = beside_study(section, parameters.file);
-  parameters.values = read_column(path, parameters.column, parameters.dimension);
+  MeasuredColumn column = read_column(path, parameters.column, parameters.dimension);
+  parameters.doubt = bare_column_text(parameters.file, column, parameters.dimension, usual);
+  parameters.values = std::move(column.values);
   if (parameters.values.size() >= Distribution::kLeastMeasured) return true;
   throw InputError(
       {path},
@@ -165,7 +172,9 @@ bool take_values(const StudySection& section, StudyUse use, Parameters& paramete
       fmt::format("measure at least {} parts, or write a distribution with sigma", Distribution::kLeastMeasured));
 }
 
-Distribution read_distribution(const StudyValue& value, Dimension dimension, StudyUse use) {
+/// usual: how other errors of this dimension scatter. doubts: gets what is doubtful about a file of measured values.
+Distribution read_distribution(const StudyValue& value, Dimension dimension, StudyUse use, const Distribution& usual,
+                               std::vector<std::string>& doubts) {
   const StudySection section = value.section();
   Parameters parameters{.dimension = dimension};
   read_keys(distribution_keys(), section, parameters, Nothing());
@@ -174,9 +183,10 @@ Distribution read_distribution(const StudyValue& value, Dimension dimension, Stu
     if (!row.required || !holds_for(row.only_for, word)) continue;
     static_cast<void>(section.require(row.name, "the distribution \"" + word + "\" needs it"));
   }
-  if (parameters.shape == Shape::measured && !take_values(section, use, parameters)) {
+  if (parameters.shape == Shape::measured && !take_values(section, use, usual, parameters)) {
     return default_distribution(dimension);
   }
+  if (!parameters.doubt.empty()) doubts.push_back(parameters.doubt);
   try {
     return centred_distribution_of(parameters).shifted(parameters.shift);
   } catch (const std::invalid_argument& reason) {
@@ -186,7 +196,8 @@ Distribution read_distribution(const StudyValue& value, Dimension dimension, Stu
 
 template <Dimension kDimension>
 void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
-  const Distribution distribution = read_distribution(value, kDimension, reading.use);
+  const Distribution distribution =
+      read_distribution(value, kDimension, reading.use, default_distribution(kDimension), study.doubts);
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     if (study.model().factors[f].dimension == kDimension) study.errors.by_factor[f] = distribution;
   }
@@ -195,7 +206,8 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
 void read_override(const StudyValue& value, Study& study, const Reading& reading) {
   const std::vector<Factor>& factors = study.model().factors;
   read_named(value.section(), factors, "factor", [&](std::size_t f, const StudyValue& own) {
-    study.errors.by_factor[f] = read_distribution(own, factors[f].dimension, reading.use);
+    study.errors.by_factor[f] =
+        read_distribution(own, factors[f].dimension, reading.use, study.errors.by_factor[f], study.doubts);
   });
 }
 
@@ -291,7 +303,7 @@ void check_distributions(const StudySection& root, const Study& study, const Mod
     const Distribution& distribution = study.errors.by_factor[factor.value];
     const bool bounded = std::isfinite(distribution.half_width());
     const std::string_view what = bounded ? "a largest error" : "a standard deviation";
-    const double size = bounded ? distribution.largest() : distribution.standard_deviation();
+    const double size = error_size(distribution);
     const auto problem = beyond_bound(model, factor, size, what);
     if (!problem) continue;
     constexpr std::array<std::string_view, 4> kKeys{"shift", "half_width", "values", "column"};
@@ -334,7 +346,10 @@ StudyTables errors_tables() {
 
 Distribution usual_distribution(const Reading& reading, Dimension dimension) {
   const auto value = reading.root.section("errors").find(error_kind(dimension));
-  return value ? read_distribution(*value, dimension, reading.use) : default_distribution(dimension);
+  std::vector<std::string> said_with_the_errors;
+  return value
+             ? read_distribution(*value, dimension, reading.use, default_distribution(dimension), said_with_the_errors)
+             : default_distribution(dimension);
 }
 
 void read_errors_section(Study& study, const Reading& reading) {

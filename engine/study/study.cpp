@@ -86,6 +86,10 @@ std::vector<double> background_errors(const std::optional<Background>& backgroun
   return errors;
 }
 
+double error_size(const Distribution& distribution) {
+  return std::isfinite(distribution.half_width()) ? distribution.largest() : distribution.standard_deviation();
+}
+
 std::vector<double> standard_deviations(const Study& study) {
   std::vector<double> sigma;
   for (const FactorIndex factor : study.analysis.factors) {

@@ -138,6 +138,9 @@ struct Study {
   double max_not_converged = 1.0;
   std::uint64_t seed = 1;  ///< of all draws
 
+  /// What a reader of the files that the study names should look at again, a line each.
+  std::vector<std::string> doubts = {};
+
   const ModelDescription& model() const { return mechanism.entry->description; }  ///< Of the mechanism.
 };
 
@@ -151,6 +154,9 @@ std::string_view name(SolverOptions::Method method);  ///< As a study file has i
 
 /// The constant errors, [F]: the background's value where it applies, else zero.
 std::vector<double> background_errors(const std::optional<Background>& background, const ModelDescription& model);
+
+/// How large errors are that scatter so, SI: the largest one that is possible, of a normal the standard deviation.
+double error_size(const Distribution& distribution);
 
 std::vector<double> standard_deviations(const Study& study);  ///< Those of the errors that the study varies, [P], SI.
 

@@ -47,6 +47,7 @@ struct TableColumn {
   Dimension dimension = Dimension::number;  ///< of its numbers
   double si = 1.0;                          ///< by which its numbers are multiplied
   Place place = {};                         ///< of a text: of the title
+  bool bare = false;                        ///< whether it names no unit
 
   /// "z [mm]": how the header may say the unit in which people read such numbers.
   std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
@@ -98,7 +99,7 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   const Title title(cell.text);
   const auto found = std::ranges::find(known.numbers, title.name, &KnownColumn::name);
   if (found != known.numbers.end()) {
-    return {number, found->meant, cell.text, found->dimension, size_of(cell, title, found->dimension)};
+    return {number, found->meant, cell.text, found->dimension, size_of(cell, title, found->dimension), !title.unit};
   }
   if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
   if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};
@@ -328,6 +329,10 @@ TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDes
     check_last(points.time, path);
   }
   if (kind > 0) points.table.chart = kind - 1;
+  for (const std::string_view name : headers[kind]) {
+    const auto column = std::ranges::find(all, name, &TableColumn::name);
+    if (column->bare && name != kTime) points.table.bare.emplace_back(name);
+  }
   points.table.points = PoseSet(coordinates(model, points.table.chart).size(), std::move(values));
   return points;
 }
@@ -376,15 +381,19 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
   if (label != columns.end()) table.labels = {std::string(label->name), std::move(rows.labels)};
   table.values = std::move(rows.values);
   table.rows = table.values.size() / table.factors.size();
+  for (const TableColumn& column : columns) {
+    if (column.role == TableColumn::Role::number) table.bare.push_back(column.bare);
+  }
   return table;
 }
 
-std::vector<double> read_column(const std::string& path, std::string_view column, Dimension dimension) {
+MeasuredColumn read_column(const std::string& path, std::string_view column, Dimension dimension) {
   CsvLines lines(path, "table of measured values");
   const Place header = lines.next_place();
   std::vector<TableColumn> columns;
   Names known;
   bool found = false;
+  MeasuredColumn read;
   for (const CsvCell& cell : lines.next()) {
     const Title title(cell.text);
     known.push_back(title.name);
@@ -396,10 +405,13 @@ std::vector<double> read_column(const std::string& path, std::string_view column
       throw InputError(cell.place, "column '" + printable(column) + "' stands here a second time", "remove it");
     }
     found = true;
+    read.name = title.name;
+    read.bare = !title.unit;
     columns.push_back({TableColumn::Role::number, title.name, cell.text, dimension, size_of(cell, title, dimension)});
   }
   if (!found) throw InputError(header, "no column is '" + printable(column) + "'", suggestion(column, known));
-  return read_rows(lines, columns, {}, {}).values;
+  read.values = read_rows(lines, columns, {}, {}).values;
+  return read;
 }
 
 std::optional<std::string> label_problem(std::string_view label) {

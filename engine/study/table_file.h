@@ -23,6 +23,14 @@ struct ErrorTable {
   std::vector<double> values;        ///< [S x V], row-major, SI
   std::size_t rows = 0;              ///< S
   RowLabels labels{};                ///< of the rows; empty where they have no names
+  std::vector<bool> bare{};          ///< [V] whether a file names no unit for them; empty where no file was read
+};
+
+/// Values that were measured, SI.
+struct MeasuredColumn {
+  std::string name;            ///< without its unit
+  std::vector<double> values;  ///< in the order of the lines
+  bool bare = false;           ///< whether the file names no unit for them
 };
 
 /// Reads poses from CSV: the first line names all of the model's pose coordinates, or all coordinates of one of its
@@ -45,12 +53,12 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 /// read_poses; an unknown factor is an InputError too, and so is an error that makes no sense (Model::error_bound).
 ErrorTable read_errors(const std::string& path, const Model& model);
 
-/// Reads one column of measured values from CSV, SI. The first line names columns; the asked one by its name with its
+/// Reads one column of measured values from CSV. The first line names columns; the asked one by its name with its
 /// unit or without, "hole [mm]" or "hole", and without a unit its numbers are SI. Other columns may hold anything.
 /// Throws InputError with line and column for a column that is missing or there twice, a unit that does not fit, a cell
 /// of the column that is not a finite number, a line with too few or many cells, or no data; FileError when the file
 /// cannot be read.
-std::vector<double> read_column(const std::string& path, std::string_view column, Dimension dimension);
+MeasuredColumn read_column(const std::string& path, std::string_view column, Dimension dimension);
 
 /// What a name that a user gives to a row may not be, as a clause ("begins with '='"), or none when it may stand in
 /// tables, CSV, spreadsheets and pages as it is: 1 to 60 bytes of printable UTF-8 on one line, without commas,

@@ -93,6 +93,7 @@ std::string introduction() {
       "{}.\n"
       "  `µm` and `°` may be written for `um` and `deg`. A bare number is an error. A *quantity* has the dimension of "
       "what it is a value of.\n"
+      "- A number between 0 and 1 may be a text in percent: `\"99.73 %\"`.\n"
       "- Names in capitals stand for names of the mechanism's, which `poesy models MODEL` lists: PARAMETER, "
       "COORDINATE,\n"
       "  JOINT, FACTOR, SET.\n"

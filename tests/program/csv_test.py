@@ -114,6 +114,26 @@ class Tables(Csv):
         self.evaluate("delta_1_1_y [mm],epsilon_1_4_z [mrad]\n12,1\n")
         self.assertEqual(self.table_of_solves("r.h5"), si)
 
+    def test_bare_numbers_that_seem_to_have_another_unit(self):
+        self.write("poses.csv", "z,beta,gamma\n-0.2,0,0\n-0.25,0,0.7\n")
+        self.write("errors.csv", "delta_1_1_y,epsilon_1_4_z\n0.011,0.001\n")
+        words = ("evaluate", "study.toml", "--poses", "poses.csv", "--errors", "errors.csv", "--quiet")
+        done = self.poesy(*words)
+        self.assertEqual(done.returncode, 0)
+        said = done.stderr.decode().splitlines()
+        self.assertEqual(len(said), 2, said)
+        self.assertIn("warning: poses.csv: gamma has no unit, so its numbers are in rad: pose 2 has gamma = 0.7 rad", said[0])
+        self.assertIn("warning: errors.csv: delta_1_1_y has no unit, so its numbers are in m: one is 11 mm, more than 10 "
+                      "times the size that the study gives this error (1 mm)", said[1])
+        self.write("study.toml", STUDY.replace("count = 6", 'select = "file"\nfile = "poses.csv"'))
+        for command in (("check", "study.toml"), ("run", "study.toml", "--quiet")):
+            self.assertIn("poses.csv: gamma has no unit", self.poesy(*command).stderr.decode())
+        self.write("poses.csv", "z [mm],beta,gamma [rad]\n-200,0,0\n-250,0,0.7\n")
+        self.write("errors.csv", "delta_1_1_y [m],epsilon_1_4_z\n0.011,0.001\n")
+        for command in (words, ("check", "study.toml"), ("run", "study.toml", "--quiet")):
+            done = self.poesy(*command)
+            self.assertEqual((done.returncode, done.stderr), (0, b""))
+
     def table_of_solves(self, result):
         self.succeeds("export", result, "-d", "tables")
         return self.table("tables/evaluate.csv")

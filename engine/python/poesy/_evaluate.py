@@ -107,7 +107,7 @@ def evaluate(
         folder = Path(named)
         path, _ = write_study({"mechanism": chosen, "solver": dict(solver or {})}, folder)
         for name, columns in (("poses.csv", pose_columns), ("errors.csv", error_columns)):
-            _write_table(folder / name, columns)
+            _write_table(folder / name, columns, known._units)
         words = ["evaluate", path.name, "--poses", "poses.csv", "--errors", "errors.csv", "-o", "result.h5", "--quiet"]
         words += ["--paired"] * paired + (["--threads", str(threads)] if threads is not None else [])
         done = _program.start(words, folder=folder)
@@ -140,8 +140,9 @@ def _some(names: list[str]) -> str:
     return ", ".join(names) if len(names) <= 6 else ", ".join([*names[:5], "...", names[-1]])
 
 
-def _write_table(path: Path, columns: Mapping[str, Floats]) -> None:
-    """Bare numbers are SI; repr() of a float is read back as the same number."""
+def _write_table(path: Path, columns: Mapping[str, Floats], units: Mapping[str, str]) -> None:
+    """All numbers are SI, which columns say; repr() of a float is read back as the same number."""
     rows = np.stack(list(columns.values()), axis=1).tolist()
-    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+    titles = [f"{name} [{units[name]}]" if units.get(name, "1") != "1" else name for name in columns]
+    lines = [",".join(titles), *(",".join(map(repr, row)) for row in rows)]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

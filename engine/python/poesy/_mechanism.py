@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
+import itertools
 import os
 import re
 import shutil
@@ -87,6 +88,12 @@ class Mechanism:
         self.errors = _named(sections.get("error factors", []))
         self.frames = tuple(_frames(sections.get("joints and frames at home, in the base frame", [])))
         self.responses, self.responses_by_metric = _responses(sections)
+
+    @property
+    def _units(self) -> dict[str, str]:
+        """The SI unit of each pose coordinate, also of other descriptions of a pose, and of each error."""
+        charts = [_named(lines) for heading, lines in _sections(self.text) if heading.startswith("poses may be given by ")]
+        return {one.name: one.unit for one in itertools.chain(*charts, self.coordinates, self.errors)}
 
     def __repr__(self) -> str:
         return f"<poesy mechanism {self.name}: {self.title}; {len(self.errors)} errors>"

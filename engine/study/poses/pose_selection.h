@@ -51,8 +51,9 @@ struct Range {
 
 /// Points in the pose's own coordinates, or in those of one of the model's charts.
 struct PoseTable {
-  std::optional<std::size_t> chart;  ///< position among the model's charts; none: the pose's own coordinates
-  PoseSet points;                    ///< [M x coordinates], SI
+  std::optional<std::size_t> chart;    ///< position among the model's charts; none: the pose's own coordinates
+  PoseSet points;                      ///< [M x coordinates], SI
+  std::vector<std::string> bare = {};  ///< columns of a file that name no unit, in the order of the coordinates
 };
 
 /// The coordinates of the pose, or of a chart.

@@ -24,9 +24,10 @@ std::string refusal(std::string_view text, std::optional<Dimension> wanted = std
 TEST(Units, HaveTheSizesOfTheSi) {
   const double degree = std::numbers::pi / 180.0;
   const std::pair<std::string_view, double> sizes[]{
-      {"1 m", 1.0},     {"1 cm", 0.01},    {"1 mm", 1e-3},        {"1 um", 1e-6},          {"1 rad", 1.0},
-      {"1 mrad", 1e-3}, {"1 deg", degree}, {"60 arcmin", degree}, {"3600 arcsec", degree}, {"1 s", 1.0},
-      {"1 ms", 1e-3},   {"1 min", 60.0},   {"1 h", 3600.0}};
+      {"1 m", 1.0},       {"1 cm", 0.01},    {"1 mm", 1e-3},        {"1 um", 1e-6},          {"1 rad", 1.0},
+      {"1 mrad", 1e-3},   {"1 deg", degree}, {"60 arcmin", degree}, {"3600 arcsec", degree}, {"1 s", 1.0},
+      {"1 ms", 1e-3},     {"1 min", 60.0},   {"1 h", 3600.0},       {"1 in", 0.0254},        {"1 mil", 2.54e-5},
+      {"1 thou", 2.54e-5}};
   EXPECT_EQ(std::size(sizes), units().size());
   for (const auto& [text, si] : sizes) EXPECT_DOUBLE_EQ(parse_quantity(text).si, si) << text;
 }
@@ -41,10 +42,11 @@ TEST(Units, MayBeSpeltWithTheirSigns) {
 }
 
 TEST(Units, AreListedForOneDimension) {
-  EXPECT_EQ(unit_names(Dimension::length), "m, cm, mm, um");
+  EXPECT_EQ(unit_names(Dimension::length), "m, cm, mm, um, in, mil, thou");
   EXPECT_EQ(unit_names(Dimension::angle), "rad, mrad, deg, arcmin, arcsec");
-  EXPECT_EQ(unit_names(), "m, cm, mm, um, rad, mrad, deg, arcmin, arcsec, s, ms, min, h");
-  EXPECT_EQ(refusal("8 furlong", Dimension::length), "unknown unit 'furlong' in '8 furlong' (known: m, cm, mm, um)");
+  EXPECT_EQ(unit_names(), "m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h");
+  EXPECT_EQ(refusal("8 furlong", Dimension::length),
+            "unknown unit 'furlong' in '8 furlong' (known: m, cm, mm, um, in, mil, thou)");
   EXPECT_EQ(refusal("8", Dimension::angle), "'8' has no unit (known: rad, mrad, deg, arcmin, arcsec)");
 }
 

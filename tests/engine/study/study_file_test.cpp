@@ -417,11 +417,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"UnknownUnit",
                  "\"1 mm\" }\nangular",
                  "^\"1 mn\" }\nangular",
-                 {"unknown unit 'mn'", "(known: m, cm, mm, um); write"}},
+                 {"unknown unit 'mn'", "(known: m, cm, mm, um, in, mil, thou); write"}},
         BadStudy{"ForeignUnit",
                  "\"1 mm\" }\nangular",
                  "^\"1 inch\" }\nangular",
-                 {"unknown unit 'inch'", "(known: m, cm, mm, um); write"}},
+                 {"unknown unit 'inch'", "(known: m, cm, mm, um, in, mil, thou); write"}},
         BadStudy{"NoUnit", "\"1 mm\" }\nangular", "^\"1\" }\nangular", {"'1' has no unit"}},
         BadStudy{
             "NoNumber", "\"1 mm\" }\nangular", "^\"one mm\" }\nangular", {"'one mm'", "write a number and a unit"}},

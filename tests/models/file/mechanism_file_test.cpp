@@ -86,7 +86,8 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"\"250 mm\"", "\"250\"",
            "m.toml:7:5: geometry.a is a number; a parameter is a length or an angle: give it a unit, e.g. \"1 mm\""},
           {"\"250 mm\"", "\"250 mn\"",
-           "m.toml:7:20: geometry.a.value '250 mn' has an unknown unit 'mn'; known: m, cm, mm, um, rad, mrad, deg, "
+           "m.toml:7:20: geometry.a.value '250 mn' has an unknown unit 'mn'; known: m, cm, mm, um, in, mil, thou, rad, "
+           "mrad, deg, "
            "arcmin, arcsec; write * to multiply"},
           {"\"250 mm\"", "\"250 mm^2\"",
            "m.toml:7:22: geometry.a.value '250 mm^2' cannot be read at '^2'; write numbers with units, parameters, + - "

@@ -627,9 +627,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"EndlessB", with_cost("{ law = \"reciprocal\", b = ^inf, unit = \"mm\" }"), {"is not finite"}},
         BadStudy{"NoB", with_cost("^{ law = \"reciprocal\", unit = \"mm\" }"), {"'b' is missing"}},
         BadStudy{"NoUnit", with_cost("^{ law = \"reciprocal\", b = 1 }"), {"'unit' is missing", "unit = \"mm\""}},
-        BadStudy{"UnknownUnit",
-                 with_cost("{ law = \"reciprocal\", b = 1, unit = ^\"inch\" }"),
-                 {"is 'inch', which is no unit of the part's tolerance, a length", "known: m, cm, mm, um"}},
+        BadStudy{
+            "UnknownUnit",
+            with_cost("{ law = \"reciprocal\", b = 1, unit = ^\"inch\" }"),
+            {"is 'inch', which is no unit of the part's tolerance, a length", "known: m, cm, mm, um, in, mil, thou"}},
         BadStudy{"UnitOfAngles",
                  with_cost("{ law = \"reciprocal\", b = 1, unit = ^\"deg\" }"),
                  {"no unit of the part's tolerance, a length"}},
