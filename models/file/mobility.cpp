@@ -296,6 +296,10 @@ void check_mobility(const Mechanism& mechanism, const Mobility& home) {
     throw InputError(mechanism.coordinates_place, problem, remedy);
   };
   if (home.platform_freedoms == 0) fail("the platform cannot move", "look at the axes of the joints at home");
+  if (home.joints == home.actuated) {
+    fail("a drive holds every joint that moves, so none gives way to errors",
+         "leave actuated out at joints without a drive, or add the joints that let the mechanism be assembled");
+  }
   check_held(mechanism, home, "");
   const std::size_t named = mechanism.coordinates.size();
   if (home.coordinates_rank < named) {

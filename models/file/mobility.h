@@ -59,9 +59,9 @@ struct PoseMobility {
 /// At `count` poses that fill the workspace evenly (Roberts' sequence), reached from home.
 std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::size_t count = 20);
 
-/// Throws InputError where drives do not hold the platform, or where coordinates are not independent or not as many as
-/// the platform's freedoms: with the joint, freedom or coordinate that is to blame. More drives than freedoms are
-/// over-constraints, not mistakes.
+/// Throws InputError where drives do not hold the platform or hold every joint, or where coordinates are not
+/// independent or not as many as the platform's freedoms: with the joint, freedom or coordinate that is to blame. More
+/// drives than freedoms are over-constraints, not mistakes.
 void check_mobility(const Mechanism& mechanism, const Mobility& home);
 
 /// Throws InputError where home is a special configuration: no pose of the workspace is reached, home has another

@@ -108,6 +108,29 @@ TEST(Mobility, ThePlatformMustMove) {
             "m.toml:12:15: the platform cannot move; look at the axes of the joints at home");
 }
 
+TEST(Mobility, SomeJointMustGiveWay) {
+  constexpr const char* kTwoRails = R"(
+format = "poesy-mechanism"
+version = 1
+name = "rails"
+[platform]
+origin = [0, 0, 0]
+coordinates = ["y"]
+workspace = { y = ["-50 mm", "50 mm"] }
+points = [[0, 0, 0], ["1 mm", 0, 0], [0, "1 mm", 0]]
+[[limb]]
+joints = [ { name = "a", type = "P", at = ["-200 mm", 0, 0], axis = "y", actuated = "motor" } ]
+[[limb]]
+joints = [ { name = "b", type = "P", at = ["200 mm", 0, 0], axis = "y", actuated = "motor" } ]
+)";
+  const MechanismFile file = read_mechanism_file(kTwoRails, "m.toml");
+  const Mechanism made = mechanism(file, {});
+  const Mobility home = home_mobility(made);
+  EXPECT_EQ(home.rank, 0u);
+  EXPECT_EQ(home.platform_freedoms, 1u);
+  EXPECT_THROW(check_mobility(made, home), InputError);
+}
+
 /// All arms are stretched.
 TEST(Mobility, HomeMustNotBeSingular) {
   EXPECT_EQ(
