@@ -42,6 +42,9 @@ std::string line_of_names(const CsvTable& table) {
   std::string text = csv_cell(table.first.heading);
   for (const CsvText& more : table.more) text += "," + csv_cell(more.heading);
   for (const CsvColumn& column : table.columns) text += "," + csv_cell(column.heading);
+  for (std::size_t m = 0; m < table.at_poses.poses; ++m) {
+    text += "," + csv_cell(with_unit("pose_" + std::to_string(m), table.at_poses.unit));
+  }
   if (!table.last.heading.empty()) text += "," + csv_cell(table.last.heading);
   for (const CsvText& one : table.rest) text += "," + csv_cell(one.heading);
   return text + "\n";
@@ -51,6 +54,7 @@ std::string line_text(const CsvTable& table, std::size_t line) {
   std::string text = csv_cell(table.first.text(line));
   for (const CsvText& more : table.more) text += "," + csv_cell(more.text(line));
   for (const CsvColumn& column : table.columns) text += "," + cell(column.number(line));
+  for (std::size_t m = 0; m < table.at_poses.poses; ++m) text += "," + cell(table.at_poses.number(line, m));
   if (!table.last.heading.empty()) text += "," + csv_cell(table.last.text(line));
   for (const CsvText& one : table.rest) text += "," + csv_cell(one.text(line));
   return text + "\n";

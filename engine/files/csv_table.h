@@ -25,6 +25,13 @@ struct CsvColumn {
   std::function<Number(std::size_t line)> number;  ///< SI, or in the heading's unit
 };
 
+/// A column for each pose, "pose_0" and so on. Nothing is kept for any of them, because poses may be many.
+struct CsvPoseColumns {
+  std::size_t poses = 0;                                             ///< columns
+  std::string unit = "1";                                            ///< in their headings, see with_unit()
+  std::function<double(std::size_t line, std::size_t pose)> number;  ///< SI, or in that unit
+};
+
 /// A CSV file: in the first line the names of the columns, then one line for each thing.
 struct CsvTable {
   std::string name;                                ///< of the file, without ".csv"
@@ -35,6 +42,7 @@ struct CsvTable {
   std::function<bool(std::size_t line)> has = {};  ///< whether the file has this line; all where empty
   std::vector<CsvText> more = {};                  ///< cells between the first one and the numbers
   std::vector<CsvText> rest = {};                  ///< cells after the last one
+  CsvPoseColumns at_poses = {};                    ///< numbers behind those of `columns`
 };
 
 /// Several, in the order in which they are listed.
@@ -79,23 +87,21 @@ CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const 
           [&field, &found, first, step](std::size_t line) { return number_at(field, found, first + line * step); }};
 }
 
-/// Appends "pose_0", "pose_1", ... with the unit: a column for each pose of a row along [factor x pose], the last axes
-/// of the row. first: its first element.
+/// A column for each pose of a row along [factor x pose], the last axes of the row. first: its first element.
 template <class Found>
-void append_pose_columns(CsvTable& table, const StoredResult& result, const FieldRow<Found>& field, const Found& found,
-                         std::size_t first, const std::string& unit) {
+CsvPoseColumns pose_columns(const StoredResult& result, const FieldRow<Found>& field, const Found& found,
+                            std::size_t first, std::string unit) {
   const std::size_t poses = result.poses.size();
-  for (std::size_t m = 0; m < poses; ++m) {
-    const std::string heading = with_unit("pose_" + std::to_string(m), unit);
-    table.columns.push_back(field_column(heading, field, found, first + m, poses));
-  }
+  return {poses, std::move(unit), [&field, &found, first, poses](std::size_t line, std::size_t pose) {
+            return number_at(field, found, first + line * poses + pose);
+          }};
 }
 
 /// A table with a line for each error and a column for each pose, of a row along [factor x pose].
 template <class Found>
 CsvTable cell_table(const StoredResult& result, std::string name, const FieldRow<Found>& field, const Found& found) {
   CsvTable table = lines_of_factors(result, std::move(name));
-  append_pose_columns(table, result, field, found, 0, csv_unit(field.unit, result));
+  table.at_poses = pose_columns(result, field, found, 0, csv_unit(field.unit, result));
   return table;
 }
 

@@ -99,7 +99,12 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   const Title title(cell.text);
   const auto found = std::ranges::find(known.numbers, title.name, &KnownColumn::name);
   if (found != known.numbers.end()) {
-    return {number, found->meant, cell.text, found->dimension, size_of(cell, title, found->dimension), !title.unit};
+    return {.role = number,
+            .name = found->meant,
+            .title = cell.text,
+            .dimension = found->dimension,
+            .si = size_of(cell, title, found->dimension),
+            .bare = !title.unit};
   }
   if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
   if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};
@@ -407,7 +412,11 @@ MeasuredColumn read_column(const std::string& path, std::string_view column, Dim
     found = true;
     read.name = title.name;
     read.bare = !title.unit;
-    columns.push_back({TableColumn::Role::number, title.name, cell.text, dimension, size_of(cell, title, dimension)});
+    columns.push_back({.role = TableColumn::Role::number,
+                       .name = title.name,
+                       .title = cell.text,
+                       .dimension = dimension,
+                       .si = size_of(cell, title, dimension)});
   }
   if (!found) throw InputError(header, "no column is '" + printable(column) + "'", suggestion(column, known));
   read.values = read_rows(lines, columns, {}, {}).values;

@@ -47,6 +47,10 @@ MOST_TIMES_THE_FILE = {"sensitivity": 1.5, "a smaller last unit": 3.0, "two fide
 MOST_TIMES_THE_FILE_MERGED = {"sensitivity": 1.5, "a smaller last unit": 3.0}
 
 
+# What is read, and the line that is being written.
+MOST_TIMES_THE_FILE_EXPORTED = 1.5
+
+
 def peak_of(*arguments, cwd):
     """Bytes that the program had in memory at the most; of a child of this one, whose own peak is not of its parent's."""
     process = subprocess.Popen([PROGRAM, *arguments], cwd=cwd, stdout=subprocess.DEVNULL)
@@ -93,6 +97,17 @@ class Memory(ProgramTest):
                 times = (peak - program) / (self.folder / "m.h5").stat().st_size
                 print(f"{kind}, merged: was {peak / 1e6:.0f} MB, {times:.2f} files", file=sys.stderr)
                 self.assertLess(times, most)
+
+    def test_peak_of_exporting(self):
+        """A column of a table takes no memory of its own, however many poses there are."""
+        program = self.peak_of_program()
+        self.write("study.toml", HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=40000, kind="sensitivity")
+                   + 'factors = ["a_x_1", "theta_A_x_1"]\nsamples = 2\n')
+        self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+        peak = peak_of("export", "r.h5", "-d", "tables", cwd=self.folder)
+        times = (peak - program) / (self.folder / "r.h5").stat().st_size
+        print(f"exported: was {peak / 1e6:.0f} MB, {times:.2f} files", file=sys.stderr)
+        self.assertLess(times, MOST_TIMES_THE_FILE_EXPORTED)
 
     def test_peak_of_reading(self):
         """A file is hashed in slices: verifying it takes no more memory than verifying a small one."""

@@ -141,8 +141,8 @@ void append_local_tables(CsvTables& tables, const StoredResult& result) {
       const NamedUnit& response = result.responses[r];
       const std::size_t first = r * result.factors.size() * result.poses.size();
       CsvTable table = lines_of_factors(result, field.name + "_" + response.name);
-      append_pose_columns<Indices>(table, result, field, sensitivity_of(result), first,
-                                   csv_unit(field.unit, result, &response));
+      table.at_poses =
+          pose_columns<Indices>(result, field, sensitivity_of(result), first, csv_unit(field.unit, result, &response));
       tables.push_back(std::move(table));
     }
   }
@@ -152,10 +152,9 @@ void append_solver_tables(CsvTables& tables, const StoredResult& result) {
   const std::size_t poses = result.poses.size();
   for (const SolveNumber& number : solve_numbers()) {
     CsvTable table = lines_of_factors(result, number.name);
-    for (std::size_t m = 0; m < poses; ++m) {
-      table.columns.push_back(
-          list_column("pose_" + std::to_string(m), sensitivity_of(result).solves, m, poses, number.get));
-    }
+    table.at_poses = {poses, "1", [&result, poses, get = number.get](std::size_t p, std::size_t m) {
+                        return static_cast<double>(std::invoke(get, sensitivity_of(result).solves[p * poses + m]));
+                      }};
     tables.push_back(std::move(table));
   }
 }

@@ -215,7 +215,7 @@ void append_pose_tables(CsvTables& tables, const StoredResult& result) {
       CsvTable table{"sobol_" + row.name + "_" + result.responses[r].name,
                      {axis_of(found.joined), [&](std::size_t g) { return found.group_names[g]; }},
                      groups};
-      append_pose_columns<SobolIndices>(table, result, row, found.at_poses, r * groups * found.poses, "1");
+      table.at_poses = pose_columns<SobolIndices>(result, row, found.at_poses, r * groups * found.poses, "1");
       tables.push_back(std::move(table));
     }
   }
