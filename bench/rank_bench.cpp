@@ -98,7 +98,7 @@ void measure_both(Team& team, std::size_t units_per_cell) {
   study.analysis.kind = &kMonteCarloStudy;
   study.analysis.samples *= kUnitsPerPose;
   const Plan plan(study, bench::every(kEveryPose, poses));
-  const ResponseUnit response{Moments::of(numbers()), BucketedValues(numbers())};
+  const ResponseUnit response{Moments::of(numbers()), NumberBlock(numbers())};
   const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts(), {}, {}};
   MonteCarloCollector collect(plan, kResponsesOfMonteCarlo, study.analysis);
   measure(

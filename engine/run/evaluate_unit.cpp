@@ -87,7 +87,7 @@ PoseUnit PoseUnit::read(ByteReader& from, std::size_t responses, std::size_t err
   unit.responses.resize(responses);
   for (ResponseUnit& response : unit.responses) {
     response.moments = Moments::read(from);
-    response.values = BucketedValues::read(from);
+    response.values = NumberBlock::read(from);
   }
   read_ends(from, first, unit);
   if (from.number_up_to(1) == 1) unit.effects = MainEffectSums::read(from, errors, responses);
@@ -233,7 +233,8 @@ PoseUnit PoseUnitEvaluator::operator()(const WorkUnit& unit) {
   for (std::size_t r = 0; r < responses_; ++r) {
     const auto all = outcomes.responses.subspan(r * unit.count, unit.count);
     const std::span<const double> kept = all_count ? all : only_counting(all, outcomes.status);
-    found.responses.push_back({Moments::of(kept), BucketedValues(kept)});
+    found.responses.push_back({Moments::of(kept), NumberBlock(kept)});
+    found.responses.back().values.sort_few();
   }
   return found;
 }

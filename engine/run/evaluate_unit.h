@@ -11,7 +11,7 @@
 #include "engine/stats/indices.h"
 #include "engine/stats/main_effects.h"
 #include "engine/stats/moments.h"
-#include "engine/stats/quantile_sketch.h"
+#include "engine/stats/number_block.h"
 #include "engine/study/plan.h"
 
 namespace poesy {
@@ -43,8 +43,8 @@ struct CellUnit : UnitStats {
 
 /// What one work unit of a Monte Carlo study contributes to one response, over the samples that count.
 struct ResponseUnit {
-  Moments moments;        ///< mean and spread
-  BucketedValues values;  ///< the same samples, ready for a sketch
+  Moments moments;     ///< mean and spread
+  NumberBlock values;  ///< the same samples, ready for a sketch
 };
 
 /// What one work unit of a Monte Carlo study contributes.

@@ -43,6 +43,21 @@ std::vector<double> even_edges(std::span<const Bucket> buckets, std::size_t coun
 
 }  // namespace
 
+double order_statistic(std::span<const Bucket> buckets, std::uint64_t k) {
+  POESY_EXPECTS(!buckets.empty() && k >= 1 && k <= buckets.back().up_to);
+  if (k == 1) return buckets.front().lower;
+  if (k == buckets.back().up_to) return buckets.back().upper;
+  const Bucket& bucket = bucket_of(buckets, k);
+  return bucket.lower + 0.5 * (bucket.upper - bucket.lower);
+}
+
+double order_statistic_error(std::span<const Bucket> buckets, std::uint64_t k) {
+  POESY_EXPECTS(!buckets.empty() && k >= 1 && k <= buckets.back().up_to);
+  if (k == 1 || k == buckets.back().up_to) return 0.0;
+  const Bucket& bucket = bucket_of(buckets, k);
+  return 0.5 * (bucket.upper - bucket.lower);
+}
+
 RankInterval quantile_ranks(std::uint64_t n, double q, double conf_level) {
   POESY_EXPECTS(q > 0.0 && q < 1.0 && conf_level > 0.0 && conf_level < 1.0);
   if (n == 0) return {0, 1};

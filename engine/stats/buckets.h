@@ -11,6 +11,13 @@
 /// What the filled buckets of a quantile sketch say.
 namespace poesy {
 
+/// The k-th smallest of the values in `buckets`, to within its bucket: the middle of that, and exactly the smallest and
+/// the largest of all. Precondition: 1 <= k <= number of values.
+double order_statistic(std::span<const Bucket> buckets, std::uint64_t k);
+
+/// What order_statistic() may be off by at most: half the width of the bucket, and nothing for the extremes.
+double order_statistic_error(std::span<const Bucket> buckets, std::uint64_t k);
+
 /// Ranks of two of n order statistics, from 1 to n; 0 and n + 1 mean that there is none.
 struct RankInterval {
   std::uint64_t low;   ///< of the lower end

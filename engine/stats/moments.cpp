@@ -162,10 +162,16 @@ double two_sided_student_quantile(double freedom, double conf_level) {
   return boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
 }
 
-Interval mean_interval(const Moments& moments, double conf_level) {
+Interval mean_interval(const Moments& moments, double conf_level) { return MeanIntervals(conf_level).of(moments); }
+
+Interval MeanIntervals::of(const Moments& moments) {
   if (moments.count() < 2) return {kNaN, kNaN};
   const auto n = static_cast<double>(moments.count());
-  const double half = two_sided_student_quantile(n - 1.0, conf_level) * moments.standard_deviation() / std::sqrt(n);
+  if (moments.count() != count_) {
+    count_ = moments.count();
+    quantile_ = two_sided_student_quantile(n - 1.0, conf_level_);
+  }
+  const double half = quantile_ * moments.standard_deviation() / std::sqrt(n);
   return {moments.mean() - half, moments.mean() + half};
 }
 

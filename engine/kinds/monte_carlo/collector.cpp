@@ -25,6 +25,7 @@ void visit_sketched(Result& result, std::size_t response, std::size_t pose, cons
   visit(std::span(result.quantiles).subspan(cell * levels, levels));
   visit(std::span(result.quantiles_ci_low).subspan(cell * levels, levels));
   visit(std::span(result.quantiles_ci_high).subspan(cell * levels, levels));
+  visit(std::span(result.quantile_error).subspan(cell, 1));
   if (!result.share_magnitude.empty()) visit(std::span(result.share_magnitude).subspan(cell, 1));
 }
 

@@ -43,7 +43,7 @@ void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
 }  // namespace
 
 MonteCarloColumns::MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis)
-    : asked_(asked_of<MonteCarloOptions>(analysis)) {
+    : asked_(asked_of<MonteCarloOptions>(analysis)), mean_intervals_(analysis.conf_level) {
   result_.responses = responses;
   result_.poses = poses;
   result_.conf_level = analysis.conf_level;
@@ -51,7 +51,7 @@ MonteCarloColumns::MonteCarloColumns(std::size_t poses, std::size_t responses, c
   result_.levels = asked_.quantiles;
   const std::size_t cells = responses * poses;
   for (std::vector<double>* values : {&result_.mean, &result_.mean_ci_low, &result_.mean_ci_high, &result_.std,
-                                      &result_.min, &result_.max, &result_.rms}) {
+                                      &result_.min, &result_.max, &result_.rms, &result_.quantile_error}) {
     values->resize(cells);
   }
   if (asked_.judge == Judge::share) result_.share_magnitude.resize(cells);
@@ -64,7 +64,7 @@ MonteCarloColumns::MonteCarloColumns(std::size_t poses, std::size_t responses, c
 
 void MonteCarloColumns::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
   const std::size_t cell = response * result_.poses + pose;
-  const Interval interval = mean_interval(moments, result_.conf_level);
+  const Interval interval = mean_intervals_.of(moments);
   result_.mean[cell] = mean_of(moments);
   result_.mean_ci_low[cell] = interval.low;
   result_.mean_ci_high[cell] = interval.high;
@@ -84,20 +84,36 @@ const std::vector<RankInterval>& MonteCarloColumns::ranks_of(std::uint64_t sampl
   return ranks_;
 }
 
+QuantilesOf quantiles_of(std::span<const Bucket> buckets, std::span<const double> levels,
+                         std::span<const RankInterval> ranks) {
+  QuantilesOf found;
+  if (!buckets.empty()) found.error = 0.0;
+  for (std::size_t q = 0; q < levels.size(); ++q) {
+    found.interval.push_back(quantile_interval(buckets, ranks[q]));
+    if (buckets.empty()) {
+      found.value.push_back(kNaN);
+      continue;
+    }
+    const std::uint64_t rank = quantile_rank(levels[q], buckets.back().up_to);
+    found.value.push_back(order_statistic(buckets, rank));
+    found.error = std::max(found.error, order_statistic_error(buckets, rank));
+  }
+  return found;
+}
+
 void MonteCarloColumns::set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch,
                                       std::uint64_t tried) {
   const std::size_t cell = response * result_.poses + pose;
-  const std::vector<Bucket> buckets = sketch.buckets();
-  const std::vector<RankInterval>& ranks = ranks_of(sketch.count());
+  const QuantilesOf quantiles = quantiles_of(sketch.buckets(), result_.levels, ranks_of(sketch.count()));
   result_.min[cell] = sketch.min();
   result_.max[cell] = sketch.max();
   for (std::size_t q = 0; q < result_.levels.size(); ++q) {
     const std::size_t at = cell * result_.levels.size() + q;
-    const Interval interval = quantile_interval(buckets, ranks[q]);
-    result_.quantiles[at] = sketch.quantile(result_.levels[q]);
-    result_.quantiles_ci_low[at] = interval.low;
-    result_.quantiles_ci_high[at] = interval.high;
+    result_.quantiles[at] = quantiles.value[q];
+    result_.quantiles_ci_low[at] = quantiles.interval[q].low;
+    result_.quantiles_ci_high[at] = quantiles.interval[q].high;
   }
+  result_.quantile_error[cell] = quantiles.error;
   if (asked_.judge != Judge::share) return;
   const std::uint64_t rank = quantile_rank(asked_.share, tried);
   result_.share_magnitude[cell] =
@@ -111,18 +127,20 @@ void MonteCarloColumns::set_overall(const Moments& moments, const QuantileSketch
   result_.overall_min.push_back(sketch.min());
   result_.overall_max.push_back(sketch.max());
   result_.overall_count.push_back(moments.count());
+  std::vector<RankInterval> ranks;
+  for (const RankInterval& one : ranks_of(independent)) ranks.push_back(among(one, independent, sketch.count()));
   const std::vector<Bucket> buckets = sketch.buckets();
+  const QuantilesOf quantiles = quantiles_of(buckets, result_.levels, ranks);
   for (std::size_t q = 0; q < result_.levels.size(); ++q) {
-    const Interval interval = quantile_interval(buckets, among(ranks_of(independent)[q], independent, sketch.count()));
-    result_.overall_quantiles.push_back(sketch.quantile(result_.levels[q]));
-    result_.overall_quantiles_ci_low.push_back(interval.low);
-    result_.overall_quantiles_ci_high.push_back(interval.high);
+    result_.overall_quantiles.push_back(quantiles.value[q]);
+    result_.overall_quantiles_ci_low.push_back(quantiles.interval[q].low);
+    result_.overall_quantiles_ci_high.push_back(quantiles.interval[q].high);
   }
-  append_histogram(sketch, result_.histogram_edges, result_.histogram_counts);
+  result_.overall_quantile_error.push_back(quantiles.error);
+  append_histogram(buckets, result_.histogram_edges, result_.histogram_counts);
 }
 
-void append_histogram(const QuantileSketch& sketch, std::vector<double>& edges, std::vector<std::uint64_t>& counts) {
-  const std::vector<Bucket> buckets = sketch.buckets();
+void append_histogram(std::span<const Bucket> buckets, std::vector<double>& edges, std::vector<std::uint64_t>& counts) {
   Histogram bins = buckets.empty() ? Histogram{std::vector<double>(kHistogramBins + 1, kNaN), {}}
                                    : histogram(buckets, kHistogramBins);
   bins.counts.resize(kHistogramBins);

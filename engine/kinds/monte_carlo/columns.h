@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/nan.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/stats/buckets.h"
 #include "engine/stats/moments.h"
@@ -36,21 +37,33 @@ class MonteCarloColumns {
 
   MonteCarloOptions asked_;
   MonteCarloResult result_;
+  MeanIntervals mean_intervals_;
   std::uint64_t ranked_samples_ = 0;  ///< number of samples of which ranks_ are
   std::vector<RankInterval> ranks_;   ///< [Q]
 };
 
+/// The quantiles of some samples as a result has them.
+struct QuantilesOf {
+  std::vector<double> value;       ///< [Q] NaN without samples
+  std::vector<Interval> interval;  ///< [Q]
+  double error = kNaN;             ///< what no value is off by more than from its order statistic; NaN without samples
+};
+
+/// buckets: of the samples. levels, ranks: [Q], the ranks of their intervals.
+QuantilesOf quantiles_of(std::span<const Bucket> buckets, std::span<const double> levels,
+                         std::span<const RankInterval> ranks);
+
 /// Bins of the histograms of a result.
 inline constexpr std::size_t kHistogramBins = 128;
 
-/// Appends the histogram of a sketch; NaN edges where it is empty.
-void append_histogram(const QuantileSketch& sketch, std::vector<double>& edges, std::vector<std::uint64_t>& counts);
+/// Appends the histogram of what lies in the buckets; NaN edges where there are none.
+void append_histogram(std::span<const Bucket> buckets, std::vector<double>& edges, std::vector<std::uint64_t>& counts);
 
 /// Judges the limits of a Monte Carlo study by what it found. A limit is kept
 /// - by Judge::rms, if the response's root mean square over the samples of all poses that count is within it;
 /// - by Judge::share, if at every pose at least that share of all draws is within it: if the largest of the poses'
 ///   share_magnitude is. Draws that do not count are not within it.
-/// overall: [R], the samples of all poses that count. Numbers from a sketch are off by its kRelativeError at most.
+/// overall: [R], the samples of all poses that count.
 /// Preconditions: found.overall_rms is there, and found.share_magnitude where it is needed; judge is no other one.
 LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
                           const MonteCarloResult& found, std::span<const QuantileSketch> overall);

@@ -18,8 +18,7 @@ const std::vector<Attribute<MonteCarlo>> kInterval{{"conf_level", &MonteCarlo::c
 const std::vector<Attribute<MonteCarlo>> kSketch{{"quantile_relative_error", &MonteCarlo::quantile_relative_error}};
 const std::string kEndOfInterval =
     " end of an interval for the quantile of the distribution, whatever that is, from order statistics (binomial); it "
-    "is wide enough for what quantile_relative_error rounds away, and infinite where the samples are too few for an "
-    "end";
+    "is wide enough for what quantile_error rounds away, and infinite where the samples are too few for an end";
 const std::string kLowerEnd = "Lower" + kEndOfInterval;
 const std::string kUpperEnd = "Upper" + kEndOfInterval;
 
@@ -39,7 +38,10 @@ const Group<MonteCarlo> kMonteCarlo{
      {"max", &MonteCarlo::max, kByResponsePose, kResponseUnit, "Largest sample"},
      {"count", &MonteCarlo::count, kByResponsePose, "1", "Samples behind these: solved, or as not_converged has it"},
      {"quantiles", &MonteCarlo::quantiles, kQuantileAtPose, kResponseUnit,
-      "Order statistic of rank ceil(q n) of n samples, off by its part quantile_relative_error at most", kSketch},
+      "Order statistic of rank ceil(q n) of n samples, off by quantile_error and by its part quantile_relative_error "
+      "at "
+      "most",
+      kSketch},
      {"rms", &MonteCarlo::rms, kByResponsePose, kResponseUnit,
       "Root mean square of the samples; NaN where none counts"},
      {"quantiles_ci_low", &MonteCarlo::quantiles_ci_low, kQuantileAtPose, kResponseUnit, kLowerEnd, kInterval},
@@ -75,6 +77,13 @@ const Group<MonteCarlo> kMonteCarlo{
       "Within this magnitude stays the share of all draws that [analysis] share asks for; draws that do not count are "
       "outside; infinite where they are too many",
       Presence::where_computed},
+     {"quantile_error", &MonteCarlo::quantile_error, kByResponsePose, kResponseUnit,
+      "What none of the quantiles at the pose is off by more than from its order statistic; 0 of up to 256 samples, "
+      "some "
+      "thousandths of std of more; NaN where none counts",
+      Presence::where_computed},
+     {"overall_quantile_error", &MonteCarlo::overall_quantile_error, kByResponse, kResponseUnit,
+      "The same of overall_quantiles", Presence::where_computed},
      {"varies", &MonteCarlo::varies, kByResponse, "1",
       "0 where the response does not vary: what its samples scatter at any pose is rounding, so it has no indices "
       "and no main effects; left out where all vary",
@@ -104,6 +113,9 @@ void append_number_columns(CsvTable& table, const StoredResult& result, const st
     append_quantile(q, "_ci_low");
     append_quantile(q, "_ci_high");
   }
+  if (found.overall_quantile_error.empty()) return;  // of version 0.2
+  table.columns.push_back(
+      field_column(with_unit("quantile_error", unit), row(prefix + "quantile_error"), found, first));
 }
 
 CsvTable response_table(const StoredResult& result, std::size_t r) {

@@ -37,7 +37,7 @@ Group<MachineValues> values_group(const std::string& path, const std::string& wh
            {"max", &Values::max, kByResponse, kResponseUnit, "Largest of any machine"},
            {"count", &Values::count, kByResponse, "1", "Machines behind these: solved at every pose"},
            {"quantiles", &Values::quantiles, kByResponseQuantile, kResponseUnit,
-            "Order statistic of rank ceil(q n) of n machines, as /monte_carlo/quantiles"},
+            "Order statistic of rank ceil(q n) of n machines, off by quantile_error at most"},
            {"quantiles_ci_low", &Values::quantiles_ci_low, kByResponseQuantile, kResponseUnit,
             "Lower end of an interval for the quantile of the distribution, from order statistics (binomial)"},
            {"quantiles_ci_high", &Values::quantiles_ci_high, kByResponseQuantile, kResponseUnit,
@@ -51,7 +51,10 @@ Group<MachineValues> values_group(const std::string& path, const std::string& wh
             &Values::histogram_counts,
             {"response", "bin"},
             "1",
-            "Machines in each bin, as /monte_carlo/histogram_counts"}}};
+            "Machines in each bin, as /monte_carlo/histogram_counts"},
+           {"quantile_error", &Values::quantile_error, kByResponse, kResponseUnit,
+            "What none of the quantiles is off by more than from its order statistic, as /monte_carlo/quantile_error",
+            Presence::where_computed}}};
 }
 
 const Group<MachineValues> kLargest = values_group("/machines/largest", "largest magnitude over the poses");
@@ -190,6 +193,7 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
     add(heading + "_ci_low", values.quantiles_ci_low, q, levels.size());
     add(heading + "_ci_high", values.quantiles_ci_high, q, levels.size());
   }
+  if (!values.quantile_error.empty()) add("quantile_error", values.quantile_error);
   return table;
 }
 

@@ -57,6 +57,11 @@ Table values_table(const StoredResult& result) {
         number("largest_max", "max", largest.max), number("rms_mean", "rms: mean", rms.mean, 1),
         number("rms_" + name, level, rms.quantiles, 1, levels, levels - 1), number("rms_max", "max", rms.max, 1)});
   table.notes.push_back("Machines that are not solved at every pose are left out");
+  if (!largest.quantile_error.empty()) {  // version 0.2 has none
+    table.notes.push_back(fmt::format("largest: {}; rms: {}",
+                                      quantile_error_text(result.headline, largest.quantile_error, largest.std),
+                                      quantile_error_text(result.headline, rms.quantile_error, rms.std)));
+  }
   return table;
 }
 
@@ -163,6 +168,16 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
 }
 
 }  // namespace
+
+std::string quantile_error_text(std::span<const std::size_t> responses, std::span<const double> errors,
+                                std::span<const double> deviations) {
+  double largest = 0.0;
+  for (const std::size_t r : responses) {
+    if (errors[r] > 0.0) largest = std::max(largest, errors[r] / deviations[r]);
+  }
+  return largest == 0.0 ? "quantiles are those of the samples"
+                        : fmt::format("quantiles to {} of std", percent_text(largest));
+}
 
 std::vector<Table> machine_tables(const StoredResult& result) {
   std::vector<Table> tables{values_table(result)};

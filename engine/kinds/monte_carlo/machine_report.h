@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/files/result_file.h"
@@ -10,6 +11,10 @@
 /// How tables and reports show what the bins of errors say, and what a Monte Carlo study of machines found in addition.
 /// Precondition of what follows but for effects: monte_carlo_of(result).machines is there.
 namespace poesy {
+
+/// How far quantiles of some responses, [R], may be off: "quantiles to 0.12 % of std", of the worst response.
+std::string quantile_error_text(std::span<const std::size_t> responses, std::span<const double> errors,
+                                std::span<const double> deviations);
 
 /// Of each machine its largest magnitude and its root mean square; at which poses machines are rejected.
 std::vector<Table> machine_tables(const StoredResult& result);

@@ -15,7 +15,7 @@
 #include "engine/stats/machines.h"
 #include "engine/stats/main_effects.h"
 #include "engine/stats/moments.h"
-#include "engine/stats/quantile_sketch.h"
+#include "engine/stats/number_block.h"
 #include "engine/stats/yield_gradient.h"
 
 /// Units of machines and what they come to: R responses, M poses.
@@ -49,15 +49,15 @@ std::vector<std::uint8_t> read_rejected(ByteReader& from, const MachineTable& ta
 
 /// What one unit of machines contributes.
 struct MachineUnit {
-  std::optional<MachineSums> sums;      ///< empty in a default-constructed one alone
-  MachineCounts counts;                 ///< which of them are good
-  std::vector<BucketedValues> at_pose;  ///< [M x R] the samples that count, ready for a sketch
-  std::vector<BucketedValues> largest;  ///< [R] of the machines that are solved at each pose
-  std::vector<BucketedValues> rms;      ///< [R] likewise
-  std::vector<std::uint8_t> rejected;   ///< 1 or 0 for each of the machines that MachineTable::kept() counts
-  std::vector<SolveCounts> solves;      ///< [M] how they ended
-  std::vector<FailedSamples> failed;    ///< [M] the first of them
-  SolveCounts total;                    ///< of all poses
+  std::optional<MachineSums> sums;     ///< empty in a default-constructed one alone
+  MachineCounts counts;                ///< which of them are good
+  std::vector<NumberBlock> at_pose;    ///< [M x R] the samples that count, ready for a sketch
+  std::vector<NumberBlock> largest;    ///< [R] of the machines that are solved at each pose
+  std::vector<NumberBlock> rms;        ///< [R] likewise
+  std::vector<std::uint8_t> rejected;  ///< 1 or 0 for each of the machines that MachineTable::kept() counts
+  std::vector<SolveCounts> solves;     ///< [M] how they ended
+  std::vector<FailedSamples> failed;   ///< [M] the first of them
+  SolveCounts total;                   ///< of all poses
 
   /// For a message or a state.
   void write(ByteWriter& to) const;

@@ -55,6 +55,15 @@ std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   return columns;
 }
 
+/// How good the quantiles over all poses are.
+std::string overall_error_text(const StoredResult& result) {
+  const MonteCarloResult& found = monte_carlo_of(result);
+  if (found.overall_quantile_error.empty()) {  // of version 0.2
+    return fmt::format("quantiles to {} of their value", percent_text(found.quantile_relative_error));
+  }
+  return quantile_error_text(result.headline, found.overall_quantile_error, found.overall_std);
+}
+
 /// Precondition: there are poses and quantiles.
 Table overall_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
@@ -65,9 +74,9 @@ Table overall_table(const StoredResult& result) {
               .columns = {},
               .notes = {fmt::format(
                   "{} at each pose; std: standard deviation; rms: root mean square; {}: {} of the samples lie "
-                  "below it (quantiles to {} of their value)",
+                  "below it ({})",
                   counted(found.solves.front().total(), "sample", "samples"), quantile_heading(found.levels.back()),
-                  percent_text(found.levels.back()), percent_text(found.quantile_relative_error))}};
+                  percent_text(found.levels.back()), overall_error_text(result))}};
   fill(table, result.headline, overall_columns(result));
   return table;
 }

@@ -35,6 +35,7 @@ struct MachineValues {
   std::vector<double> quantiles;                ///< [R x Q]
   std::vector<double> quantiles_ci_low;         ///< [R x Q] as MonteCarloResult has them
   std::vector<double> quantiles_ci_high;        ///< [R x Q] likewise
+  std::vector<double> quantile_error;           ///< [R] as MonteCarloResult has it
   std::vector<double> histogram_edges;          ///< [R x (B + 1)]
   std::vector<std::uint64_t> histogram_counts;  ///< [R x B]
 };
@@ -123,7 +124,7 @@ struct MonteCarloResult {
   std::size_t responses = 0;             ///< R
   std::size_t poses = 0;                 ///< M
   double conf_level = 0.95;              ///< of all intervals
-  double quantile_relative_error = 0.0;  ///< bound on |quantile - order statistic| / |order statistic|
+  double quantile_relative_error = 0.0;  ///< bound on |quantile - order statistic| / |order statistic| of any quantile
   std::vector<double> levels;            ///< [Q] share of the samples below each quantile
 
   std::vector<double> mean;          ///< [R x M]
@@ -139,6 +140,8 @@ struct MonteCarloResult {
   /// are too few for it.
   std::vector<double> quantiles_ci_low;
   std::vector<double> quantiles_ci_high;  ///< likewise
+  /// [R x M] bound on |quantile - order statistic| of each quantile at the pose; empty in results of version 0.2.
+  std::vector<double> quantile_error;
   /// [R x M] where limits are judged by a share of the draws, else empty: the magnitude within which that share of them
   /// stays. Draws that do not count never stay within anything; infinite where they are too many.
   std::vector<double> share_magnitude;
@@ -152,6 +155,7 @@ struct MonteCarloResult {
   std::vector<double> overall_rms;                ///< [R]
   std::vector<double> overall_quantiles_ci_low;   ///< [R x Q]
   std::vector<double> overall_quantiles_ci_high;  ///< [R x Q] likewise
+  std::vector<double> overall_quantile_error;     ///< [R] as quantile_error
   /// Histograms of the samples of all poses (stats/buckets.h), B bins each.
   std::vector<double> histogram_edges;          ///< [R x (B + 1)]
   std::vector<std::uint64_t> histogram_counts;  ///< [R x B]

@@ -21,13 +21,16 @@ void append(const Estimate& estimate, std::vector<double>& value, std::vector<do
   high.push_back(estimate.interval.high);
 }
 
-void append_quantiles(const QuantileSketch& sketch, std::span<const double> levels, double conf_level,
+void append_quantiles(std::span<const Bucket> buckets, std::span<const double> levels, double conf_level,
                       MachineValues& values) {
-  const std::vector<Bucket> buckets = sketch.buckets();
-  for (const double level : levels) {
-    append({sketch.quantile(level), quantile_interval(buckets, quantile_ranks(sketch.count(), level, conf_level))},
-           values.quantiles, values.quantiles_ci_low, values.quantiles_ci_high);
+  std::vector<RankInterval> ranks;
+  const std::uint64_t count = buckets.empty() ? 0 : buckets.back().up_to;
+  for (const double level : levels) ranks.push_back(quantile_ranks(count, level, conf_level));
+  const QuantilesOf found = quantiles_of(buckets, levels, ranks);
+  for (std::size_t q = 0; q < levels.size(); ++q) {
+    append({found.value[q], found.interval[q]}, values.quantiles, values.quantiles_ci_low, values.quantiles_ci_high);
   }
+  values.quantile_error.push_back(found.error);
 }
 
 /// At this position of [R x P].
@@ -51,8 +54,9 @@ MachineValues machine_values(std::span<const Moments> moments, std::span<const Q
     values.min.push_back(sketches[r].min());
     values.max.push_back(sketches[r].max());
     values.count.push_back(moments[r].count());
-    append_quantiles(sketches[r], asked_of<MonteCarloOptions>(analysis).quantiles, analysis.conf_level, values);
-    append_histogram(sketches[r], values.histogram_edges, values.histogram_counts);
+    const std::vector<Bucket> buckets = sketches[r].buckets();
+    append_quantiles(buckets, asked_of<MonteCarloOptions>(analysis).quantiles, analysis.conf_level, values);
+    append_histogram(buckets, values.histogram_edges, values.histogram_counts);
   }
   return values;
 }

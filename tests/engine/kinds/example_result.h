@@ -143,6 +143,8 @@ class Example {
       result.solves.push_back({.by_status = {90 - m, 7, 2, 1, m}, .iterations = 700 + m, .most_iterations = 50});
     }
     result.failures = {{0, PoseIndex(2), {SampleIndex(0), SolveStatus::singular}}};
+    fill(result.quantile_error, 2 * kPoses);
+    fill(result.overall_quantile_error, 2);
     result.effects.conf_level = result.conf_level;
     result.effects.s1_poses = {0, 2};
     next = 1000.0;
@@ -175,6 +177,7 @@ class Example {
       }
       values->count = {200, 198};
       for (auto* list : {&values->quantiles, &values->quantiles_ci_low, &values->quantiles_ci_high}) fill(*list, 4);
+      values->quantile_error = {0.5, 0.25};
       values->histogram_edges = result.histogram_edges;
       values->histogram_counts = result.histogram_counts;
     }

@@ -232,7 +232,7 @@ TEST(RunMonteCarlo, FirstSamplesAreTheSameInALongerStudy) {
   const PoseUnit longer = unit(study_of(2, 3 * Plan::kUnitSamples), 3);
   for (std::size_t r = 0; r < 2; ++r) {
     EXPECT_EQ(shorter.responses[r].moments.mean(), longer.responses[r].moments.mean());
-    EXPECT_EQ(shorter.responses[r].values.buckets, longer.responses[r].values.buckets);
+    EXPECT_EQ(shorter.responses[r].values.values, longer.responses[r].values.values);
   }
 }
 

@@ -20,6 +20,18 @@ TEST(MeanInterval, IsStudents) {
   EXPECT_NEAR(mean_interval(of({-1.0, 1.0}), 0.95).high, 12.706205, 1e-5);
 }
 
+TEST(MeanInterval, IsTheSameOfManyOneByOne) {
+  MeanIntervals intervals(0.9);
+  for (const std::vector<double>& values :
+       {std::vector{1.0, 2.0, 4.0}, {2.0, 3.0, 7.0}, {1.0}, {5.0, 6.0}, {1.0, 2.0, 4.0, 8.0}, {1.0, 2.0, 4.0}}) {
+    const Interval each = intervals.of(of(values));
+    const Interval alone = mean_interval(of(values), 0.9);
+    EXPECT_TRUE(each.low == alone.low || values.size() == 1) << values.size();
+    EXPECT_TRUE(each.high == alone.high || values.size() == 1) << values.size();
+    EXPECT_EQ(std::isnan(each.low), values.size() == 1);
+  }
+}
+
 TEST(MeanInterval, IsAPointWithoutSpread) {
   const Interval interval = mean_interval(of({7.0, 7.0, 7.0}), 0.95);
   EXPECT_EQ(interval.low, 7.0);

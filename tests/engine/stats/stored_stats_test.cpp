@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 
 #include "engine/stats/moments.h"
@@ -56,73 +57,121 @@ TEST(StoredSketch, HoldsTheExtremes) {
   constexpr double kMost = std::numeric_limits<double>::max();
   constexpr double kLeast = std::numeric_limits<double>::min();
   QuantileSketch sketch;
-  sketch.add(std::array{-kMost, -kLeast, -0.0, 0.0, std::numeric_limits<double>::denorm_min(), kLeast, kMost});
-  const QuantileSketch stored = read_back<QuantileSketch>(written(sketch));
-  EXPECT_EQ(stored.count(), 7U);
-  EXPECT_EQ(stored.min(), -kMost);
-  EXPECT_EQ(stored.max(), kMost);
-}
-
-TEST(StoredSketch, RefusesEveryTruncation) {
-  QuantileSketch sketch;
-  sketch.add(numbers(100));
-  const Bytes bytes = written(sketch);
-  for (std::size_t length = 0; length < bytes.size(); ++length) {
-    EXPECT_THROW(read_back<QuantileSketch>(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length))),
-                 BytesError)
-        << length;
+  for (int times = 1; times <= 100; ++times) {
+    sketch.add(std::array{-kMost, -kLeast, -0.0, 0.0, std::numeric_limits<double>::denorm_min(), kLeast, kMost});
+    const QuantileSketch stored = read_back<QuantileSketch>(written(sketch));
+    EXPECT_EQ(stored.count(), 7U * static_cast<unsigned>(times));
+    EXPECT_EQ(stored.min(), -kMost);
+    EXPECT_EQ(stored.max(), kMost);
+    EXPECT_NEAR(stored.quantile(0.2), -kLeast, kLeast / 100.0);
   }
 }
 
-TEST(StoredSketch, RefusesWhatNoStreamGives) {
-  const auto bytes = [](auto... numbers_then) {
-    ByteWriter to;
-    (to.number(static_cast<std::uint64_t>(numbers_then)), ...);
-    to.real(1.0);
-    to.real(2.0);
-    return to.take();
-  };
-  EXPECT_NO_THROW(read_back<QuantileSketch>(bytes(0, 2, 261888, 1, 1, 0)));
-  EXPECT_THROW(read_back<QuantileSketch>(bytes(0, 2, 524031, 1, 1, 0)), BytesError);  // infinity
-  EXPECT_THROW(read_back<QuantileSketch>(bytes(0, 1, 0, 1, 0)), BytesError);          // subnormal
-  EXPECT_THROW(read_back<QuantileSketch>(bytes(0, 0, 0)), BytesError);                // a range of nothing
-  constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
-  EXPECT_THROW(read_back<QuantileSketch>(bytes(0, 2, 261888, kMost, 1, 0)), BytesError);
-  EXPECT_THROW(read_back<QuantileSketch>(bytes(0, 1, 261888, kMost, 1)), BytesError);
+TEST(StoredSketch, RefusesEveryTruncation) {
+  for (const int count : {100, 300}) {
+    QuantileSketch sketch;
+    sketch.add(numbers(count));
+    const Bytes bytes = written(sketch);
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      EXPECT_THROW(read_back<QuantileSketch>(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length))),
+                   BytesError)
+          << length;
+    }
+  }
 }
 
-TEST(StoredBuckets, AreTakenAsTheNumbersThemselves) {
+/// A sketch of 300 numbers: its count, then the extremes, then whole numbers.
+Bytes sketch_bytes(const std::array<double, 4>& extremes, const std::vector<std::uint64_t>& counts) {
+  ByteWriter to;
+  to.number(300);
+  to.reals(extremes);
+  for (const std::uint64_t number : counts) to.number(number);
+  return to.take();
+}
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// A page of 64 counts.
+std::vector<std::uint64_t> with_page(std::vector<std::uint64_t> before, std::uint64_t first_count,
+                                     const std::vector<std::uint64_t>& after) {
+  before.push_back(first_count);
+  before.insert(before.end(), 63, 0);
+  before.insert(before.end(), after.begin(), after.end());
+  return before;
+}
+
+TEST(StoredSketch, RefusesWhatNoStreamGives) {
+  const std::array range{1.0, 1.0, 1.0, kNone};
+  // Octave, zeros, pages above: the first one, and none below.
+  const auto of_page = [&](std::uint64_t octave, std::uint64_t zeros, std::uint64_t at, std::uint64_t count) {
+    return sketch_bytes(range, with_page({octave, zeros, 1, at}, count, {0}));
+  };
+  EXPECT_EQ(read_back<QuantileSketch>(of_page(979, 0, 0, 300)).quantile(0.5), 1.0);
+  EXPECT_NO_THROW(read_back<QuantileSketch>(of_page(979, 1, 0, 299)));
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 0, 0, 299)), BytesError);   // too few
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 0, 0, 301)), BytesError);   // too many
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 301, 0, 0)), BytesError);   // likewise
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(978, 0, 0, 300)), BytesError);   // finer than doubles
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(2048, 0, 0, 300)), BytesError);  // no scale
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 0, 1, 300)), BytesError);   // beyond the largest number
+  const auto of_range = [&](const std::array<double, 4>& extremes) {
+    return sketch_bytes(extremes, with_page({2047, 0, 1, 0}, 300, {0}));
+  };
+  EXPECT_NO_THROW(read_back<QuantileSketch>(of_range({1.0, 1.0, 1.0, kNone})));
+  EXPECT_THROW(read_back<QuantileSketch>(of_range({2.0, 1.0, 1.0, kNone})), BytesError);
+  EXPECT_THROW(read_back<QuantileSketch>(of_range({-kNone, 1.0, 1.0, kNone})), BytesError);
+  EXPECT_THROW(read_back<QuantileSketch>(of_range({1.0, 1.0, kNone, kNone})), BytesError);
+  EXPECT_THROW(read_back<QuantileSketch>(of_range({1.0, 1.0, 1.0, 1.0})), BytesError);
+  EXPECT_THROW(read_back<QuantileSketch>(of_range({-1.0, 1.0, 1e-310, 1.0})), BytesError);
+  EXPECT_THROW(read_back<QuantileSketch>(of_range({-1.0, 1.0, 2.0, 1.0})), BytesError);
+}
+
+std::vector<double> with(std::vector<double> values, const std::vector<double>& others) {
+  values.insert(values.end(), others.begin(), others.end());
+  return values;
+}
+
+std::vector<double> shifted(double offset) {
+  std::vector<double> values = numbers(1000);
+  for (double& value : values) value += offset;
+  return values;
+}
+
+TEST(StoredNumbers, AreTakenAsTheNumbersThemselves) {
   constexpr double kTiny = std::numeric_limits<double>::denorm_min();
   constexpr double kMax = std::numeric_limits<double>::max();
   for (const std::vector<double>& values :
        {numbers(1000), std::vector<double>{}, std::vector<double>{0.0, -0.0, kTiny}, std::vector<double>{-1.5},
-        std::vector<double>{0.0, kMax, -1e-300, kTiny, 3.0}, std::vector<double>{-kMax, kMax}}) {
-    const BucketedValues buckets(values);
+        std::vector<double>{0.0, kMax, -1e-300, kTiny, 3.0}, std::vector<double>{-kMax, kMax}, shifted(1e9),
+        with(numbers(300), {0.0, kMax, -1e-300, kTiny, 3.0}), with(shifted(-7.0), {kMax, -kMax})}) {
+    const NumberBlock buckets(values);
     QuantileSketch expected;
     expected.add(buckets);
     QuantileSketch found;
     const Bytes bytes = written(buckets);
-    found.add(read_back<BucketedValues>(bytes));
+    found.add(read_back<NumberBlock>(bytes));
     EXPECT_EQ(written(found), written(expected));
     for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 100) {
-      EXPECT_THROW(read_back<BucketedValues>(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length))),
+      EXPECT_THROW(read_back<NumberBlock>(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length))),
                    BytesError);
     }
   }
-  EXPECT_LT(written(BucketedValues(numbers(1000))).size(), 2100U);
+  EXPECT_LT(written(NumberBlock(numbers(1000))).size(), 2100U);
 }
 
-TEST(StoredBuckets, OfAnyOtherBytesDoNoHarm) {
-  const Bytes sound = written(BucketedValues(numbers(50)));
-  for (std::size_t at = 0; at < sound.size(); ++at) {
-    for (const auto flip : {std::byte{1}, std::byte{0x80}, std::byte{0xff}}) {
-      Bytes changed = sound;
-      changed[at] ^= flip;
-      try {
-        QuantileSketch sketch;
-        sketch.add(read_back<BucketedValues>(changed));
-      } catch (const BytesError&) {
-        continue;
+TEST(StoredNumbers, OfAnyOtherBytesDoNoHarm) {
+  for (const int count : {50, 300}) {
+    const Bytes sound = written(NumberBlock(numbers(count)));
+    for (std::size_t at = 0; at < sound.size(); ++at) {
+      for (const auto flip : {std::byte{1}, std::byte{0x80}, std::byte{0xff}}) {
+        Bytes changed = sound;
+        changed[at] ^= flip;
+        try {
+          QuantileSketch sketch;
+          sketch.add(read_back<NumberBlock>(changed));
+        } catch (const BytesError&) {
+          continue;
+        }
       }
     }
   }

@@ -60,7 +60,9 @@ TEST_F(MonteCarloFile, IsReadBackAsItWas) {
                             &MonteCarloResult::overall_quantiles_ci_low,
                             &MonteCarloResult::overall_quantiles_ci_high,
                             &MonteCarloResult::histogram_edges,
-                            &MonteCarloResult::share_magnitude}) {
+                            &MonteCarloResult::share_magnitude,
+                            &MonteCarloResult::quantile_error,
+                            &MonteCarloResult::overall_quantile_error}) {
     expect_same(found.*member, written.*member);
   }
   EXPECT_EQ(stored.failures, written.failures);
@@ -87,6 +89,22 @@ TEST_F(MonteCarloFile, HasNamedAxesAndStatesItsError) {
   EXPECT_EQ(file.shape("/solver/solves_by_status"), (h5::Shape{kStatusNames.size(), kPoses}));
 }
 
+/// Files of version 0.2 have no quantile_error.
+TEST_F(MonteCarloFile, IsReadWithoutTheErrorsOfItsQuantiles) {
+  MonteCarloResult older = example_.machines();
+  older.quantile_error.clear();
+  older.overall_quantile_error.clear();
+  older.machines->largest.quantile_error.clear();
+  older.machines->rms.quantile_error.clear();
+  write_result(path_, example_.study, example_.poses, older, example_.facts);
+  EXPECT_FALSE(h5::File::open(path_).exists("/monte_carlo/quantile_error"));
+  EXPECT_TRUE(monte_carlo_of(read_result(path_)).quantile_error.empty());
+  const std::string tables = folder_.file("tables");
+  export_tables(path_, tables);
+  EXPECT_EQ(test::read_bytes(tables + "/overall.csv").find("quantile_error"), std::string::npos);
+  EXPECT_EQ(test::read_bytes(tables + "/machines_rms.csv").find("quantile_error"), std::string::npos);
+}
+
 TEST_F(MonteCarloFile, KeepsItsVerdicts) {
   const LimitVerdicts written = test::Example::verdicts();
   const auto found = read_result(path_).verdicts;
@@ -110,7 +128,7 @@ void expect_same(const MachineValues& found, const MachineValues& expected) {
   for (const auto member :
        {&MachineValues::mean, &MachineValues::mean_ci_low, &MachineValues::mean_ci_high, &MachineValues::std,
         &MachineValues::min, &MachineValues::max, &MachineValues::quantiles, &MachineValues::quantiles_ci_low,
-        &MachineValues::quantiles_ci_high, &MachineValues::histogram_edges}) {
+        &MachineValues::quantiles_ci_high, &MachineValues::quantile_error, &MachineValues::histogram_edges}) {
     expect_same(found.*member, expected.*member);
   }
   EXPECT_EQ(found.count, expected.count);
@@ -186,13 +204,13 @@ TEST_F(MonteCarloFile, IsExportedPoseByPose) {
   EXPECT_EQ(
       first_lines(test::read_bytes(tables + "/monte_carlo_linear_deformation.csv"), 2),
       "pose,mean [m],mean_ci_low [m],mean_ci_high [m],std [m],min [m],max [m],count,q_0.05 [m],q_0.995 [m],rms [m],"
-      "q_0.05_ci_low [m],q_0.05_ci_high [m],q_0.995_ci_low [m],q_0.995_ci_high [m]\n"
-      "0,0.625,1.625,2.625,3.625,4.625,5.625,93,7.125,7.25,10.125,11.875,13.875,12,14\n");
+      "q_0.05_ci_low [m],q_0.05_ci_high [m],q_0.995_ci_low [m],q_0.995_ci_high [m],quantile_error [m]\n"
+      "0,0.625,1.625,2.625,3.625,4.625,5.625,93,7.125,7.25,10.125,11.875,13.875,12,14,17.375\n");
   EXPECT_EQ(test::read_bytes(tables + "/overall.csv"),
             "response,mean,std,min,max,count,q_0.05,q_0.995,rms,q_0.05_ci_low,q_0.05_ci_high,q_0.995_ci_low,"
-            "q_0.995_ci_high,unit\n"
-            "angular_deformation,8.125,8.375,8.625,8.875,382,9.125,9.25,10.625,14.875,15.375,15,15.5,rad\n"
-            "linear_deformation,NaN,NaN,NaN,NaN,366,9.375,NaN,NaN,15.125,15.625,NaN,NaN,m\n");
+            "q_0.995_ci_high,quantile_error,unit\n"
+            "angular_deformation,8.125,8.375,8.625,8.875,382,9.125,9.25,10.625,14.875,15.375,15,15.5,17.875,rad\n"
+            "linear_deformation,NaN,NaN,NaN,NaN,366,9.375,NaN,NaN,15.125,15.625,NaN,NaN,NaN,m\n");
   EXPECT_EQ(test::read_bytes(tables + "/histogram_angular_deformation.csv"),
             "bin,low [rad],high [rad],count\n0,0,1,100\n1,1,2,200\n2,2,4,82\n");
   EXPECT_EQ(test::read_bytes(tables + "/limits.csv"),

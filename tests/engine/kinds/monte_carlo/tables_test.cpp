@@ -75,6 +75,18 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
             "without effect\n");
 }
 
+TEST(MonteCarloTable, SaysHowGoodItsQuantilesAre) {
+  StoredResult result = example();
+  MonteCarloResult& found = monte_carlo_in(result);
+  found.overall_quantile_error = {1.5e-6, 0.125 / 512.0};
+  EXPECT_NE(text_of(result_tables(result, "linear_deformation"), kUnlimitedWidth).find("(quantiles to 0.195 % of std)"),
+            std::string::npos);
+  found.overall_quantile_error = {0.0, 0.0};
+  EXPECT_NE(text_of(result_tables(result, "linear_deformation"), kUnlimitedWidth)
+                .find("(quantiles are those of the samples)"),
+            std::string::npos);
+}
+
 TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
   StoredResult result = example();
   constexpr std::size_t kPoses = 10;

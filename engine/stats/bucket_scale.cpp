@@ -1,0 +1,163 @@
+#include "engine/stats/bucket_scale.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <ranges>
+
+#include "engine/base/contract.h"
+#include "engine/base/instruction_sets.h"
+
+namespace poesy {
+namespace {
+
+static_assert(std::numeric_limits<double>::is_iec559);
+
+constexpr int kFractionBits = 52;
+/// Bits of the fraction that tell buckets apart below the octave, and in the octave itself.
+constexpr int kCoarseBits = 7;
+constexpr int kEvenBits = kCoarseBits + 1;
+constexpr std::uint64_t kHidden = std::uint64_t{1} << kFractionBits;
+constexpr std::uint64_t kInfinite = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity());
+
+/// A whole number that ascends with the value: -0.0 is below 0.0.
+[[gnu::always_inline]] inline std::int64_t ordinal(double value) {
+  const auto bits = std::bit_cast<std::int64_t>(value);
+  return bits ^ ((bits >> 63) & std::numeric_limits<std::int64_t>::max());
+}
+
+/// Its own inverse.
+double with_ordinal(std::int64_t ordinal_number) {
+  return std::bit_cast<double>(ordinal(std::bit_cast<double>(ordinal_number)));
+}
+
+/// Precondition: there is a value.
+POESY_EACH_INSTRUCTION_SET void find_extremes(std::span<const double> values, Extremes& found) {
+  std::int64_t min = std::numeric_limits<std::int64_t>::max();
+  std::int64_t max = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t above = kInfinite;
+  std::uint64_t below = kInfinite;
+  for (const double value : values) {
+    min = std::min(min, ordinal(value));
+    max = std::max(max, ordinal(value));
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    const std::uint64_t magnitude = bits & ~BucketScale::kSign;
+    const bool zero = magnitude < kHidden;
+    const bool negative = bits != magnitude;
+    above = std::min(above, zero || negative ? kInfinite : magnitude);
+    below = std::min(below, zero || !negative ? kInfinite : magnitude);
+  }
+  found.count = values.size();
+  found.min = with_ordinal(min);
+  found.max = with_ordinal(max);
+  found.least_above = std::bit_cast<double>(above);
+  found.least_below = std::bit_cast<double>(below);
+}
+
+[[gnu::always_inline]] inline std::uint64_t key_of(double value, std::uint64_t octave) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const std::uint64_t exponent = (bits & ~BucketScale::kSign) >> kFractionBits;
+  const std::uint64_t mantissa = (bits & (kHidden - 1)) | kHidden;
+  const bool even = exponent >= octave;
+  const std::uint64_t fraction_bits = even ? exponent - octave + kEvenBits : kCoarseBits;
+  const std::uint64_t begin = even ? (octave << kCoarseBits) - (std::uint64_t{1} << kEvenBits)
+                                   : (exponent << kCoarseBits) - (std::uint64_t{1} << kCoarseBits);
+  return (begin + (mantissa >> (kFractionBits - fraction_bits))) | (bits & BucketScale::kSign);
+}
+
+POESY_EACH_INSTRUCTION_SET void fill_keys(std::span<const double> values, std::uint64_t octave,
+                                          std::span<std::uint64_t> keys) {
+  for (std::size_t k = 0; k < values.size(); ++k) keys[k] = key_of(values[k], octave);
+}
+
+/// Biased.
+unsigned exponent_of(double magnitude) {
+  return static_cast<unsigned>(std::bit_cast<std::uint64_t>(magnitude) >> kFractionBits);
+}
+
+/// The scale that tells all doubles apart, up to the largest of these magnitudes.
+unsigned least_octave(const Extremes& extremes) {
+  constexpr unsigned kMostBelow = kFractionBits - kEvenBits;
+  unsigned exponent = 0;
+  if (extremes.has_above()) exponent = std::max(exponent, exponent_of(extremes.max));
+  if (extremes.has_below()) exponent = std::max(exponent, exponent_of(-extremes.min));
+  return exponent > kMostBelow ? exponent - kMostBelow : 1;
+}
+
+}  // namespace
+
+Extremes Extremes::of(std::span<const double> values) {
+  POESY_EXPECTS(std::ranges::all_of(values, [](double value) { return std::isfinite(value); }));
+  Extremes found;
+  if (!values.empty()) find_extremes(values, found);
+  return found;
+}
+
+void Extremes::merge(const Extremes& other) {
+  count += other.count;
+  min = std::min(min, other.min);
+  max = std::max(max, other.max);
+  least_above = std::min(least_above, other.least_above);
+  least_below = std::min(least_below, other.least_below);
+}
+
+void Extremes::write(ByteWriter& to) const {
+  for (const double value : {min, max, least_above, least_below}) to.real(value);
+}
+
+Extremes Extremes::read(ByteReader& from, std::uint64_t count) {
+  Extremes found{.count = count};
+  for (double* value : {&found.min, &found.max, &found.least_above, &found.least_below}) *value = from.real();
+  const bool finite = std::isfinite(found.min) && std::isfinite(found.max);
+  if (!finite || !(found.min <= found.max) || count == 0) throw BytesError("numbers have no range");
+  constexpr double kNormal = std::numeric_limits<double>::min();
+  const auto possible = [&](double least, double most) {
+    return most < kNormal ? least == std::numeric_limits<double>::infinity() : least >= kNormal && least <= most;
+  };
+  if (!possible(found.least_above, found.max) || !possible(found.least_below, -found.min)) {
+    throw BytesError("numbers have a range without its ends");
+  }
+  return found;
+}
+
+void BucketScale::keys(std::span<const double> values, std::span<std::uint64_t> keys) const {
+  fill_keys(values, octave_, keys);
+}
+
+std::uint64_t BucketScale::key(double value) const { return key_of(value, octave_); }
+
+double BucketScale::edge(std::uint64_t bucket) const {
+  if (bucket < first_even()) return std::bit_cast<double>(bucket << (kFractionBits - kCoarseBits));
+  const std::uint64_t widths = bucket - first_even() + (std::uint64_t{1} << kEvenBits);
+  constexpr int kBias = 1023;
+  return std::ldexp(static_cast<double>(widths), static_cast<int>(octave_) - kBias - kEvenBits);
+}
+
+std::uint64_t BucketScale::page_of_coarser(std::uint64_t page) const {
+  const std::uint64_t even = first_even() / kPageBuckets;
+  return page < even ? page : even + (page - even) / 2;
+}
+
+PageRange pages_spanned(const Extremes& extremes, const BucketScale& scale, bool below) {
+  if (below ? !extremes.has_below() : !extremes.has_above()) return {};
+  const double most = below ? -extremes.min : extremes.max;
+  const std::uint64_t first = scale.key(below ? extremes.least_below : extremes.least_above) / kPageBuckets;
+  return {first, static_cast<std::size_t>(scale.key(most) / kPageBuckets - first + 1)};
+}
+
+bool fits(const BucketScale& scale, const Extremes& extremes) {
+  if (scale.octave() < least_octave(extremes)) return false;
+  const std::size_t above = pages_spanned(extremes, scale, false).count;
+  const std::size_t below = pages_spanned(extremes, scale, true).count;
+  return above + below <= kMostPagesSpanned;
+}
+
+BucketScale finest_fitting(const Extremes& extremes) {
+  const unsigned least = least_octave(extremes);
+  const auto octaves = std::views::iota(least, BucketScale::kCoarsest);
+  const auto too_fine = [&](unsigned octave) { return !fits(BucketScale(octave), extremes); };
+  const auto before = std::ranges::partition_point(octaves, too_fine) - octaves.begin();
+  return BucketScale(least + static_cast<unsigned>(before));
+}
+
+}  // namespace poesy
