@@ -43,6 +43,7 @@ using Clock = std::chrono::steady_clock;
 /// Seconds that one thread takes for this work: pieces of it are done for so long, at least one and at most 64.
 double measured_seconds(const WorkOutlook& work, double longest) {
   constexpr std::size_t kPieces = 64;
+  if (work.prepare) work.prepare();
   const Clock::time_point start = Clock::now();
   double done = 0.0;
   for (std::size_t n = 0; n < kPieces && (n == 0 || seconds_since(start) < longest); ++n) {
@@ -118,10 +119,11 @@ int check(const std::string& path) {
 }  // namespace
 
 ExpectedTime expected_time(const Outlook& expected, std::size_t threads, double seconds) {
-  const double shared = measured_seconds(expected.shared, seconds) / static_cast<double>(threads);
-  const double by_one =
-      measured_seconds(expected.by_one, 0.0) + static_cast<double>(expected.memory.file) * composing_seconds();
-  return {.least = expected.least * shared + by_one, .most = shared + by_one};
+  const WorkSeconds work{.shared = measured_seconds(expected.shared, seconds),
+                         .merging = measured_seconds(expected.merging, seconds),
+                         .by_one = measured_seconds(expected.by_one, 0.0) +
+                                   static_cast<double>(expected.memory.file) * composing_seconds()};
+  return {.least = work.on(threads, expected.least), .most = work.on(threads)};
 }
 
 Command& add_check(Command& program) {

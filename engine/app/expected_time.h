@@ -12,7 +12,8 @@ struct ExpectedTime {
   double most;   ///< the same without them
 };
 
-/// Tries pieces of the study on this machine, at least one of each work, for about so many seconds. (check.cpp)
+/// Tries pieces of the study on this machine, at least one of each work, for about so many seconds for solving and as
+/// many for merging. (check.cpp)
 ExpectedTime expected_time(const Outlook& expected, std::size_t threads, double seconds);
 
 /// A run that takes longer is asked about before it starts, s.

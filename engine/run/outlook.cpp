@@ -1,11 +1,18 @@
 #include "engine/run/outlook.h"
 
+#include <algorithm>
+
 #include "engine/run/rounds.h"
 
 namespace poesy {
 
 MemoryOutlook times(std::size_t count, const MemoryOutlook& each) {
   return {count * each.accumulators, count * each.state, count * each.result, count * each.file};
+}
+
+double WorkSeconds::on(std::size_t threads, double share) const {
+  const double together = (shared + merging) / static_cast<double>(threads);
+  return share * std::max(together, merging) + by_one;
 }
 
 std::size_t outcome_bytes(const ModelDescription& model, Outcomes outcomes) {

@@ -34,6 +34,8 @@ struct WorkOutlook {
   /// Does the piece that begins at this share of the work, 0 <= at < 1, on this thread. Gives the share that it was.
   std::function<double(double at)> do_piece;
   double times = 1.0;  ///< how much the study does of this work
+  /// Done once before the first piece; its time does not count. None where empty.
+  std::function<void()> prepare = {};
 };
 
 /// What a study will ask of a machine. Refers to the study, the model and the poses.
@@ -43,6 +45,18 @@ struct Outlook {
   std::vector<WorkOutlook> shared;  ///< by all threads: the solves
   std::vector<WorkOutlook> by_one;  ///< what only one thread does: separating errors
   double least = 1.0;               ///< share of the solves that are made in any case
+  /// What only one thread does at a time while the others solve: merging what solves come to.
+  std::vector<WorkOutlook> merging = {};
+};
+
+/// Seconds that one thread takes for the works of an outlook.
+struct WorkSeconds {
+  double shared = 0.0;   ///< by all threads
+  double merging = 0.0;  ///< by one at a time
+  double by_one = 0.0;   ///< by one, afterwards
+
+  /// Seconds that so many threads take, of which each merges in turn. share: of the solves that are made.
+  double on(std::size_t threads, double share = 1.0) const;
 };
 
 /// What a state takes of some numbers (base/bytes.h): whole numbers up to two million take three bytes at the most.

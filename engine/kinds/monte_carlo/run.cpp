@@ -6,14 +6,12 @@
 #include "engine/kinds/monte_carlo/machine_collector.h"
 #include "engine/kinds/monte_carlo/machine_table.h"
 #include "engine/kinds/monte_carlo/machine_unit.h"
+#include "engine/kinds/monte_carlo/outlook.h"
 #include "engine/kinds/monte_carlo/result.h"
-#include "engine/kinds/monte_carlo/yield.h"
-#include "engine/run/effect_poses.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/fold.h"
 #include "engine/run/response_rounding.h"
 #include "engine/run/rounds.h"
-#include "engine/stats/merge_tree.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -208,71 +206,6 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   StudyResult found{{}, result->verdicts, {}};
   found.found = *std::move(result);
   return found;
-}
-
-/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places
-/// in the tree, and what pieces in flight hold.
-MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan& plan) {
-  constexpr std::size_t kSketch = 20'000;
-  constexpr std::size_t kPackedSketch = 6000;
-  constexpr std::size_t kInFlight = 8;
-  const std::size_t responses = study.model().responses.size();
-  const std::size_t errors = plan.factors().size();
-  const std::size_t cells = plan.poses().size() * responses;
-  const MachineTable table(plan, model, study.analysis);
-  const std::size_t fit = plan.poses().size() * table.vectors().rows() * (errors + 3) * sizeof(double);
-  const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512 + fit;
-  const std::size_t nodes = MergeTree<MachineSums>::most_nodes(table.units()) * sums;
-  const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(std::uint32_t);
-  const std::size_t numbers = (cells + 6 * responses * errors * (1 + kEffectBins)) * sizeof(double);
-  return {cells * kSketch + nodes + kInFlight * piece + table.kept(), cells * kPackedSketch + nodes + table.kept(),
-          numbers + 3 * fit, numbers};
-}
-
-MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
-  return {a.accumulators + b.accumulators, a.state + b.state, a.result + b.result, a.file + b.file};
-}
-
-MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
-  constexpr std::size_t kNumbers = 8;  // mean, its interval, std, min, max, count, rms
-  const std::size_t responses = study.model().responses.size();
-  // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
-  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
-  const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
-  const std::size_t numbers = responses * (kNumbers + of_sketch) * sizeof(double);
-  const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
-                              responses * (kStoredMoments + (2 + of_sketch) * sizeof(double)) + kStoredSolves,
-                              numbers + sizeof(SolveCounts), numbers + kSolverColumns};
-  MemoryOutlook memory = times(plan.poses().size(), of_pose);
-  const std::size_t errors = plan.factors().size();
-  const std::size_t effects = effect_poses(plan.poses().size(), responses, errors).size() * (responses + 3) / 4 * 4 *
-                              errors * kEffectBins * 2 * sizeof(double);
-  memory.accumulators += effects;
-  memory.state += effects;
-  memory.result += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
-  memory.file += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
-  if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, model, plan));
-  if (!plan.adaptive()) return memory;
-  // Packed sketches of finished poses, for the next round.
-  constexpr std::size_t kPackedSketch = 6000;
-  const std::size_t kept =
-      std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
-  memory.accumulators += kept;
-  memory.state += kept;
-  return memory;
-}
-
-Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  const auto plan = std::make_shared<const Plan>(study, poses);
-  const bool machines = plan->draws() == Draws::per_machine;
-  return {.solves = counted_things(poses.size(), "poses x ") + samples_text(*plan) +
-                    (machines ? " machines with " : " samples of ") +
-                    counted_things(plan->factors().size(), machines ? "errors = " : "errors together = ") +
-                    solves_text(*plan, 1),
-          .memory = monte_carlo_memory(study, model, *plan),
-          .shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model), 1.0)},
-          .by_one = {},
-          .least = least_share(*plan)};
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "engine/kinds/allocation/result.h"
+#include "engine/kinds/monte_carlo/result.h"
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/kinds.h"
 
@@ -12,7 +15,10 @@ namespace {
 /// Does the first piece of each work; the shares that these were.
 std::vector<double> first_pieces(const std::vector<WorkOutlook>& all) {
   std::vector<double> shares;
-  for (const WorkOutlook& work : all) shares.push_back(work.do_piece(0.0));
+  for (const WorkOutlook& work : all) {
+    if (work.prepare) work.prepare();
+    shares.push_back(work.do_piece(0.0));
+  }
   return shares;
 }
 
@@ -36,6 +42,45 @@ TEST(Outlook, NamesBothEndsOfAdaptiveSamples) {
             "3 poses x 1000 to 4000 samples of 2 errors together = at least 3000 and at most 12000 solves");
   EXPECT_EQ(expected.least, 0.25);
   EXPECT_EQ(first_pieces(expected.shared), std::vector{200.0 / 12000.0});
+}
+
+/// Merging is tried as well: all of a study this small, whole units of one with more samples.
+TEST(Outlook, TriesTheMergingOfAStudyThatDrawsPerPose) {
+  for (const auto& [samples, tried] : {std::pair<std::size_t, std::size_t>{20, 20}, {2500, 2000}, {40'000, 8000}}) {
+    const Prepared prepared(study_of(&kMonteCarloStudy, samples));
+    const Outlook expected = outlook(prepared.study, *prepared.model, prepared.plan.poses());
+    const double share = static_cast<double>(tried) / static_cast<double>(samples);
+    EXPECT_EQ(first_pieces(expected.merging), std::vector{share}) << samples;
+    EXPECT_EQ(expected.merging.front().do_piece(0.5), share) << samples;
+    EXPECT_EQ(first_pieces(expected.by_one), std::vector{1.0}) << samples;
+  }
+}
+
+/// A piece is a unit of machines at all poses. What is read off at the end is tried at one pose, and as a whole.
+TEST(Outlook, TriesUnitsOfMachines) {
+  for (const auto& [machines, tried] : {std::pair<std::size_t, std::size_t>{30, 30}, {4000, 1000}}) {
+    Study study = study_of(&kMonteCarloStudy, machines);
+    study.analysis.draws = Draws::per_machine;
+    study.analysis.limits = {{0, 1e-3}};
+    asked_of<MonteCarloOptions>(study.analysis).judge = Judge::yield;
+    const Prepared prepared(study);
+    const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
+    const double share = static_cast<double>(tried) / static_cast<double>(machines);
+    EXPECT_EQ(first_pieces(expected.shared), std::vector{share});
+    EXPECT_EQ(first_pieces(expected.merging), std::vector{share});
+    for (int again = 0; again < 10; ++again) EXPECT_EQ(expected.merging.front().do_piece(0.0), share);
+    EXPECT_EQ(first_pieces(expected.by_one), (std::vector{1.0 / 3.0, 1.0}));
+  }
+}
+
+/// One thread at a time merges, so that many threads are no faster than that.
+TEST(Outlook, AddsUpSeconds) {
+  const WorkSeconds seconds{.shared = 12.0, .merging = 2.0, .by_one = 0.5};
+  EXPECT_EQ(seconds.on(1), 14.5);
+  EXPECT_EQ(seconds.on(2), 7.5);
+  EXPECT_EQ(seconds.on(7), 2.5);
+  EXPECT_EQ(seconds.on(64), 2.5);
+  EXPECT_EQ(seconds.on(2, 0.25), 2.25);
 }
 
 TEST(Outlook, CountsTheTrialsOfMachinesOfAStudyOfTolerances) {

@@ -1,0 +1,256 @@
+#include "engine/kinds/monte_carlo/outlook.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engine/kinds/monte_carlo/collector.h"
+#include "engine/kinds/monte_carlo/columns.h"
+#include "engine/kinds/monte_carlo/machine_collector.h"
+#include "engine/kinds/monte_carlo/machine_table.h"
+#include "engine/kinds/monte_carlo/machine_unit.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/run/effect_poses.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/stats/merge_tree.h"
+#include "engine/stats/moments.h"
+
+namespace poesy {
+namespace {
+
+/// What machines take in addition: a sketch of each response at each pose, sums over machines at some of their places
+/// in the tree, and what pieces in flight hold.
+MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan& plan) {
+  constexpr std::size_t kSketch = 20'000;
+  constexpr std::size_t kPackedSketch = 6000;
+  constexpr std::size_t kInFlight = 8;
+  const std::size_t responses = study.model().responses.size();
+  const std::size_t errors = plan.factors().size();
+  const std::size_t cells = plan.poses().size() * responses;
+  const MachineTable table(plan, model, study.analysis);
+  const std::size_t fit = plan.poses().size() * table.vectors().rows() * (errors + 3) * sizeof(double);
+  const std::size_t sums = cells * sizeof(Moments) + table.effects() * (responses + 3) / 4 * errors * 4 * 512 + fit;
+  const std::size_t nodes = MergeTree<MachineSums>::most_nodes(table.units()) * sums;
+  const std::size_t piece = sums + cells * MachineTable::unit_machines(plan.poses().size()) * sizeof(double);
+  const std::size_t numbers = (cells + 6 * responses * errors * (1 + kEffectBins)) * sizeof(double);
+  return {cells * kSketch + nodes + kInFlight * piece + table.kept(), cells * kPackedSketch + nodes + table.kept(),
+          numbers + 3 * fit, numbers};
+}
+
+MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
+  return {a.accumulators + b.accumulators, a.state + b.state, a.result + b.result, a.file + b.file};
+}
+
+MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
+  constexpr std::size_t kNumbers = 9;  // mean, its interval, std, min, max, count, rms, error of the quantiles
+  const std::size_t responses = study.model().responses.size();
+  // Quantiles with both ends of their intervals, and the magnitude that a share of the draws is judged by.
+  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
+  const std::size_t numbers = responses * (kNumbers + of_sketch) * sizeof(double);
+  const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
+                              responses * (kStoredMoments + (3 + of_sketch) * sizeof(double)) + kStoredSolves,
+                              numbers + sizeof(SolveCounts), numbers + kSolverColumns};
+  MemoryOutlook memory = times(plan.poses().size(), of_pose);
+  const std::size_t errors = plan.factors().size();
+  const std::size_t effects = effect_poses(plan.poses().size(), responses, errors).size() * (responses + 3) / 4 * 4 *
+                              errors * kEffectBins * 2 * sizeof(double);
+  memory.accumulators += effects;
+  memory.state += effects;
+  memory.result += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
+  memory.file += 3 * responses * errors * (1 + kEffectBins) * sizeof(double);
+  if (plan.draws() == Draws::per_machine) return sum_of(memory, machine_memory(study, model, plan));
+  if (!plan.adaptive()) return memory;
+  // Packed sketches of finished poses, for the next round.
+  constexpr std::size_t kPackedSketch = 6000;
+  const std::size_t kept =
+      std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
+  memory.accumulators += kept;
+  memory.state += kept;
+  return memory;
+}
+
+/// So many poses of a study at the most, its first ones.
+PoseSet first_of(const PoseSet& poses, std::size_t most) {
+  std::vector<double> some;
+  for (std::size_t m = 0; m < std::min(most, poses.size()); ++m) {
+    const auto pose = poses[PoseIndex(m)];
+    some.insert(some.end(), pose.begin(), pose.end());
+  }
+  return PoseSet(poses.coordinates(), std::move(some));
+}
+
+/// A study that draws per pose, at a few of its poses with a few of its units.
+class PoseTrial {
+ public:
+  PoseTrial(const Study& study, const Model& model, const PoseSet& poses)
+      : analysis_(study.analysis),
+        model_(model),
+        solves_(static_cast<double>(poses.size()) * static_cast<double>(study.analysis.samples)),
+        plan_(Plan(study, first_of(poses, kPoses)).with_samples(samples(study.analysis.samples))) {}
+
+  /// Solves a unit, which then is merged at all poses.
+  void prepare() {
+    unit_ = PoseUnitEvaluator(plan_, model_)(plan_.unit(0));
+    effects_ = std::exchange(unit_.effects, std::nullopt);
+    fill();
+  }
+  /// The share of the study that this is.
+  double merge() {
+    fill();
+    return static_cast<double>(plan_.solves()) / solves_;
+  }
+  void finish() {
+    unit_.effects = effects_;
+    fill();
+    static_cast<void>(std::move(*collect_).result());
+  }
+
+ private:
+  static constexpr std::size_t kPoses = 8;
+
+  /// Whole units, so many that finishing a pose hardly counts where the study has more.
+  static std::size_t samples(std::size_t of_study) {
+    constexpr std::size_t kMostUnits = 8;
+    if (of_study < Plan::kUnitSamples) return of_study;
+    return std::min(of_study / Plan::kUnitSamples, kMostUnits) * Plan::kUnitSamples;
+  }
+  void fill() {
+    collect_.emplace(plan_, model_.description().responses.size(), analysis_, plan_.adaptive().has_value());
+    for (std::size_t m = 0; m < plan_.poses().size(); ++m) {
+      for (std::size_t u = 0; u < plan_.units_per_cell(); ++u) collect_->add(PoseIndex(m), unit_);
+    }
+  }
+
+  const Analysis& analysis_;
+  const Model& model_;
+  double solves_;
+  Plan plan_;
+  PoseUnit unit_;
+  std::optional<MainEffectSums> effects_;
+  std::optional<MonteCarloCollector> collect_;
+};
+
+/// A study of machines at some of its poses: so many that what is done once for each machine, and at the few poses of
+/// main effects, has about its share.
+class MachineTrial {
+ public:
+  MachineTrial(const Study& study, const Model& model, const PoseSet& poses)
+      : analysis_(study.analysis),
+        model_(model),
+        poses_(poses.size()),
+        responses_(model.description().responses.size()),
+        plan_(study, first_of(poses, kPoses)),
+        table_(plan_, model, study.analysis),
+        unit_plan_(plan_.with_samples(std::min(plan_.samples(), MachineTable::unit_machines(poses.size())))),
+        unit_table_(unit_plan_, model, study.analysis),
+        evaluate_(unit_table_, model) {}
+  MachineTrial(const MachineTrial&) = delete;
+  MachineTrial& operator=(const MachineTrial&) = delete;
+
+  /// Solves as many machines as a unit of the study has. The share of the study that this is.
+  double solve() {
+    static_cast<void>(evaluate_(0));
+    return share_of(unit_table_.unit(0).count);
+  }
+  /// Solves a unit, which then is merged again and again.
+  void prepare() {
+    unit_ = MachineUnitEvaluator(table_, model_)(0);
+    begin();
+    sketches_.clear();
+    sketches_.resize(responses_);
+    for (std::size_t r = 0; r < responses_; ++r) sketches_[r].add(unit_.at_pose[r]);
+  }
+  double merge() {
+    if (collect_->next() == table_.units() || !table_.is_whole(collect_->next())) begin();
+    collect_->add(collect_->next(), MachineUnit(unit_));
+    return share_of(table_.unit(0).count);
+  }
+  /// Reads off what is known of one pose. The share of all poses that this is.
+  double read_pose() {
+    MonteCarloColumns columns(1, responses_, analysis_);
+    for (std::size_t r = 0; r < responses_; ++r) {
+      columns.set_moments(r, 0, unit_.sums->at_pose[r]);
+      columns.set_quantiles(r, 0, sketches_[r], unit_.solves.front().total());
+    }
+    return 1.0 / static_cast<double>(poses_);
+  }
+  void finish() {
+    begin();
+    merge();
+    static_cast<void>(std::move(*collect_).result());
+  }
+
+ private:
+  static constexpr std::size_t kPoses = 150;
+
+  void begin() { collect_.emplace(table_, analysis_, NumberRange{0, table_.units()}); }
+  /// So many machines at the poses that are tried.
+  double share_of(std::size_t machines) const {
+    const double tried = static_cast<double>(machines) * static_cast<double>(plan_.poses().size());
+    return tried / (static_cast<double>(plan_.samples()) * static_cast<double>(poses_));
+  }
+
+  const Analysis& analysis_;
+  const Model& model_;
+  std::size_t poses_;  ///< of the study
+  std::size_t responses_;
+  Plan plan_;
+  MachineTable table_;  ///< all machines
+  Plan unit_plan_;
+  MachineTable unit_table_;  ///< as many machines as a unit of the study has
+  MachineUnitEvaluator evaluate_;
+  MachineUnit unit_;
+  std::vector<QuantileSketch> sketches_;  ///< [R] at one pose
+  std::optional<MachineCollector> collect_;
+};
+
+void add_pose_works(const Study& study, const Model& model, const PoseSet& poses,
+                    const std::shared_ptr<const Plan>& plan, Outlook& expected) {
+  expected.shared = {sampling<PoseUnitEvaluator>(plan, borrowed(model), 1.0)};
+  const auto trial = std::make_shared<PoseTrial>(study, model, poses);
+  const auto prepare = [trial] { trial->prepare(); };
+  expected.merging = {{[trial](double) { return trial->merge(); }, 1.0, prepare}};
+  expected.by_one = {{[trial](double) {
+                        trial->finish();
+                        return 1.0;
+                      },
+                      1.0, prepare}};
+}
+
+void add_machine_works(const Study& study, const Model& model, const PoseSet& poses, Outlook& expected) {
+  const auto trial = std::make_shared<MachineTrial>(study, model, poses);
+  const auto prepare = [trial] { trial->prepare(); };
+  expected.shared = {{[trial](double) { return trial->solve(); }}};
+  expected.merging = {{[trial](double) { return trial->merge(); }, 1.0, prepare}};
+  expected.by_one = {{[trial](double) { return trial->read_pose(); }, 1.0, prepare},
+                     {[trial](double) {
+                        trial->finish();
+                        return 1.0;
+                      },
+                      1.0, prepare}};
+}
+
+}  // namespace
+
+Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses) {
+  const auto plan = std::make_shared<const Plan>(study, poses);
+  const bool machines = plan->draws() == Draws::per_machine;
+  Outlook expected{.solves = counted_things(poses.size(), "poses x ") + samples_text(*plan) +
+                             (machines ? " machines with " : " samples of ") +
+                             counted_things(plan->factors().size(), machines ? "errors = " : "errors together = ") +
+                             solves_text(*plan, 1),
+                   .memory = monte_carlo_memory(study, model, *plan),
+                   .shared = {},
+                   .by_one = {},
+                   .least = least_share(*plan)};
+  if (machines) {
+    add_machine_works(study, model, poses, expected);
+  } else {
+    add_pose_works(study, model, poses, plan, expected);
+  }
+  return expected;
+}
+
+}  // namespace poesy
