@@ -51,6 +51,15 @@ PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
 
 constexpr Estimate kUnknown{kNaN, {kNaN, kNaN}};
 
+/// Whether the mean over the rejects is certainly negative. Precondition: rejects > 1.
+bool is_below_zero(const PowerSums& powers, std::uint64_t rejects) {
+  constexpr double kLevel = 0.99;
+  const auto k = static_cast<double>(rejects);
+  const double mean = powers.sum / k;
+  const double variance = std::max(0.0, powers.square / k - mean * mean) / (k - 1.0);
+  return mean + two_sided_student_quantile(k - 1.0, kLevel) * std::sqrt(variance) < 0.0;
+}
+
 void write_sums(ByteWriter& to, const std::vector<PowerSums>& sums) {
   for (const auto member : {&PowerSums::sum, &PowerSums::square, &PowerSums::cube}) {
     for (const PowerSums& one : sums) to.real(one.*member);
@@ -95,7 +104,8 @@ ScoreSums::ScoreSums(ErrorScores scores)
     : scores_(std::move(scores)),
       slope_(scores_.each.size()),
       growth_(scores_.each.size()),
-      parabola_(scores_.each.size()) {}
+      less_(scores_.each.size()),
+      more_(scores_.each.size()) {}
 
 void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
@@ -109,7 +119,10 @@ void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t
     } else if (const auto* polynomial = std::get_if<PolynomialScore>(&scores_.each[p])) {
       slope_[p] += power_sums(rejects, [&](std::size_t b) { return (*polynomial)(row[b]); });
       growth_[p] += power_sums(rejects, [&](std::size_t b) { return polynomial->growth(row[b]); });
-      for (const std::size_t b : rejects) parabola_[p] += polynomial->parabola(row[b]);
+      less_[p] += power_sums(rejects,
+                             [&](std::size_t b) { return polynomial->parabola(row[b]) - 0.5 * (*polynomial)(row[b]); });
+      more_[p] += power_sums(rejects,
+                             [&](std::size_t b) { return 2.0 * (*polynomial)(row[b]) - polynomial->parabola(row[b]); });
     }
   }
   for (const NormalBlock& block : scores_.blocks) add_block(block, errors, count, rejects);
@@ -140,7 +153,8 @@ void ScoreSums::merge(const ScoreSums& other) {
   for (std::size_t p = 0; p < slope_.size(); ++p) {
     slope_[p] += other.slope_[p];
     growth_[p] += other.growth_[p];
-    parabola_[p] += other.parabola_[p];
+    less_[p] += other.less_[p];
+    more_[p] += other.more_[p];
   }
 }
 
@@ -177,8 +191,7 @@ std::vector<Estimate> ScoreSums::change(double conf_level) const {
 
 bool ScoreSums::dominates(std::size_t error, const Estimate& score) const {
   if (!std::holds_alternative<PolynomialScore>(scores_.each[error])) return false;
-  const double all = slope_[error].sum;
-  return score.interval.low > 0.0 && (parabola_[error] < 0.5 * all || parabola_[error] > 2.0 * all);
+  return score.interval.low > 0.0 && (is_below_zero(less_[error], rejects_) || is_below_zero(more_[error], rejects_));
 }
 
 Estimate ScoreSums::mean_score(std::size_t error, double conf_level) const {
@@ -216,9 +229,7 @@ Estimate ScoreSums::mean_growth(std::size_t error, double conf_level) const {
 void ScoreSums::write(ByteWriter& to) const {
   to.number(machines_);
   to.number(rejects_);
-  write_sums(to, slope_);
-  write_sums(to, growth_);
-  to.reals(parabola_);
+  for (const auto* sums : {&slope_, &growth_, &less_, &more_}) write_sums(to, *sums);
 }
 
 ScoreSums ScoreSums::read(ByteReader& from, const ErrorScores& scores) {
@@ -226,12 +237,7 @@ ScoreSums ScoreSums::read(ByteReader& from, const ErrorScores& scores) {
   sums.machines_ = from.number();
   sums.rejects_ = from.number_up_to(sums.machines_);
   const auto rejects = static_cast<double>(sums.rejects_);
-  read_sums(from, rejects, sums.slope_);
-  read_sums(from, rejects, sums.growth_);
-  from.reals(sums.parabola_);
-  if (!std::ranges::all_of(sums.parabola_, [](double one) { return std::isfinite(one); })) {
-    throw BytesError("has sums of scores that no machines give");
-  }
+  for (auto* list : {&sums.slope_, &sums.growth_, &sums.less_, &sums.more_}) read_sums(from, rejects, *list);
   return sums;
 }
 

@@ -52,8 +52,8 @@ Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const Scor
 ///
 /// which is exact for normal errors, also cut off or correlated with each other, and for others if the yield, given the
 /// error, is a polynomial of degree PolynomialScore::kDegree. NaN where the score is not known. With the growth score
-/// it is what the yield changes by while t grows by the factor kErrorGrowth. Holds seven sums for each error, and looks
-/// at the rejects alone.
+/// it is what the yield changes by while t grows by the factor kErrorGrowth. Holds twelve sums for each error, and
+/// looks at the rejects alone.
 class ScoreSums {
  public:
   explicit ScoreSums(ErrorScores scores);  ///< Of no machines. [P] errors.
@@ -73,8 +73,8 @@ class ScoreSums {
   /// of other shapes and of correlated ones spread more, so their second and third moments are taken with four rejects
   /// in addition, with any error. The interval does not cover what a PolynomialScore leaves out; where that is much,
   /// because one error alone makes the rejects, the gradient by that error is NaN: its score up to degree 2 then has
-  /// less than half of the mean of S, or more than twice that. NaN for errors without a score; NaN at both ends below
-  /// two rejects. Precondition: 0 < conf_level < 1.
+  /// less than half of the mean of S, or more than twice that, by Student's test at 99 %. NaN for errors without a
+  /// score; NaN at both ends below two rejects. Precondition: 0 < conf_level < 1.
   std::vector<Estimate> gradient(double conf_level) const;
 
   /// [P] what Y changes by while the size of the error grows by the factor kErrorGrowth, the others as they are:
@@ -101,7 +101,8 @@ class ScoreSums {
   std::uint64_t rejects_ = 0;
   std::vector<PowerSums> slope_;   ///< [P] of S over the rejects, without what ends of a normal add
   std::vector<PowerSums> growth_;  ///< [P] of the growth score; 0 for errors of a block, where S says it
-  std::vector<double> parabola_;   ///< [P] of a PolynomialScore up to degree 2
+  std::vector<PowerSums> less_;    ///< [P] of the part of a PolynomialScore up to degree 2, less half of S
+  std::vector<PowerSums> more_;    ///< [P] of 2 S less that part
 };
 
 /// An estimate and its ends kept within these bounds.

@@ -65,7 +65,7 @@ double local_coverage(double (*response)(double), double deviation, int samples,
   for (int r = 0; r < kRepetitions; ++r) {
     Moments moments;
     for (int k = 0; k < samples; ++k) moments.add(response(normal(engine)));
-    hits += holds(local_index(moments, 1.0, kLevel), deviation) ? 1 : 0;
+    hits += holds(local_index(moments, 1.0, kLevel).interval, deviation) ? 1 : 0;
   }
   return static_cast<double>(hits) / kRepetitions;
 }

@@ -260,7 +260,7 @@ TEST(ScoreSums, OfNormalErrorsAreTheirSquares) {
   to.number(kMachines);
   to.number(rejects);
   for (const std::vector<double>& one : powers) to.reals(one);
-  to.reals(std::array{0.0, 0.0, 0.0});  // no score is a polynomial
+  to.reals(std::array<double, 18>{});  // no score is a polynomial
   EXPECT_EQ(written(scores), to.take());
 }
 
@@ -347,8 +347,7 @@ TEST(StoredScoreSums, OfNoMachinesAreRefused) {
     ByteWriter to;
     to.number(machines);
     to.number(rejects);
-    for (int slope_and_growth = 0; slope_and_growth < 2; ++slope_and_growth) to.reals(std::array{sum, square, cube});
-    to.real(0.0);
+    for (int list = 0; list < 4; ++list) to.reals(std::array{sum, square, cube});
     const Bytes bytes = to.take();
     ByteReader from(bytes);
     try {
